@@ -20,7 +20,7 @@ run() {
         set="Implicit(tolerance: 1e-3, max_iterations: 50)"
     fi
     # shellcheck disable=SC2086
-    "$program" run cases/wheel_rail_fretting.ron --out "$name" --set time.end=0.075 --set "seed=$seed" --set "time.step=$step" \
+    "$program" run cases/wheel_rail_rigid.ron --out "$name" --set time.end=0.075 --set "seed=$seed" --set "time.step=$step" \
         --set "coupling=$set" --set output.frames=0 --set output.views=0 ${SETS:-} >"$name.log" 2>&1 || true
     local of="$name/summary.json"
     echo "$coupling $step $seed $(number "$of" damage_ratio) $(number "$of" energy fracture) $(number "$of" fracture released_over_declared)" \

@@ -37,7 +37,7 @@ first() {
 second() {
     study fretting_scar 2.5e-5 1e-10
     study plane_shear 5e-5 1e-5 --set time.end=0.6
-    study wheel_rail_fretting 1.25e-5 1e-5 --set time.end=0.1
+    study wheel_rail_rigid 1.25e-5 1e-5 --set time.end=0.1
 }
 first &
 second
@@ -63,7 +63,7 @@ def mean(values):
 
 
 held, all_of = 0, 0
-for case in ["wheel_rail_fretting", "plane_shear", "shear_cell_3d", "regime_map", "fretting_scar", "punch_scar"]:
+for case in ["wheel_rail_rigid", "plane_shear", "shear_cell_3d", "regime_map", "fretting_scar", "punch_scar"]:
     for setting in ["step", "tolerance"]:
         for name in results:
             rows = []

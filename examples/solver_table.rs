@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-const FRETTING: &str = "cases/wheel_rail_fretting.ron";
+const FRETTING: &str = "cases/wheel_rail_rigid.ron";
 /// Step and tolerance of the table, with further changes of a run.
 fn sets(more: String) -> [String; 3] {
     [

@@ -63,13 +63,17 @@ pub const PRESETS: &[(&str, &str)] = &[
         "damage coupling: explicit, midpoint or implicit",
     ),
     ("correction", "position correction, 0 to 0.2"),
+    (
+        "accuracy",
+        "step and tolerance chosen by the run for 10 %, 3 % and 1 %",
+    ),
     ("grains", "half the grains of the first lattice or deposit"),
 ];
 
-/// Whether a preset is varied by default; the number of grains changes the problem itself, not only the
-/// accuracy.
+/// Whether a preset is varied by default; the number of grains changes the problem itself, not only the accuracy, and a run that
+/// chooses its settings is compared with them where that is asked for.
 fn wanted_by_default(name: &str) -> bool {
-    name != "grains"
+    !matches!(name, "grains" | "accuracy")
 }
 
 /// How the scene of a case is solved.
@@ -173,6 +177,7 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<StudyParamet
         "solver" => solver_levels(case, &solving.methods)?,
         "test_every" => test_every_levels(case)?,
         "coupling" => coupling_levels(case)?,
+        "accuracy" => accuracy_levels(case),
         "correction" => {
             let own = case.solver.correction;
             let mut all = vec![0.0, 0.05, 0.2, own];
@@ -253,6 +258,31 @@ fn coupling_levels(case: &Case) -> Result<Choices, String> {
         Coupling::Implicit { .. } => 2,
     };
     Ok((levels, own))
+}
+
+/// The case with step and tolerance as they are, and with those that the run chooses for an accuracy.
+fn accuracy_levels(case: &Case) -> Choices {
+    let level = |label: &str, set: String| Level {
+        label: label.into(),
+        sets: vec![set],
+        number: None,
+    };
+    let mut levels = vec![level("fixed", "accuracy=None".into())];
+    let shares = ["0.1", "0.03", "0.01"];
+    levels.extend(shares.map(|share| level(share, format!("accuracy={share}"))));
+    let own = case.accuracy.as_ref().map(|asked| asked.share.to_string());
+    let own = own.map_or(Some(0), |share| {
+        levels.iter().position(|l| l.label == share)
+    });
+    let own = own.unwrap_or_else(|| {
+        levels.push(Level {
+            label: "as in the case".into(),
+            sets: Vec::new(),
+            number: None,
+        });
+        levels.len() - 1
+    });
+    (levels, own)
 }
 
 /// Whether a solver iterates in sweeps, to which `test_every` applies.

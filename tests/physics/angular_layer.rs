@@ -11,10 +11,10 @@ use std::path::Path;
 
 /// The layer at 1.12 GPa, shortly after the wheel began to slide.
 fn sliding(more: &[&str]) -> Simulation<Dim2> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/wheel_rail_angular.ron");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/wheel_rail_fretting.ron");
     let window = [
         "periodic.x=8e-5",
-        "grains.0.high=[8e-5, 4.25e-5]",
+        "grains.0.high=[8e-5, 4.32e-5]",
         "bodies.rail.shapes.0.points=160",
         "bodies.wheel.shapes.0.points=160",
         "bodies.rail.shapes.0.longest=4e-5",

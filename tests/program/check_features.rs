@@ -74,7 +74,7 @@ fn a_frictionless_scene_of_disks_has_neither_friction_nor_rotation_nor_memory() 
 
 #[test]
 fn bonds_damage_and_history_are_listed_with_their_bytes() {
-    let (features, off, text) = check("wheel_rail_fretting", &[]);
+    let (features, off, text) = check("wheel_rail_rigid", &[]);
     assert!(on(&features, "bonds").contains("bytes a bond"));
     assert!(on(&features, "damage").contains("in "));
     assert!(!off.iter().any(|f| f == "friction"));

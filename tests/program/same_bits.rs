@@ -136,7 +136,7 @@ fn contacts_in_another_order_give_the_same_sums() {
     for (case, steps) in [
         ("biaxial", 600),
         ("plane_shear", 600),
-        ("wheel_rail_fretting", 300),
+        ("wheel_rail_rigid", 300),
         ("shear_cell_3d", 300),
         ("collapse", 600),
     ] {

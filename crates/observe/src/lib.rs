@@ -6,6 +6,7 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+pub mod accuracy;
 pub mod biaxial;
 pub mod chart;
 pub mod choice;

@@ -1,5 +1,6 @@
 //! What a run of a case is observed by.
 
+use super::accuracy::ChosenSettings;
 use super::biaxial::Biaxial;
 use super::circuit::{BrokenBonds, CircuitAccount};
 use super::fracture::Fracture;
@@ -45,6 +46,9 @@ pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Obse
     all.push(Box::new(DrivenBodies::of(s, drawn)));
     if case.jump.is_some() {
         all.push(Box::new(CycleJumps));
+    }
+    if case.accuracy.is_some() {
+        all.push(Box::new(ChosenSettings));
     }
     all.push(Box::new(BrokenBonds::default()));
     all.push(Box::new(Fracture::of(case, s)));

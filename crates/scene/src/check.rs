@@ -23,6 +23,7 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     }
     let dimension = case.dimension as usize;
     time(case)?;
+    accuracy(case)?;
     repeats(case)?;
     output_intervals(case)?;
     positive("inertia_scaling", case.inertia_scaling)?;
@@ -111,6 +112,40 @@ fn output_intervals(case: &Case) -> Result<(), ValidationError> {
         _ => return Ok(()),
     };
     Err(ValidationError::new("output.checkpoint", message))
+}
+
+/// The accuracy asked for, and its bounds.
+fn accuracy(case: &Case) -> Result<(), ValidationError> {
+    let Some(asked) = &case.accuracy else {
+        return Ok(());
+    };
+    let outside = |field: &str, value: f64, expected: &str| {
+        let path = format!("accuracy.{field}");
+        Err(ValidationError::new(path, format!("got {value}")).expected(expected))
+    };
+    if !(asked.share > 0.0 && asked.share < 1.0) {
+        let expected = "a share of the result above 0 and below 1, such as 0.03";
+        return outside("share", asked.share, expected);
+    }
+    if !(asked.effort > 0.0 && asked.effort <= 10.0) {
+        return outside("effort", asked.effort, "a number above 0, at most 10");
+    }
+    let step = asked.finest_step.unwrap_or(case.time.step);
+    if !(step > 0.0 && step <= case.time.step) {
+        let expected = "a time above 0, at most time.step, which is the coarsest step";
+        return outside("finest_step", step, expected);
+    }
+    if let Some(tolerance) = asked.finest_tolerance
+        && !(tolerance > 0.0 && tolerance.is_finite())
+    {
+        return outside("finest_tolerance", tolerance, "a number above 0");
+    }
+    if case.jump.is_some() {
+        let message =
+            "a run that jumps over cycles cannot choose its step; leave out `accuracy` or `jump`";
+        return Err(ValidationError::new("accuracy", message));
+    }
+    Ok(())
 }
 
 /// Steps repeated at each place.

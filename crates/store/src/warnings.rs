@@ -340,6 +340,8 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     note("COARSE DRIVE", drives(summary, false));
     note("LOOSE VELOCITIES", loose_velocities(summary));
     note("POSITION CORRECTION", correction(summary));
+    let missed = summary.accuracy.as_ref().and_then(|a| a.shortfall());
+    note("ACCURACY NOT SHOWN", missed);
     let uncertainty = &summary.uncertainty;
     note("ESTIMATED ERROR", estimated_error(uncertainty));
     note("ERROR NOT KNOWN", unknown_error(uncertainty));

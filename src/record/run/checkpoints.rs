@@ -8,6 +8,7 @@ use crate::record::code::{CodeError, decode, encode};
 use crate::report::Paint;
 use crate::scene::build::Dimensional;
 use crate::step::{ProcessState, State};
+use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,9 @@ struct RunLoopState<'a, S: Space> {
     problems: (u64, u64),
     unconverged: u64,
     estimate: Cow<'a, ErrorEstimate>,
+    accuracy: Cow<'a, Option<AccuracyControl>>,
+    /// Steps of the case that are done.
+    done: u64,
     wall: Duration,
     processor: Duration,
 }
@@ -87,6 +91,8 @@ impl<S: Dimensional> Recorder<'_, S> {
             problems: self.problems,
             unconverged: self.unconverged,
             estimate: Cow::Borrowed(&self.estimate),
+            accuracy: Cow::Borrowed(&self.accuracy),
+            done: self.done,
             wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
             processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
         })?)
@@ -109,7 +115,8 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.observers.restore(&state.observers).map_err(refused)?;
         self.set_end(state.spread, &path)?;
         self.camera.paint(state.paints.into_owned());
-        self.resumed_at = self.simulation.state.steps;
+        (self.done, self.resumed_at) = (state.done, state.done);
+        self.accuracy = state.accuracy.into_owned();
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();
         self.elapsed_before_resume = (state.wall, state.processor);

@@ -90,9 +90,9 @@ impl<S: Steps> Recorder<'_, S> {
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
         // A law may not come back from a repeated step either.
-        let repeated = self.estimate.before_step(&mut self.simulation);
+        let repeated = self.estimate.before_step(&mut self.simulation, self.done);
         let repeated = repeated.map_err(RunError::from);
-        let report = repeated.and_then(|()| Ok(self.simulation.step()?));
+        let report = repeated.and_then(|()| self.part());
         // The watch took it just before the law came back: it is written.
         let outputs = place().take().ok_or(RunError::TakenOver)?;
         self.table = outputs.table;
@@ -100,5 +100,26 @@ impl<S: Steps> Recorder<'_, S> {
         self.observers = outputs.observers;
         self.summary = outputs.summary;
         report
+    }
+
+    /// A step, or a part of one where the run chooses how many parts it has.
+    fn part(&mut self) -> Result<StepReport, RunError> {
+        let simulation = &mut self.simulation;
+        let Some(control) = &mut self.accuracy else {
+            return Ok(simulation.step()?);
+        };
+        let parts = match &mut self.parts {
+            Some(parts) => parts,
+            none => none.insert(control.begin_step(simulation, self.done)?),
+        };
+        let report = loop {
+            if let Some(report) = control.part(simulation, parts)? {
+                break report;
+            }
+        };
+        if control.complete(parts) {
+            self.parts = None;
+        }
+        Ok(report)
     }
 }

@@ -24,6 +24,7 @@ impl<S: Dimensional> Recorder<'_, S> {
         let solver = &mut summary.solver;
         (solver.fclib_written, solver.fclib_skipped) = self.problems;
         summary.repeats = self.estimate.report(&self.simulation.state.energy);
+        summary.accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));
         summary.complete();
         self.summary = summary;
         let notice = self.warn();

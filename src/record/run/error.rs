@@ -5,6 +5,7 @@ use crate::record::code::CodeError;
 use crate::record::results::ResultsError;
 use crate::report::ReportError;
 use crate::step::{RepeatError, StepError};
+use fretwork_observe::accuracy::PartError;
 use std::path::{Path, PathBuf};
 
 /// Reason why a run failed. What was computed is on disk.
@@ -32,6 +33,9 @@ pub enum RunError {
     /// The state before repeated steps cannot be restored.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
+    /// A part of a step failed.
+    #[error(transparent)]
+    Part(#[from] PartError),
     /// Two columns of the statistics have one name.
     #[error(
         "two columns of the statistics are named `{name}`; give a measure or an observer another name"

@@ -28,6 +28,7 @@ use crate::scene::case::Case;
 use crate::scene::{processes, sampling};
 use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
+use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard;
@@ -216,6 +217,11 @@ struct Recorder<'a, S: Space> {
     unconverged: u64,
     /// The estimate of the error of the run.
     estimate: ErrorEstimate,
+    /// Choice of step and tolerance, where the case asks for an accuracy; and the parts of a step that are made.
+    accuracy: Option<AccuracyControl>,
+    parts: Option<StepParts>,
+    /// Steps of the case that are done; each may have several parts, which the simulation counts.
+    done: u64,
     /// Steps that were done when the run was resumed.
     resumed_at: u64,
     /// Total steps of the run, and the steps over which states and pictures are distributed, as set when it
@@ -267,9 +273,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         let results = create_results(&part, loaded, &built, &summary, &observers)?;
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
-        let estimate = ErrorEstimate::new(case, &simulation, total);
         let mut recorder = Self {
-            estimate,
+            estimate: ErrorEstimate::new(case, &simulation, total),
+            accuracy: AccuracyControl::new(case, &simulation),
+            parts: None,
+            done: 0,
             camera: Camera::new(&simulation, &case.output),
             out: options.out.clone(),
             table: Table::new(columns),
@@ -310,13 +318,11 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             self.record_state()?;
             self.draw_pictures(0)?;
         }
-        for step in self.simulation.state.steps + 1..=self.total {
+        for step in self.done + 1..=self.total {
             let phase = self.simulation.state.control.phase();
             let recurs = self.simulation.phase_recurs();
-            let report = self.step()?;
-            self.unconverged += u64::from(!report.solver.converged);
-            self.estimate.after_step(&self.simulation, &report);
-            self.observers.after_step(&self.simulation, &report);
+            let report = self.whole_step()?;
+            self.done = step;
             if phase == 1 && self.simulation.state.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
                 self.observers.begin(&mut self.simulation);
@@ -344,6 +350,19 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         Ok(None)
     }
 
+    /// A step of the case, in all its parts; returns the report of the last one.
+    fn whole_step(&mut self) -> Result<StepReport, RunError> {
+        loop {
+            let report = self.step()?;
+            self.unconverged += u64::from(!report.solver.converged);
+            self.estimate.after_step(&self.simulation, &report);
+            self.observers.after_step(&self.simulation, &report);
+            if self.parts.is_none() {
+                return Ok(report);
+            }
+        }
+    }
+
     /// Records a step: its events, and its problem, row, state and pictures where they are due. `last` is the last step of the run,
     /// `finished` the one that ended it, `turned` one after which another phase begins.
     fn record(
@@ -353,7 +372,7 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
         finished: bool,
         turned: bool,
     ) -> Result<(), RunError> {
-        let (output, step) = (&self.loaded.case.output, self.simulation.state.steps);
+        let (output, step) = (&self.loaded.case.output, self.done);
         if last {
             self.simulation.end()?;
         }

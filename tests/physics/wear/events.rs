@@ -83,5 +83,5 @@ fn breaks_of_a_torn_plate_tell_all_its_fracture_energy() {
 
 #[test]
 fn breaks_under_fretting_tell_all_its_fracture_energy() {
-    assert!(told::<Dim2>("wheel_rail_fretting", &["time.step=1e-4"], 540) > 10);
+    assert!(told::<Dim2>("wheel_rail_rigid", &["time.step=1e-4"], 540) > 10);
 }

@@ -212,7 +212,7 @@ fn a_sphere_slides_and_then_rolls_and_friction_took_a_seventh() {
 fn every_dataset_says_its_unit_and_what_it_is() {
     let out = folder("units");
     let (output, summary) = run(
-        "cases/wheel_rail_fretting.ron",
+        "cases/wheel_rail_rigid.ron",
         &out,
         &[
             "--set",

@@ -45,7 +45,7 @@ fn missing<S: Dimensional>(
 fn every_column_of_the_shipped_cases_is_documented() {
     let page = documented();
     for case in [
-        "wheel_rail_fretting",
+        "wheel_rail_rigid",
         "third_body_steady",
         "fretting_wear_jump",
         "plane_shear",

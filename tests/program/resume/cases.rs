@@ -34,7 +34,7 @@ fn fretting_with_damage_in_the_plane() {
         "output.figures=false",
     ];
     let job = Job {
-        case: "wheel_rail_fretting",
+        case: "wheel_rail_rigid",
         sets: &sets,
     };
     resumes("fretting", job, &[7]);

@@ -58,7 +58,7 @@ fn check(case: &str, sets: &[&str], before: u32, after: u32) {
 
 #[test]
 fn a_plane_scene_goes_on_with_the_same_bits() {
-    check("wheel_rail_fretting", &[], 60, 60);
+    check("wheel_rail_rigid", &[], 60, 60);
 }
 
 #[test]
@@ -81,7 +81,7 @@ fn a_surface_that_wears_goes_on_from_what_it_shows() {
 fn a_state_of_another_scene_is_not_taken() {
     let [Scene::Dim2(one), Scene::Dim2(other)] = [
         built("verification/column", &[]),
-        built("wheel_rail_fretting", &[]),
+        built("wheel_rail_rigid", &[]),
     ] else {
         panic!("two plane cases");
     };
@@ -215,7 +215,7 @@ fn bonds_of_the_last_step_are_part_of_the_state() {
 /// was read before.
 #[test]
 fn readings_of_the_last_step_are_the_same_after_a_resumption() {
-    let scene = || match built("wheel_rail_fretting", &[]) {
+    let scene = || match built("wheel_rail_rigid", &[]) {
         Scene::Dim2(built) => built.simulation,
         Scene::Dim3(_) => panic!("a plane case"),
     };

@@ -75,6 +75,8 @@ pub enum LawError {
         contact: Option<usize>,
         /// The law's message.
         reason: String,
+        /// Whether it asks for a smaller time step (`FW_REDUCE_STEP`).
+        smaller_step: bool,
     },
     /// A function of the law wrote beyond the end of a column.
     #[error(
@@ -163,6 +165,15 @@ impl LawError {
             | Self::Unknown { .. }
             | Self::Pairing { .. }
             | Self::Kind { .. } => None,
+        }
+    }
+
+    /// Whether the law asks for a smaller time step.
+    pub fn asks_for_smaller_step(&self) -> bool {
+        match self {
+            Self::Failed { smaller_step, .. } => *smaller_step,
+            Self::At { source, .. } => source.asks_for_smaller_step(),
+            _ => false,
         }
     }
 

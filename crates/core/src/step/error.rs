@@ -112,3 +112,10 @@ pub enum StepError {
         value: f64,
     },
 }
+
+impl StepError {
+    /// Whether a law asks for a smaller time step.
+    pub fn asks_for_smaller_step(&self) -> bool {
+        matches!(self, Self::Law { source, .. } if source.asks_for_smaller_step())
+    }
+}

@@ -60,16 +60,36 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
     pub fn repeat<R>(&mut self, trial: impl FnOnce(&mut Self) -> R) -> Result<R, RepeatError> {
+        let saved = self.save()?;
+        let result = trial(self);
+        self.put_back(saved)?;
+        Ok(result)
+    }
+
+    /// Has `trial` make steps; where it fails, restores the state before it.
+    ///
+    /// # Errors
+    /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
+    pub fn attempt<R, E>(
+        &mut self,
+        trial: impl FnOnce(&mut Self) -> Result<R, E>,
+    ) -> Result<Result<R, E>, RepeatError> {
+        let saved = self.save()?;
+        let result = trial(self);
+        if result.is_err() {
+            self.put_back(saved)?;
+        }
+        Ok(result)
+    }
+
+    fn save(&self) -> Result<Saved<S>, RepeatError> {
         self.repeatable()?;
-        let saved = Saved {
+        Ok(Saved {
             processes: self.save_processes()?,
             state: self.state.clone(),
             options: self.options,
             laws: self.laws.clone(),
-        };
-        let result = trial(self);
-        self.put_back(saved)?;
-        Ok(result)
+        })
     }
 
     fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {

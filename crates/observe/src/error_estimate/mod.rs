@@ -7,42 +7,38 @@ mod change;
 mod increments;
 mod places;
 mod report;
+mod stretches;
 
 pub use change::Change;
 pub use report::{Effects, Repeats, Shares};
 
+pub(crate) use change::Pair;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::RubbedBody;
-use fretwork_core::step::coupling::Coupling;
 use fretwork_core::step::{RepeatError, Simulation, StepReport, Steps};
 use fretwork_scene::case::Case;
 use fretwork_scene::processes::FrictionTest;
-use increments::{Increments, Stretch, cost};
+pub(crate) use increments::Increments;
+pub(crate) use increments::cost;
 use serde::{Deserialize, Serialize};
+pub(crate) use stretches::RepeatedStretch;
 
 /// The shorter steps of a repeat are the step over this number.
 const FINER: u32 = 4;
-/// The tight tolerance is the tolerance over this number.
-const TIGHTER: f64 = 100.0;
-/// Below this tolerance rounding decides, not the solver.
-const ROUNDING: f64 = 1e-12;
-/// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
-const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 /// Share of the cost of the run beyond which no further repeats are made.
 const MOST_COST: f64 = 0.05;
 
 /// One place with its repeats.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Place {
+pub(crate) struct Place {
     /// Steps done before it.
     step: u64,
     /// As the run computes it.
-    base: Increments,
+    pub(crate) base: Increments,
     /// With a quarter of the step.
-    finer: Increments,
+    pub(crate) finer: Increments,
     /// With a hundredth of the tolerance.
-    tighter: Increments,
+    pub(crate) tighter: Increments,
     /// Whether that tolerance was reached.
     tight: bool,
     /// With implicit coupling, where the run has explicit coupling of damage.
@@ -100,12 +96,15 @@ impl ErrorEstimate {
         estimate
     }
 
-    /// Repeats the steps that are next, where one of the places is reached.
+    /// Repeats the steps that are next, where one of the places is reached: `step` steps of the case are done.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn before_step<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
-        let step = s.state.steps;
+    pub fn before_step<S: Steps>(
+        &mut self,
+        s: &mut Simulation<S>,
+        step: u64,
+    ) -> Result<(), RepeatError> {
         let mut due = false;
         while self.to_come.front().is_some_and(|at| *at <= step) {
             due |= self.to_come.pop_front() == Some(step);
@@ -122,7 +121,13 @@ impl ErrorEstimate {
             self.left_out += 1;
             return Ok(());
         }
-        match self.repeat(s)? {
+        let repeats = RepeatedStretch {
+            length: self.length,
+            body: self.body,
+        };
+        let (place, cost) = repeats.at(s)?;
+        self.cost[1] += cost;
+        match place {
             Some(place) => self.places.push(place),
             None => self.failed += 1,
         }
@@ -140,57 +145,6 @@ impl ErrorEstimate {
         self.cost[1] + each > MOST_COST * run
     }
 
-    /// Repeats one stretch in all ways; `None` where a step failed. Steps of the stretch itself are repeated too, so that all are
-    /// measured in the same way.
-    fn repeat<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<Option<Place>, RepeatError> {
-        let length = self.length;
-        let Some(base) = self.stretch(s, [length, 1], |_| ())? else {
-            return Ok(None);
-        };
-        let finer = self.stretch(s, [length, FINER], shorten)?;
-        let most = MOST_ITERATIONS
-            .1
-            .max(MOST_ITERATIONS.0 * f64::from(base.iterations));
-        let tighter = self.stretch(s, [length, 1], |s| tighten(s, most))?;
-        let damages = s.laws.iter().any(Interface::damages);
-        let mut coupled = None;
-        if damages && s.options.coupling == Coupling::Explicit {
-            coupled = self.stretch(s, [length, 1], |s| {
-                s.options.coupling = Coupling::Implicit {
-                    tolerance: 1e-3,
-                    max_iterations: 5,
-                };
-            })?;
-        }
-        let (Some(finer), Some(tighter)) = (finer, tighter) else {
-            return Ok(None);
-        };
-        Ok(Some(Place {
-            step: s.state.steps,
-            base: base.increments,
-            finer: finer.increments,
-            tighter: tighter.increments,
-            tight: tighter.converged,
-            coupled: coupled.map(|c| c.increments),
-        }))
-    }
-
-    /// Makes steps with other options, and restores the state.
-    fn stretch<S: Steps>(
-        &mut self,
-        s: &mut Simulation<S>,
-        steps: [u32; 2],
-        options: impl FnOnce(&mut Simulation<S>),
-    ) -> Result<Option<Stretch>, RepeatError> {
-        let body = self.body;
-        let made = s.repeat(|s| {
-            options(s);
-            Stretch::of(s, steps, body.as_ref()).ok()
-        })?;
-        self.cost[1] += made.as_ref().map_or(0.0, |m| m.cost);
-        Ok(made)
-    }
-
     /// Takes in a step of the run.
     pub fn after_step<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
         self.cost[0] += cost(s, report);
@@ -203,21 +157,4 @@ impl ErrorEstimate {
             self.supplied[1] += supplied;
         }
     }
-}
-
-/// Sets a shorter step, in which as much of an overlap is taken out in a given time.
-fn shorten<S: Space>(s: &mut Simulation<S>) {
-    let parts = f64::from(FINER);
-    s.change_step(s.options.scheme.h / parts);
-    let left = 1.0 - s.options.correction;
-    s.options.correction = 1.0 - left.powf(1.0 / parts);
-}
-
-/// Sets a tight tolerance, also where a phase has set its own.
-fn tighten<S: Space>(s: &mut Simulation<S>, most_iterations: f64) {
-    let tight = |tolerance: f64| (tolerance / TIGHTER).max(ROUNDING.min(tolerance));
-    let solver = &mut s.options.solver;
-    solver.tolerance = tight(solver.tolerance);
-    solver.max_iterations = (f64::from(solver.max_iterations)).min(most_iterations) as u32;
-    s.state.control.tolerance = s.state.control.tolerance.map(tight);
 }

@@ -1,7 +1,7 @@
 //! What the repeats say, for the summary.
 
+use super::Increments;
 use super::change::{Change, Pair};
-use super::increments::Increments;
 use super::{ErrorEstimate, FINER, Place};
 use fretwork_core::energy::Energy;
 use serde::Serialize;

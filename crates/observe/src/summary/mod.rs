@@ -10,6 +10,7 @@ pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
 pub use self::fracture::{BondEnergies, FractureSummary, Reference};
 
+use crate::accuracy::AccuracyReport;
 use crate::biaxial::Outcome;
 use crate::error_estimate::Repeats;
 pub use crate::first_bodies::BodyWear;
@@ -142,6 +143,8 @@ pub struct Summary {
     pub repeats: Repeats,
     /// How well the main results are known from this run alone.
     pub uncertainty: Uncertainty,
+    /// How the run chose its step and tolerance; null where the case does not ask for an accuracy.
+    pub accuracy: Option<AccuracyReport>,
     /// Cycles of the friction test.
     pub cycles: Vec<Cycle>,
     /// Evaluation of a fretting test; null without reciprocating motion.

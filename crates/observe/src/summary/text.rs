@@ -46,6 +46,9 @@ impl Summary {
         self.worn(&mut lines);
         self.energies(&mut lines);
         self.others(&mut lines, verbose);
+        if let Some(accuracy) = &self.accuracy {
+            lines.add("accuracy", accuracy.line());
+        }
         if verbose {
             self.details(&mut lines);
         }

@@ -10,7 +10,9 @@ mod interface;
 mod shapes;
 
 use crate::build::{Built, Dimensional, Loaded};
-use crate::case::{BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec};
+use crate::case::{
+    AccuracySpec, BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec,
+};
 use crate::material::{Material, Sourced};
 use crate::source::InputError;
 use fretwork_core::laws::SearchPath;
@@ -82,6 +84,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 circuit: None,
                 jump: None,
                 measures: Vec::new(),
+                accuracy: None,
                 uncertainty: Default::default(),
                 output: Default::default(),
             },
@@ -95,6 +98,13 @@ impl<S: Dimensional> CaseBuilder<S> {
     #[must_use]
     pub fn time(mut self, step: f64, end: f64) -> Self {
         (self.case.time.step, self.case.time.end) = (step, end);
+        self
+    }
+
+    /// Has the run choose step and tolerance for an accuracy: a share of friction by which they may change it.
+    #[must_use]
+    pub fn accuracy(mut self, accuracy: AccuracySpec) -> Self {
+        self.case.accuracy = Some(accuracy);
         self
     }
 

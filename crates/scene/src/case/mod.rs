@@ -1,5 +1,6 @@
 //! The case file as the user writes it.
 
+mod accuracy;
 mod grains;
 mod interface;
 mod shapes;
@@ -8,6 +9,7 @@ pub(crate) mod text;
 mod uncertainty;
 mod wear;
 
+pub use accuracy::{AccuracySpec, AccurateResult};
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
@@ -57,8 +59,8 @@ pub struct Case {
     /// number stays below 1e-3 (da Cruz et al. 2005). Reported densities and wear are unscaled.
     #[serde(default = "one")]
     pub inertia_scaling: f64,
-    /// `Explicit` (the default), or `Implicit(tolerance: 1e-6, max_iterations: 50)`: the step is solved
-    /// repeatedly until its damage is consistent with its openings.
+    /// Coupling of damage and opening within a step: `Midpoint` (the default), `Explicit`, or `Implicit(tolerance: 1e-6,
+    /// max_iterations: 50)`, see [`Coupling`].
     #[serde(default)]
     pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
@@ -98,6 +100,9 @@ pub struct Case {
     /// Other quantities that are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
+    /// Accuracy that the run is asked for; without it step and tolerance are those of the case throughout.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<AccuracySpec>,
     /// How the run estimates its own error.
     #[serde(default, skip_serializing_if = "is_default")]
     pub uncertainty: UncertaintySpec,

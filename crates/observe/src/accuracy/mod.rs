@@ -1,0 +1,457 @@
+//! Accuracy as an input: a run that chooses its step and tolerance by repeating some of its steps with finer ones.
+//!
+//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts. Every now and then the next parts are repeated with a
+//! quarter of their length and with a hundredth of the tolerance, as for the [error estimate](crate::error_estimate); from the change of
+//! the result asked for follow finer or coarser settings. Half of the share allowed is for the step, half for the tolerance. All of it
+//! follows from the state, and costs are counted in iterations: the bits are the same on every machine, and after a resume.
+
+mod report;
+
+pub use report::{AccuracyReport, ChosenSettings, SettingChange};
+
+use crate::error_estimate::{Change, Increments, Pair, Place, RepeatedStretch, cost};
+use fretwork_core::process::cycle::RubbedBody;
+use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport, Steps};
+use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
+use fretwork_scene::processes::FrictionTest;
+use serde::{Deserialize, Serialize};
+
+/// Parts of a step that are repeated at a time; the second half of them is compared.
+const LENGTH: u32 = 8;
+/// Most stretches from which the effect of a setting is taken, the latest.
+const KEPT: usize = 12;
+/// Stretches after which settings become finer although the effect may be scatter.
+const PATIENCE: usize = 6;
+/// Steps of the case after which parts that a law asked for are given up again.
+const CALM: u32 = 20;
+/// A level of the tolerance is this factor.
+const TOLERANCE_FACTOR: f64 = 4.0;
+/// Extrapolation from a quarter of the step to none, at the first order.
+const STEP_LIMIT: f64 = 4.0 / 3.0;
+
+/// A setting that is chosen.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct Setting {
+    /// How often it was made finer.
+    level: u32,
+    /// Finest level permitted.
+    finest: u32,
+    /// Results without and with a finer setting, of the latest stretches.
+    pairs: Vec<[[f64; 2]; 2]>,
+    /// The effect of a finer setting, as last found.
+    effect: Option<Change>,
+}
+
+/// What is done with a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Decision {
+    Keep,
+    Finer(u32),
+    Coarser,
+}
+
+impl Setting {
+    fn new(finest: u32) -> Self {
+        Self {
+            finest,
+            ..Self::default()
+        }
+    }
+
+    /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the result that the setting may change.
+    fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
+        self.pairs.push([pair.coarse, pair.fine]);
+        if self.pairs.len() > KEPT {
+            self.pairs.remove(0);
+        }
+        let pairs = self.pairs.iter().map(|[coarse, fine]| Pair {
+            coarse: *coarse,
+            fine: *fine,
+        });
+        let Some(effect) = Change::over(&pairs.collect::<Vec<_>>(), limit) else {
+            return Decision::Keep;
+        };
+        self.effect = Some(effect);
+        let size = effect.change.abs();
+        let certain = size - effect.half_width > allowed;
+        let likely = size > allowed && self.pairs.len() >= PATIENCE;
+        if (certain || likely) && self.level < self.finest {
+            let levels = (size / allowed).ln() / factor.ln();
+            return Decision::Finer(
+                (levels.ceil() as u32)
+                    .clamp(1, 2)
+                    .min(self.finest - self.level),
+            );
+        }
+        // At the first order the effect then stays below half of what is allowed.
+        if self.level > 0 && effect.bound() * factor < 0.5 * allowed {
+            return Decision::Coarser;
+        }
+        Decision::Keep
+    }
+
+    /// Adopts a decision; returns whether it changed anything. What was found with other settings is forgotten.
+    fn adopt(&mut self, decision: Decision) -> bool {
+        match decision {
+            Decision::Keep => return false,
+            Decision::Finer(levels) => self.level += levels,
+            Decision::Coarser => self.level -= 1,
+        }
+        self.forget();
+        true
+    }
+
+    fn forget(&mut self) {
+        self.pairs.clear();
+        self.effect = None;
+    }
+}
+
+/// Chooses step and tolerance of a run; all of it is part of a checkpoint.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct AccuracyControl {
+    share: f64,
+    of: Quantity,
+    effort: f64,
+    /// Step (s), tolerance and position correction of the case.
+    coarsest: [f64; 3],
+    step: Setting,
+    tolerance: Setting,
+    body: Option<RubbedBody>,
+    /// Step of the case from which errors are measured.
+    from: u64,
+    /// Step of the case before which the next stretch is repeated.
+    next: u64,
+    /// Stretches repeated, and those that failed.
+    stretches: [u64; 2],
+    /// Cost of the run, and of repeated stretches.
+    cost: [f64; 2],
+    /// Halvings that laws asked for, steps of the case since the last one, and how many requests there were.
+    asked: u32,
+    calm: u32,
+    requests: u64,
+    /// Parts made, and the most in a step of the case.
+    parts: u64,
+    most_parts: u64,
+    smallest_tolerance: f64,
+    changes: Vec<SettingChange>,
+}
+
+/// The result, as stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Quantity {
+    Friction,
+    FrictionEnergy,
+    Damage,
+    Wear,
+}
+
+impl Quantity {
+    /// Numerator and denominator of the result over a stretch.
+    fn of(self, grown: &Increments) -> [f64; 2] {
+        match self {
+            Self::Friction => [grown.work, grown.load_path],
+            Self::FrictionEnergy => [grown.friction_energy, 1.0],
+            Self::Damage => [grown.damage, 1.0],
+            Self::Wear => [grown.wear, 1.0],
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Friction => "friction coefficient",
+            Self::FrictionEnergy => "energy of friction",
+            Self::Damage => "damage",
+            Self::Wear => "wear of first bodies",
+        }
+    }
+}
+
+/// Where a step of a case stands, in the smallest parts that it may have.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StepParts {
+    done: u64,
+}
+
+impl AccuracyControl {
+    /// Of a run of a case that asks for an accuracy.
+    pub fn new<S: Steps>(case: &Case, s: &Simulation<S>) -> Option<Self> {
+        let spec = case.accuracy.as_ref()?;
+        let test = FrictionTest::of(case, s);
+        let start = test.map_or(0.0, |t| t.clock.start / case.time.step);
+        let from = start.round().max(0.0) as u64;
+        let coarsest = [
+            s.options.scheme.h,
+            s.options.solver.tolerance,
+            s.options.correction,
+        ];
+        let of = match spec.of {
+            AccurateResult::Friction if test.is_some() => Quantity::Friction,
+            AccurateResult::Friction | AccurateResult::FrictionEnergy => Quantity::FrictionEnergy,
+            AccurateResult::Damage => Quantity::Damage,
+            AccurateResult::Wear => Quantity::Wear,
+        };
+        let [step, tolerance] = finest_levels(spec, &coarsest);
+        Some(Self {
+            share: spec.share,
+            of,
+            effort: spec.effort,
+            coarsest,
+            step: Setting::new(step),
+            tolerance: Setting::new(tolerance),
+            body: test.map(|t| t.body),
+            from,
+            next: from,
+            stretches: [0; 2],
+            cost: [0.0; 2],
+            asked: 0,
+            calm: 0,
+            requests: 0,
+            parts: 0,
+            most_parts: 1,
+            smallest_tolerance: coarsest[1],
+            changes: Vec::new(),
+        })
+    }
+
+    /// Prepares a step of the case, `done` of which are made: repeats a stretch where one is due, and chooses the settings.
+    ///
+    /// # Errors
+    /// Steps cannot be repeated, or a process could not be put back.
+    pub fn begin_step<S: Steps>(
+        &mut self,
+        s: &mut Simulation<S>,
+        done: u64,
+    ) -> Result<StepParts, RepeatError> {
+        if self.asked > 0 {
+            self.calm += 1;
+            if self.calm > CALM {
+                (self.asked, self.calm) = (self.asked - 1, 0);
+            }
+        }
+        self.set(s);
+        if done >= self.next {
+            self.measure(s, done)?;
+            self.set(s);
+        }
+        Ok(StepParts::default())
+    }
+
+    /// Makes one part of a step of the case. `None` where a law asked for a smaller one: nothing was done then, and the
+    /// next part is shorter.
+    ///
+    /// # Errors
+    /// The step's own error, also that of a law that asks for less than the smallest step; steps cannot be repeated.
+    pub fn part<S: Steps>(
+        &mut self,
+        s: &mut Simulation<S>,
+        parts: &mut StepParts,
+    ) -> Result<Option<StepReport>, PartError> {
+        let level = self.level();
+        match s.attempt(|s| s.step())? {
+            Ok(report) => {
+                parts.done += 1 << (self.step.finest - level);
+                self.parts += 1;
+                self.most_parts = self.most_parts.max(1 << level);
+                self.cost[0] += cost(s, &report);
+                Ok(Some(report))
+            }
+            Err(e) if e.asks_for_smaller_step() && level < self.step.finest => {
+                (self.asked, self.calm) = (level + 1 - self.step.level, 0);
+                self.requests += 1;
+                self.set(s);
+                Ok(None)
+            }
+            Err(e) => Err(e.into()),
+        }
+    }
+
+    /// Whether the step of the case is complete.
+    pub fn complete(&self, parts: &StepParts) -> bool {
+        parts.done >= 1 << self.step.finest
+    }
+
+    /// The level of the step now in force.
+    fn level(&self) -> u32 {
+        (self.step.level + self.asked).min(self.step.finest)
+    }
+
+    /// Sets step, tolerance and correction.
+    fn set<S: Steps>(&mut self, s: &mut Simulation<S>) {
+        let [h, tolerance, correction] = self.coarsest;
+        let parts = f64::from(1u32 << self.level());
+        if s.options.scheme.h != h / parts {
+            s.change_step(h / parts);
+        }
+        // As much of an overlap is taken out in a given time.
+        s.options.correction = if parts == 1.0 {
+            correction
+        } else {
+            1.0 - (1.0 - correction).powf(1.0 / parts)
+        };
+        let level = i32::try_from(self.tolerance.level).unwrap_or(i32::MAX);
+        let tolerance = tolerance / TOLERANCE_FACTOR.powi(level);
+        s.options.solver.tolerance = tolerance;
+        self.smallest_tolerance = self.smallest_tolerance.min(tolerance);
+    }
+
+    /// Repeats a stretch, and decides.
+    fn measure<S: Steps>(&mut self, s: &mut Simulation<S>, done: u64) -> Result<(), RepeatError> {
+        let stretch = RepeatedStretch {
+            length: LENGTH,
+            body: self.body,
+        };
+        let (place, cost) = stretch.at(s)?;
+        self.cost[1] += cost;
+        let steps = done.max(1) as f64;
+        let each = self.cost[0] / steps;
+        // At the start, before anything is known, steps are worth measuring more often.
+        let effort = if self.changes.is_empty() && self.stretches[0] < 3 {
+            1.0
+        } else {
+            self.effort
+        };
+        let pause = if each > 0.0 {
+            cost / (effort * each)
+        } else {
+            1.0
+        };
+        self.next = done + (pause.ceil() as u64).max(1);
+        let Some(place) = place else {
+            self.stretches[1] += 1;
+            return Ok(());
+        };
+        self.stretches[0] += 1;
+        self.decide(&place, s);
+        Ok(())
+    }
+
+    fn decide<S: Steps>(&mut self, place: &Place, s: &Simulation<S>) {
+        let allowed = 0.5 * self.share;
+        let pair = |fine: &Increments| Pair {
+            coarse: self.of.of(&place.base),
+            fine: self.of.of(fine),
+        };
+        let (finer, tighter) = (pair(&place.finer), pair(&place.tighter));
+        let step = self.step.decide(finer, STEP_LIMIT, 2.0, allowed);
+        let tolerance = self
+            .tolerance
+            .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed);
+        let effects = [self.step.effect, self.tolerance.effect];
+        let changed = [self.step.adopt(step), self.tolerance.adopt(tolerance)];
+        if changed[0] {
+            // The error of the tolerance depends on the step.
+            self.tolerance.forget();
+        }
+        if changed.contains(&true) {
+            let [h, least, _] = self.coarsest;
+            let level = i32::try_from(self.tolerance.level).unwrap_or(i32::MAX);
+            self.changes.push(SettingChange {
+                time: s.state.time,
+                step: h / f64::from(1u32 << self.step.level),
+                tolerance: least / TOLERANCE_FACTOR.powi(level),
+                step_effect: effects[0],
+                tolerance_effect: effects[1],
+            });
+        }
+    }
+}
+
+/// Why a part of a step failed.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    /// The step failed.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// Steps cannot be repeated.
+    #[error(transparent)]
+    Repeat(#[from] RepeatError),
+}
+
+/// Finest levels of step and tolerance.
+fn finest_levels(spec: &AccuracySpec, [h, tolerance, _]: &[f64; 3]) -> [u32; 2] {
+    // A bound that is a level up to rounding is reached.
+    let levels = |ratio: f64, factor: f64| (ratio.ln() / factor.ln() + 1e-9).max(0.0) as u32;
+    let step = spec.finest_step.map_or(6, |least| levels(h / least, 2.0));
+    let tolerance = match spec.finest_tolerance {
+        Some(least) => levels(tolerance / least, TOLERANCE_FACTOR),
+        None => levels(1e3, TOLERANCE_FACTOR),
+    };
+    [step.min(20), tolerance.min(20)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair(change: f64) -> Pair {
+        Pair {
+            coarse: [1.0, 1.0],
+            fine: [1.0 + change, 1.0],
+        }
+    }
+
+    #[test]
+    fn a_certain_effect_makes_a_setting_finer_by_what_it_needs() {
+        let mut setting = Setting::new(6);
+        for expected in [Decision::Keep, Decision::Keep, Decision::Finer(2)] {
+            // 4 % at the first order: two halvings bring it to 1 %.
+            assert_eq!(setting.decide(pair(0.03), STEP_LIMIT, 2.0, 0.01), expected);
+        }
+        assert!(
+            setting.adopt(Decision::Finer(2)) && setting.level == 2 && setting.pairs.is_empty()
+        );
+        // Not beyond the finest.
+        let mut setting = Setting::new(0);
+        for _ in 0..20 {
+            assert_eq!(setting.decide(pair(0.03), 1.0, 2.0, 0.01), Decision::Keep);
+        }
+    }
+
+    #[test]
+    fn a_small_effect_makes_a_setting_coarser_again() {
+        let mut setting = Setting::new(6);
+        setting.level = 1;
+        for expected in [Decision::Keep, Decision::Keep, Decision::Coarser] {
+            assert_eq!(setting.decide(pair(0.002), 1.0, 2.0, 0.01), expected);
+        }
+        // Half of what is allowed would be exceeded.
+        setting.pairs.clear();
+        for _ in 0..6 {
+            assert_eq!(setting.decide(pair(0.003), 1.0, 2.0, 0.01), Decision::Keep);
+        }
+    }
+
+    #[test]
+    fn scatter_is_waited_for() {
+        let mut setting = Setting::new(6);
+        let effects = [0.1, -0.1, 0.12, -0.06, 0.1, 0.1];
+        let decided = effects.map(|e| setting.decide(pair(e), 1.0, 2.0, 0.02));
+        assert!(
+            decided[..5].iter().all(|d| *d == Decision::Keep),
+            "{decided:?}"
+        );
+        assert_eq!(decided[5], Decision::Finer(2));
+    }
+
+    #[test]
+    fn bounds_are_levels() {
+        let spec = |step, tolerance| AccuracySpec {
+            share: 0.03,
+            of: AccurateResult::Friction,
+            finest_step: step,
+            finest_tolerance: tolerance,
+            effort: 0.2,
+        };
+        let coarsest = [8e-5, 0.5, 0.0];
+        assert_eq!(finest_levels(&spec(None, None), &coarsest), [6, 4]);
+        assert_eq!(
+            finest_levels(&spec(Some(1e-5), Some(0.03)), &coarsest),
+            [3, 2]
+        );
+        assert_eq!(
+            finest_levels(&spec(Some(8e-5), Some(1.0)), &coarsest),
+            [0, 0]
+        );
+    }
+}

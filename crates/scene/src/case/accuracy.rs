@@ -1,0 +1,105 @@
+//! Accuracy that a run is asked for: it then chooses step and tolerance itself.
+
+use serde::de::{MapAccess, Visitor, value::MapAccessDeserializer};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// The result whose error is to stay below a share of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
+pub enum AccurateResult {
+    /// The friction coefficient of the friction test; the energy of friction in a case without one.
+    #[default]
+    Friction,
+    /// Energy dissipated by friction.
+    FrictionEnergy,
+    /// Damage of bonds.
+    Damage,
+    /// Wear of first bodies.
+    Wear,
+}
+
+/// The accuracy asked for, and the bounds within which the run chooses its settings: `time.step` and `solver.tolerance` are the coarsest ones. A share
+/// alone stands for the struct with it: `accuracy: 0.03`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AccuracySpec {
+    /// Share of the result by which step and tolerance together may change it.
+    pub share: f64,
+    /// The result.
+    pub of: AccurateResult,
+    /// Smallest step (s); a sixty-fourth of `time.step` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finest_step: Option<f64>,
+    /// Smallest tolerance; a thousandth of the case's by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finest_tolerance: Option<f64>,
+    /// Share of the cost of the run that may go into the repeated steps by which it measures its error.
+    pub effort: f64,
+}
+
+/// The fields of [`AccuracySpec`] as a case gives them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename = "AccuracySpec")]
+struct Fields {
+    share: f64,
+    #[serde(default)]
+    of: AccurateResult,
+    #[serde(default)]
+    finest_step: Option<f64>,
+    #[serde(default)]
+    finest_tolerance: Option<f64>,
+    #[serde(default = "effort")]
+    effort: f64,
+}
+
+fn effort() -> f64 {
+    0.2
+}
+
+impl From<Fields> for AccuracySpec {
+    fn from(fields: Fields) -> Self {
+        Self {
+            share: fields.share,
+            of: fields.of,
+            finest_step: fields.finest_step,
+            finest_tolerance: fields.finest_tolerance,
+            effort: fields.effort,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for AccuracySpec {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct ShareOrFields;
+
+        impl<'de> Visitor<'de> for ShareOrFields {
+            type Value = AccuracySpec;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a share such as 0.03, or `(share: 0.03, ...)`")
+            }
+
+            fn visit_f64<E: serde::de::Error>(self, share: f64) -> Result<AccuracySpec, E> {
+                Ok(AccuracySpec {
+                    share,
+                    of: AccurateResult::default(),
+                    finest_step: None,
+                    finest_tolerance: None,
+                    effort: effort(),
+                })
+            }
+
+            fn visit_u64<E: serde::de::Error>(self, share: u64) -> Result<AccuracySpec, E> {
+                self.visit_f64(share as f64)
+            }
+
+            fn visit_i64<E: serde::de::Error>(self, share: i64) -> Result<AccuracySpec, E> {
+                self.visit_f64(share as f64)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AccuracySpec, A::Error> {
+                Fields::deserialize(MapAccessDeserializer::new(map)).map(AccuracySpec::from)
+            }
+        }
+
+        from.deserialize_any(ShareOrFields)
+    }
+}
