@@ -6,6 +6,7 @@
     reason = "a test fails by a panic"
 )]
 
+mod accuracy;
 mod another_run;
 mod bad_input;
 mod certify;

@@ -117,6 +117,9 @@ impl<S: Dimensional> Recorder<'_, S> {
         self.camera.paint(state.paints.into_owned());
         (self.done, self.resumed_at) = (state.done, state.done);
         self.accuracy = state.accuracy.into_owned();
+        if let Some(accuracy) = &mut self.accuracy {
+            accuracy.resume(&mut self.simulation);
+        }
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();
         self.elapsed_before_resume = (state.wall, state.processor);

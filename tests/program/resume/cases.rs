@@ -40,6 +40,24 @@ fn fretting_with_damage_in_the_plane() {
     resumes("fretting", job, &[7]);
 }
 
+/// A run that chooses its step and tolerance.
+#[test]
+fn a_scar_with_an_accuracy() {
+    let sets = [
+        "time.step=1e-3",
+        "solver.tolerance=1e-4",
+        "accuracy=0.003",
+        "output.checkpoint=Steps(60)",
+        "output.frames=2",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "fretting_scar",
+        sets: &sets,
+    };
+    resumes("accuracy", job, &[2, 9]);
+}
+
 /// A height field, wear, overlaps that are taken out; steps written as problems.
 #[test]
 fn shear_in_space() {

@@ -14,6 +14,8 @@ use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
 use fretwork_scene::processes::FrictionTest;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
 
 /// Parts of a step that are repeated at a time; the second half of them is compared.
@@ -24,6 +26,12 @@ const KEPT: usize = 12;
 const PATIENCE: usize = 6;
 /// Steps of the case after which parts that a law asked for are given up again.
 const CALM: u32 = 20;
+/// Stretches at the start that may cost as much as the run.
+const FIRST: u64 = 6;
+/// Most steps between stretches.
+const LONGEST_PAUSE: f64 = 1e6;
+/// Mixed into the seed of the case, so that pauses are not drawn with the numbers of its grains.
+const STREAM: u64 = 0x6163_6375_7261_6379;
 /// A level of the tolerance is this factor.
 const TOLERANCE_FACTOR: f64 = 4.0;
 /// Extrapolation from a quarter of the step to none, at the first order.
@@ -90,20 +98,30 @@ impl Setting {
         Decision::Keep
     }
 
-    /// Adopts a decision; returns whether it changed anything. What was found with other settings is forgotten.
-    fn adopt(&mut self, decision: Decision) -> bool {
-        match decision {
+    /// Adopts a decision; returns whether it changed anything. What was found before counts with the effect that it would have had at
+    /// the first order, so that knowledge is not lost with every change.
+    fn adopt(&mut self, decision: Decision, factor: f64) -> bool {
+        let times = match decision {
             Decision::Keep => return false,
-            Decision::Finer(levels) => self.level += levels,
-            Decision::Coarser => self.level -= 1,
+            Decision::Finer(levels) => {
+                self.level += levels;
+                factor.powi(-(levels as i32))
+            }
+            Decision::Coarser => {
+                self.level -= 1;
+                factor
+            }
+        };
+        for [coarse, fine] in &mut self.pairs {
+            for (coarse, fine) in coarse.iter().zip(fine) {
+                *fine = coarse + times * (*fine - coarse);
+            }
         }
-        self.forget();
+        if let Some(effect) = &mut self.effect {
+            effect.change *= times;
+            effect.half_width *= times;
+        }
         true
-    }
-
-    fn forget(&mut self) {
-        self.pairs.clear();
-        self.effect = None;
     }
 }
 
@@ -113,6 +131,7 @@ pub struct AccuracyControl {
     share: f64,
     of: Quantity,
     effort: f64,
+    seed: u64,
     /// Step (s), tolerance and position correction of the case.
     coarsest: [f64; 3],
     step: Setting,
@@ -196,6 +215,7 @@ impl AccuracyControl {
             share: spec.share,
             of,
             effort: spec.effort,
+            seed: case.seed ^ STREAM,
             coarsest,
             step: Setting::new(step),
             tolerance: Setting::new(tolerance),
@@ -276,6 +296,12 @@ impl AccuracyControl {
         (self.step.level + self.asked).min(self.step.finest)
     }
 
+    /// Goes on in a simulation that was restored with its state: impulses are those of the step in force.
+    pub fn resume<S: Steps>(&mut self, s: &mut Simulation<S>) {
+        s.options.scheme.h = self.coarsest[0] / f64::from(1u32 << self.level());
+        self.set(s);
+    }
+
     /// Sets step, tolerance and correction.
     fn set<S: Steps>(&mut self, s: &mut Simulation<S>) {
         let [h, tolerance, correction] = self.coarsest;
@@ -301,21 +327,21 @@ impl AccuracyControl {
             length: LENGTH,
             body: self.body,
         };
-        let (place, cost) = stretch.at(s)?;
+        let (place, [cost, each]) = stretch.at(s)?;
         self.cost[1] += cost;
-        let steps = done.max(1) as f64;
-        let each = self.cost[0] / steps;
         // At the start, before anything is known, steps are worth measuring more often.
-        let effort = if self.changes.is_empty() && self.stretches[0] < 3 {
-            1.0
+        let first = self.stretches[0] < FIRST;
+        let effort = if first {
+            self.effort.max(1.0)
         } else {
             self.effort
         };
-        let pause = if each > 0.0 {
-            cost / (effort * each)
-        } else {
-            1.0
-        };
+        let step = each * f64::from(1u32 << self.level());
+        let pause = (cost / (effort * step)).clamp(1.0, LONGEST_PAUSE);
+        // At random, so that pauses and cycles do not keep step.
+        let number = self.stretches[0] + self.stretches[1];
+        let mut random = Pcg64::seed_from_u64(self.seed.wrapping_add(number));
+        let pause = pause * (0.5 + random.random::<f64>());
         self.next = done + (pause.ceil() as u64).max(1);
         let Some(place) = place else {
             self.stretches[1] += 1;
@@ -338,11 +364,10 @@ impl AccuracyControl {
             .tolerance
             .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed);
         let effects = [self.step.effect, self.tolerance.effect];
-        let changed = [self.step.adopt(step), self.tolerance.adopt(tolerance)];
-        if changed[0] {
-            // The error of the tolerance depends on the step.
-            self.tolerance.forget();
-        }
+        let changed = [
+            self.step.adopt(step, 2.0),
+            self.tolerance.adopt(tolerance, TOLERANCE_FACTOR),
+        ];
         if changed.contains(&true) {
             let [h, least, _] = self.coarsest;
             let level = i32::try_from(self.tolerance.level).unwrap_or(i32::MAX);
@@ -398,9 +423,14 @@ mod tests {
             // 4 % at the first order: two halvings bring it to 1 %.
             assert_eq!(setting.decide(pair(0.03), STEP_LIMIT, 2.0, 0.01), expected);
         }
-        assert!(
-            setting.adopt(Decision::Finer(2)) && setting.level == 2 && setting.pairs.is_empty()
+        assert!(setting.adopt(Decision::Finer(2), 2.0) && setting.level == 2);
+        // 1 % is left of the effect, and another stretch with 1 % leaves it there.
+        assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
+        assert_eq!(
+            setting.decide(pair(0.0075), STEP_LIMIT, 2.0, 0.011),
+            Decision::Keep
         );
+        assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
         // Not beyond the finest.
         let mut setting = Setting::new(0);
         for _ in 0..20 {

@@ -125,7 +125,7 @@ impl ErrorEstimate {
             length: self.length,
             body: self.body,
         };
-        let (place, cost) = repeats.at(s)?;
+        let (place, [cost, _]) = repeats.at(s)?;
         self.cost[1] += cost;
         match place {
             Some(place) => self.places.push(place),

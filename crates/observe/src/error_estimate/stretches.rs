@@ -24,11 +24,14 @@ pub(crate) struct RepeatedStretch {
 
 impl RepeatedStretch {
     /// Repeats the next steps in all ways; `None` where a step failed. Steps of the stretch itself are repeated too, so that all are
-    /// measured in the same way. Gives the cost of it too.
+    /// measured in the same way. Gives the cost of all of it too, and that of a step as it is.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn at<S: Steps>(&self, s: &mut Simulation<S>) -> Result<(Option<Place>, f64), RepeatError> {
+    pub fn at<S: Steps>(
+        &self,
+        s: &mut Simulation<S>,
+    ) -> Result<(Option<Place>, [f64; 2]), RepeatError> {
         let (length, mut cost) = (self.length, 0.0);
         let mut stretch = |s: &mut Simulation<S>, parts, options: &dyn Fn(&mut Simulation<S>)| {
             let made = s.repeat(|s| {
@@ -39,8 +42,9 @@ impl RepeatedStretch {
             Ok::<_, RepeatError>(made)
         };
         let Some(base) = stretch(s, 1, &|_| ())? else {
-            return Ok((None, cost));
+            return Ok((None, [cost, cost]));
         };
+        let each = base.cost / f64::from(length);
         let finer = stretch(s, FINER, &shorten)?;
         let most = MOST_ITERATIONS
             .1
@@ -57,7 +61,7 @@ impl RepeatedStretch {
             })?;
         }
         let (Some(finer), Some(tighter)) = (finer, tighter) else {
-            return Ok((None, cost));
+            return Ok((None, [cost, each]));
         };
         let place = Place {
             step: s.state.steps,
@@ -67,7 +71,7 @@ impl RepeatedStretch {
             tight: tighter.converged,
             coupled: coupled.map(|c| c.increments),
         };
-        Ok((Some(place), cost))
+        Ok((Some(place), [cost, each]))
     }
 }
 
