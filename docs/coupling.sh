@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Explicit and implicit coupling of damage on the fretting case at h, h/2, h/4 and h/8: half a cycle, three seeds. Prints a line a run:
+# Explicit, midpoint and implicit coupling of damage on rigid disks under fretting at h, h/2, h/4 and h/8: half a cycle, three seeds. Prints a line a run:
 # coupling, step, seed, damage ratio, fracture energy (J/m), energy released by broken bonds over what their laws take, friction
 # coefficient, steps that were not coupled, seconds of processor time; then the means over the seeds, with their standard errors.
 # Usage: docs/coupling.sh [FOLDER], from the root of the repository, after `cargo build --release`; needs python3; half an hour on one core.
-# SEEDS, STEPS and SETS (further `--set`s) may be given in the environment.
+# SEEDS, STEPS, COUPLINGS and SETS (further `--set`s) may be given in the environment.
 set -eu
 out="${1:-results/coupling}"
 program="${FRETWORK:-target/release/fretwork}"
@@ -16,9 +16,10 @@ number() {
 run() {
     local coupling="$1" step="$2" seed="$3"
     local name="$out/$coupling-$step-$seed" set=Explicit
-    if [ "$coupling" = implicit ]; then
-        set="Implicit(tolerance: 1e-3, max_iterations: 50)"
-    fi
+    case "$coupling" in
+    midpoint) set=Midpoint ;;
+    implicit) set="Implicit(tolerance: 1e-3, max_iterations: 50)" ;;
+    esac
     # shellcheck disable=SC2086
     "$program" run cases/wheel_rail_rigid.ron --out "$name" --set time.end=0.075 --set "seed=$seed" --set "time.step=$step" \
         --set "coupling=$set" --set output.frames=0 --set output.views=0 ${SETS:-} >"$name.log" 2>&1 || true
@@ -29,8 +30,9 @@ run() {
 
 for step in ${STEPS:-5e-5 2.5e-5 1.25e-5 6.25e-6}; do
     for seed in ${SEEDS:-7 8 9}; do
-        run explicit "$step" "$seed"
-        run implicit "$step" "$seed"
+        for coupling in ${COUPLINGS:-explicit midpoint implicit}; do
+            run "$coupling" "$step" "$seed"
+        done
     done
 done | tee "$out/runs.txt"
 

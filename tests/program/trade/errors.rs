@@ -17,6 +17,8 @@ fn errors_fall_with_the_step_against_a_closed_form() {
     let base = [
         "--set",
         "time.step=4e-8",
+        "--set",
+        "coupling=Explicit",
         "--vary",
         STEPS,
         "--budget",
