@@ -222,7 +222,7 @@ fn bonds_are_weighed_against_step_and_load_by_driving_them() {
         "{fast}"
     );
     let advised = after(&fast, "its fracture energy is wrong; time.step of ");
-    near(advised, 0.01 * critical / 1e-3, 0.5);
+    near(advised, 0.07 * critical / 1e-3, 0.1);
     // Another law that carries the same needs no name of its own.
     let other = made.check(&[
         "interfaces.bond.cohesion=elastic-bond",

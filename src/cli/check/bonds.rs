@@ -8,6 +8,7 @@ use crate::laws::bench::scale::{BondScale, Mode};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
+use crate::step::coupling::Coupling;
 
 /// Range of bond strength over pressure in which load and bonds are comparable.
 const STRENGTH: [f64; 2] = [0.01, 100.0];
@@ -15,6 +16,8 @@ const STRENGTH: [f64; 2] = [0.01, 100.0];
 /// Slide per step over the opening at break. Up to the first value the fracture energy of a bond that takes
 /// all of the slide has an error of about 3 %; beyond the second the bond breaks in fewer than ten steps.
 const SLIDE: [f64; 2] = [0.01, 0.1];
+/// The first value where damage is coupled at the midpoint: its error falls with the square of the step.
+const RESOLVED_AT_MIDPOINT: f64 = 0.07;
 
 /// Time step times angular frequency. Up to the first value a period has at least twenty steps, and the
 /// scheme lengthens it by less than 1 %, (h omega)^2/12; beyond the second it has at most three steps.
@@ -55,7 +58,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
                 let texts = [
                     strength("opened", &scale.normal, load),
                     strength("sheared", &scale.shear, load),
-                    slide(&scale, load, h),
+                    slide(&scale, load, h, case.coupling),
                     frequency(&scale, &sites, h, case.inertia_scaling),
                 ];
                 out.extend(texts.into_iter().flatten().map(|text| ("", text)));
@@ -98,7 +101,7 @@ fn strength(how: &str, mode: &Mode, load: &Load) -> Option<String> {
 }
 
 /// Slide of a bond per step if it takes all of the imposed motion.
-fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
+fn slide(scale: &BondScale, load: &Load, h: f64, coupling: Coupling) -> Option<String> {
     let ends = |m: &Mode| m.broken.or(m.peak.map(|p| p.1));
     let modes = [&scale.normal, &scale.shear];
     let critical = modes.into_iter().filter_map(ends).reduce(f64::min)?;
@@ -110,7 +113,12 @@ fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
     let ratio = speed * h / critical;
     // A bond that breaks at its peak has no softening branch that a step could skip.
     let brittle = critical <= BRITTLE * peak;
-    let step = h * SLIDE[0] / ratio;
+    // Error of the energy of a MAC bond in steps of this ratio, in per cent; the ratio at which it is 3 %.
+    let (error, resolved) = match coupling {
+        Coupling::Midpoint => (540.0 * ratio * ratio, RESOLVED_AT_MIDPOINT),
+        Coupling::Explicit | Coupling::Implicit { .. } => (300.0 * ratio, SLIDE[0]),
+    };
+    let step = h * resolved / ratio;
     let verdict = if ratio > SLIDE[1] {
         let energy = if brittle {
             ""
@@ -121,15 +129,14 @@ fn slide(scale: &BondScale, load: &Load, h: f64) -> Option<String> {
             "NOT RESOLVED: a bond that takes all of it breaks within {:.0} steps{energy}; time.step of {step:.0e} s resolves it",
             (1.0 / ratio).ceil()
         )
-    } else if ratio > SLIDE[0] && brittle {
+    } else if ratio > resolved && brittle {
         format!(
             "coarse: a bond that takes all of it breaks within {:.0} steps, at once at its peak",
             (1.0 / ratio).ceil()
         )
-    } else if ratio > SLIDE[0] {
+    } else if ratio > resolved {
         format!(
-            "coarse: the fracture energy of a bond that takes all of it is off by some {:.0} %; time.step of {step:.0e} s brings that to 3 %",
-            300.0 * ratio
+            "coarse: the fracture energy of a bond that takes all of it is off by some {error:.0} %; time.step of {step:.0e} s brings that to 3 %"
         )
     } else {
         "resolved".to_owned()

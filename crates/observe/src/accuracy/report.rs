@@ -3,6 +3,7 @@
 use super::AccuracyControl;
 use crate::error_estimate::Change;
 use crate::observer::Observer;
+use crate::quantity::{number, quantity};
 use crate::statistics::Column;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -80,51 +81,61 @@ impl AccuracyControl {
 impl AccuracyReport {
     /// One line for the terminal.
     pub fn line(&self) -> String {
-        let effect = |what: &str, effect: &Option<Change>| {
-            effect.map_or(format!("{what} not known"), |e| {
-                format!(
-                    "{what} {:+.1} +- {:.1} %",
-                    100.0 * e.change,
-                    100.0 * e.half_width
-                )
-            })
+        let range = |coarse: String, fine: String| match coarse == fine {
+            true => coarse,
+            false => format!("{coarse} to {fine}"),
+        };
+        let steps = [self.steps[0], self.steps[2]].map(|h| quantity(h, "s"));
+        let tolerances = self.tolerances.map(|t| number(t, 3));
+        let [coarse, fine] = steps;
+        let steps = range(coarse, fine);
+        let [coarse, fine] = tolerances;
+        let changes = match self.changes.len() {
+            1 => "1 change".to_owned(),
+            n => format!("{n} changes"),
         };
         let asked = match self.requests {
             0 => String::new(),
-            n => format!("; laws asked {n} times for a smaller step"),
+            1 => ", 1 request of a law for a smaller step".to_owned(),
+            n => format!(", {n} requests of laws for a smaller step"),
         };
         format!(
-            "{:.3} % of the {} asked; steps of {:.3e} to {:.3e} s, tolerance {:.2e} to {:.2e}, {} changes; finer settings would change it by: {}, {} \
-             ({} stretches repeated, {:.0} % of the cost){asked}",
-            100.0 * self.share,
+            "{} to {} %: steps of {steps}, tolerance {}, {changes}{asked}; {} ({} stretches repeated, {:.0} % of the cost)",
             self.of,
-            self.steps[0],
-            self.steps[2],
-            self.tolerances[0],
-            self.tolerances[1],
-            self.changes.len(),
-            effect("step", &self.step_effect),
-            effect("tolerance", &self.tolerance_effect),
+            number(100.0 * self.share, 3),
+            range(coarse, fine),
+            self.effects(),
             self.stretches[0],
             100.0 * self.cost_share,
         )
     }
 
-    /// Why the accuracy is not reached, where it is not.
+    /// What finer settings would change.
+    fn effects(&self) -> String {
+        let effect = |effect: &Option<Change>| {
+            effect.map_or("not known".to_owned(), |e| {
+                let (change, half) = (100.0 * e.change, 100.0 * e.half_width);
+                format!("{change:+.2} +- {half:.2} %")
+            })
+        };
+        format!(
+            "finer ones would change it by {} (step), {} (tolerance)",
+            effect(&self.step_effect),
+            effect(&self.tolerance_effect)
+        )
+    }
+
+    /// Why the accuracy is not shown to be reached, where it is not.
     pub fn shortfall(&self) -> Option<String> {
-        if self.reached {
-            return None;
-        }
-        Some(format!(
-            "the {} is not shown to be right to {:.3} %: {}; a longer run, more effort (accuracy.effort), or finer bounds \
-             (accuracy.finest_step, accuracy.finest_tolerance)",
-            self.of,
-            100.0 * self.share,
-            self.line()
-                .split("change it by: ")
-                .nth(1)
-                .unwrap_or_default()
-        ))
+        (!self.reached).then(|| {
+            format!(
+                "the {} is not shown to be right to {} %: {}; take a longer run, more effort (accuracy.effort), or finer bounds \
+                 (accuracy.finest_step, accuracy.finest_tolerance)",
+                self.of,
+                number(100.0 * self.share, 3),
+                self.effects()
+            )
+        })
     }
 }
 

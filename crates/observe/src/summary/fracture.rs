@@ -132,7 +132,7 @@ impl FractureSummary {
             String::new()
         };
         Some(format!(
-            "{}; take a smaller time.step{target}, and compare with the other coupling of damage at the same step (`coupling`)",
+            "{}; take a smaller time.step{target}, and compare with `coupling: Explicit` and `Implicit(..)` at the same step, between which the energy lies",
             texts.join("; ")
         ))
     }
