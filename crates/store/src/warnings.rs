@@ -117,6 +117,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);
     let advice = advice.or_else(|| (missed.steps > 0).then(generic));
     serious("NOT CONVERGED", advice);
+    serious("LOOSE VELOCITIES", loose_velocities(summary));
     serious("NOT COUPLED", uncoupled(summary));
     serious("NOT CERTIFIED", uncertified(summary));
     serious("GRAINS DO NOT ADD UP", grains(summary));
@@ -338,7 +339,6 @@ fn notes(summary: &Summary) -> Vec<Warning> {
         }),
     );
     note("COARSE DRIVE", drives(summary, false));
-    note("LOOSE VELOCITIES", loose_velocities(summary));
     note("POSITION CORRECTION", correction(summary));
     let missed = summary.accuracy.as_ref().and_then(|a| a.shortfall());
     note("ACCURACY NOT SHOWN", missed);
@@ -418,7 +418,7 @@ mod tests {
     }
 
     #[test]
-    fn loose_velocities_are_noted_where_slip_is_outweighed() {
+    fn loose_velocities_are_a_reason_where_slip_is_outweighed() {
         let parts = |velocity, contact_law| {
             of_run(|s| {
                 s.solver.error_parts.velocity = velocity;
@@ -429,7 +429,7 @@ mod tests {
         // At rest both are small, whatever their ratio.
         assert_eq!(parts(1e-7, 4.0), []);
         let list = parts(3e-2, 1.8);
-        assert!(list.len() == 1 && !list[0].serious && list[0].of == "LOOSE VELOCITIES");
+        assert!(list.len() == 1 && list[0].serious && list[0].of == "LOOSE VELOCITIES");
     }
 
     #[test]
