@@ -67,6 +67,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
         "solver.norm=Balance",
         "solver.tolerance=1e-3",
         "solver.correction=0.05",
+        "time.step=5e-5",
         "inertia_scaling=5.8e7",
     ]);
     let heat = |mut s: Simulation<Dim2>, norm, tolerance| {

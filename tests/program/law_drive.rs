@@ -160,7 +160,7 @@ fn an_interface_of_a_case_is_driven_with_its_parameters() {
     assert_eq!(code, Some(0), "{error}");
     assert!(
         out.starts_with(
-            "third_body: contact coulomb, cohesion mac, damage mac, wear dissipated-energy"
+            "third_body: contact hertz-mindlin, cohesion mac, damage mac, wear dissipated-energy"
         ),
         "{out}"
     );

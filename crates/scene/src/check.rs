@@ -1,12 +1,15 @@
 //! Validation of a case before it is built.
 
 use super::build::Origin;
-use super::case::{BodySpec, Case, Checkpoint};
+use super::case::{AccurateResult, BodySpec, Case, Checkpoint};
+use super::phases::PhaseSpec;
 use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
 use fretwork_core::contact::detect::detect;
 use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::Kind;
 use fretwork_core::step::Simulation;
+use fretwork_core::step::control::Until;
 use fretwork_core::step::coupling::Coupling;
 
 /// Checks the numbers of a case.
@@ -139,6 +142,24 @@ fn accuracy(case: &Case) -> Result<(), ValidationError> {
         && !(tolerance > 0.0 && tolerance.is_finite())
     {
         return outside("finest_tolerance", tolerance, "a number above 0");
+    }
+    let by_steps = |p: &PhaseSpec| matches!(p.until, Some(Until::Steps(_)));
+    if let Some(k) = case.phases.iter().position(by_steps) {
+        let message = "a phase that ends after a number of steps depends on the step that the run chooses; give its time";
+        return Err(ValidationError::new(format!("phases.{k}.until"), message));
+    }
+    if case.circuit.is_some() {
+        let message = "the circuit counts steps, which the run would choose; leave out `accuracy` or `circuit`";
+        return Err(ValidationError::new("accuracy", message));
+    }
+    let has = |kind| case.interfaces.iter().any(|i| i.law(kind).is_some());
+    if asked.of == AccurateResult::Wear && !has(Kind::WEAR) {
+        let message = "no interface has a wear law; name one, or another result";
+        return Err(ValidationError::new("accuracy.of", message));
+    }
+    if asked.of == AccurateResult::Damage && !(has(Kind::DAMAGE) || has(Kind::COHESION)) {
+        let message = "no interface has bonds; name a damage law, or another result";
+        return Err(ValidationError::new("accuracy.of", message));
     }
     if case.jump.is_some() {
         let message =

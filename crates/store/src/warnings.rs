@@ -231,8 +231,8 @@ fn loose_velocities(summary: &Summary) -> Option<String> {
     (summary.solver.unconverged_steps == 0 && parts.contact_law > 1.0 && parts.velocity > LOOSE).then(|| {
         format!(
             "the residuals of the steps make {:.1} times the heat of slip: slow sliding, and with it friction, may be wrong although \
-             the steps reached solver.tolerance; take a smaller one, or compliant contacts with solver.norm Power \
-             (docs/accuracy.md)",
+             the steps reached solver.tolerance; take a smaller one, or compliant contacts \
+             (docs/compliant.md, docs/accuracy.md)",
             parts.contact_law
         )
     })

@@ -110,7 +110,7 @@ impl<S: Steps> Recorder<'_, S> {
         };
         let parts = match &mut self.parts {
             Some(parts) => parts,
-            none => none.insert(control.begin_step(simulation, self.done)?),
+            none => none.insert(control.begin_step(simulation, [self.done, self.total])?),
         };
         let report = loop {
             if let Some(report) = control.part(simulation, parts)? {

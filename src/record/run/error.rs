@@ -33,9 +33,6 @@ pub enum RunError {
     /// The state before repeated steps cannot be restored.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
-    /// A part of a step failed.
-    #[error(transparent)]
-    Part(#[from] PartError),
     /// Two columns of the statistics have one name.
     #[error(
         "two columns of the statistics are named `{name}`; give a measure or an observer another name"
@@ -83,5 +80,14 @@ pub(super) fn unreadable(path: &Path, e: &dyn std::fmt::Display) -> RunError {
     RunError::Read {
         path: path.to_owned(),
         reason: e.to_string(),
+    }
+}
+
+impl From<PartError> for RunError {
+    fn from(error: PartError) -> Self {
+        match error {
+            PartError::Step(error) => Self::Step(error),
+            PartError::Repeat(error) => Self::Repeat(error),
+        }
     }
 }

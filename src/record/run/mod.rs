@@ -357,8 +357,17 @@ impl<'a, S: Dimensional> Recorder<'a, S> {
             self.unconverged += u64::from(!report.solver.converged);
             self.estimate.after_step(&self.simulation, &report);
             self.observers.after_step(&self.simulation, &report);
+            // What the run loop does after a step of the case stands for its last part.
             if self.parts.is_none() {
                 return Ok(report);
+            }
+            self.simulation.between_steps()?;
+            if self.simulation.finished() || self.simulation.check_worn_through().is_err() {
+                self.parts = None;
+                return Ok(report);
+            }
+            for event in self.observers.after_processes(&self.simulation) {
+                self.results.append_event(&event)?;
             }
         }
     }

@@ -218,7 +218,7 @@ fn every_field_of_the_schema_can_be_set() {
             "coupling.tolerance=1",
             &[
                 "`coupling` is one of several kinds",
-                "`Explicit`, `Implicit`",
+                "`Explicit`, `Midpoint`, `Implicit`",
                 "--set 'coupling=Implicit(",
             ],
         ),

@@ -126,7 +126,9 @@ fn said(buffer: &[c_char; MESSAGE], status: i32) -> String {
     match status {
         abi::STATUS_ERROR => "it reported an error without a message".into(),
         abi::STATUS_BAD_PARAMETER => "it refused a parameter without a message".into(),
-        abi::STATUS_REDUCE_STEP => "it asks for a smaller time step: take a smaller time.step, or let the run choose it (accuracy: 0.05)".into(),
+        abi::STATUS_REDUCE_STEP => "it asks for a smaller time step: take a smaller time.step, or let the run choose one (`accuracy: 0.05`, down to \
+             accuracy.finest_step)"
+            .into(),
         abi::STATUS_PANIC => "it panicked".into(),
         other => format!("it returned the unknown status {other}"),
     }

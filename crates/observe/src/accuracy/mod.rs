@@ -26,6 +26,10 @@ const KEPT: usize = 12;
 const PATIENCE: usize = 6;
 /// Steps of the case after which parts that a law asked for are given up again.
 const CALM: u32 = 20;
+/// Fewest stretches with a setting before its effect is stated.
+const FEWEST: u32 = 3;
+/// Steps until the next stretch after one that failed.
+const AFTER_FAILURE: u64 = 50;
 /// Stretches at the start that may cost as much as the run.
 const FIRST: u64 = 6;
 /// Most steps between stretches.
@@ -48,6 +52,8 @@ struct Setting {
     pairs: Vec<[[f64; 2]; 2]>,
     /// The effect of a finer setting, as last found.
     effect: Option<Change>,
+    /// Stretches measured since the last change.
+    measured: u32,
 }
 
 /// What is done with a setting.
@@ -69,6 +75,7 @@ impl Setting {
     /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the result that the setting may change.
     fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
         self.pairs.push([pair.coarse, pair.fine]);
+        self.measured += 1;
         if self.pairs.len() > KEPT {
             self.pairs.remove(0);
         }
@@ -98,6 +105,11 @@ impl Setting {
         Decision::Keep
     }
 
+    /// The effect, where it was measured with the setting in force, not only expected of it.
+    fn shown(&self) -> Option<Change> {
+        self.effect.filter(|_| self.measured >= FEWEST)
+    }
+
     /// Adopts a decision; returns whether it changed anything. What was found before counts with the effect that it would have had at
     /// the first order, so that knowledge is not lost with every change.
     fn adopt(&mut self, decision: Decision, factor: f64) -> bool {
@@ -112,6 +124,7 @@ impl Setting {
                 factor
             }
         };
+        self.measured = 0;
         for [coarse, fine] in &mut self.pairs {
             for (coarse, fine) in coarse.iter().zip(fine) {
                 *fine = coarse + times * (*fine - coarse);
@@ -234,14 +247,14 @@ impl AccuracyControl {
         })
     }
 
-    /// Prepares a step of the case, `done` of which are made: repeats a stretch where one is due, and chooses the settings.
+    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a stretch where one is due, and chooses the settings.
     ///
     /// # Errors
     /// Steps cannot be repeated, or a process could not be put back.
     pub fn begin_step<S: Steps>(
         &mut self,
         s: &mut Simulation<S>,
-        done: u64,
+        [done, total]: [u64; 2],
     ) -> Result<StepParts, RepeatError> {
         if self.asked > 0 {
             self.calm += 1;
@@ -250,7 +263,9 @@ impl AccuracyControl {
             }
         }
         self.set(s);
-        if done >= self.next {
+        // Not beyond the end, where drives and tables have ended.
+        let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
+        if done >= self.next && done + steps <= total {
             self.measure(s, done)?;
             self.set(s);
         }
@@ -326,6 +341,7 @@ impl AccuracyControl {
         let stretch = RepeatedStretch {
             length: LENGTH,
             body: self.body,
+            couples: false,
         };
         let (place, [cost, each]) = stretch.at(s)?;
         self.cost[1] += cost;
@@ -338,6 +354,7 @@ impl AccuracyControl {
         };
         let step = each * f64::from(1u32 << self.level());
         let pause = (cost / (effort * step)).clamp(1.0, LONGEST_PAUSE);
+        let pause = if pause.is_nan() { 1.0 } else { pause };
         // At random, so that pauses and cycles do not keep step.
         let number = self.stretches[0] + self.stretches[1];
         let mut random = Pcg64::seed_from_u64(self.seed.wrapping_add(number));
@@ -345,6 +362,7 @@ impl AccuracyControl {
         self.next = done + (pause.ceil() as u64).max(1);
         let Some(place) = place else {
             self.stretches[1] += 1;
+            self.next = done + AFTER_FAILURE;
             return Ok(());
         };
         self.stretches[0] += 1;
@@ -360,9 +378,13 @@ impl AccuracyControl {
         };
         let (finer, tighter) = (pair(&place.finer), pair(&place.tighter));
         let step = self.step.decide(finer, STEP_LIMIT, 2.0, allowed);
-        let tolerance = self
-            .tolerance
-            .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed);
+        // A phase may have a tolerance of its own; a stretch that did not reach the tighter one says too little.
+        let tolerance = if s.state.control.tolerance.is_none() && place.tight {
+            self.tolerance
+                .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed)
+        } else {
+            Decision::Keep
+        };
         let effects = [self.step.effect, self.tolerance.effect];
         let changed = [
             self.step.adopt(step, 2.0),
@@ -400,7 +422,7 @@ fn finest_levels(spec: &AccuracySpec, [h, tolerance, _]: &[f64; 3]) -> [u32; 2] 
     let step = spec.finest_step.map_or(6, |least| levels(h / least, 2.0));
     let tolerance = match spec.finest_tolerance {
         Some(least) => levels(tolerance / least, TOLERANCE_FACTOR),
-        None => levels(1e3, TOLERANCE_FACTOR),
+        None => 4,
     };
     [step.min(20), tolerance.min(20)]
 }

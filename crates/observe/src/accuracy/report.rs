@@ -47,7 +47,7 @@ pub struct AccuracyReport {
     pub step_effect: Option<Change>,
     /// The same with a smaller tolerance.
     pub tolerance_effect: Option<Change>,
-    /// Whether both effects, with their intervals, are known and together below the share.
+    /// Whether both effects, with their intervals, were measured with the last settings and are together below the share.
     pub reached: bool,
 }
 
@@ -57,7 +57,7 @@ impl AccuracyControl {
         let [h, tolerance, _] = self.coarsest;
         let parts = (self.parts.max(1) as f64) / (done.max(1) as f64);
         let bound = |effect: Option<Change>| effect.map_or(f64::INFINITY, |e| e.bound());
-        let bounds = bound(self.step.effect) + bound(self.tolerance.effect);
+        let bounds = bound(self.step.shown()) + bound(self.tolerance.shown());
         AccuracyReport {
             share: self.share,
             of: self.of.name().to_owned(),
@@ -71,8 +71,8 @@ impl AccuracyControl {
             },
             changes: self.changes.clone(),
             requests: self.requests,
-            step_effect: self.step.effect,
-            tolerance_effect: self.tolerance.effect,
+            step_effect: self.step.shown(),
+            tolerance_effect: self.tolerance.shown(),
             reached: bounds <= self.share,
         }
     }
@@ -160,6 +160,6 @@ impl<S: Space> Observer<S> for ChosenSettings {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        vec![s.options.scheme.h, s.options.solver.tolerance]
+        vec![s.options.scheme.h, s.solver_in_force().tolerance]
     }
 }

@@ -1,5 +1,5 @@
 //! The error of a run by its own estimate: at places drawn from the seed it repeats a few steps with a quarter of the step, with a hundredth of
-//! the tolerance, and with implicit coupling, and compares what friction, damage and wear grow by.
+//! the tolerance, and, where damage is coupled explicitly, with implicit coupling, and compares what friction, damage and wear grow by.
 //!
 //! The state is restored after each repeat, so that the run has the same bits as without. Observers see no repeated step.
 
@@ -40,7 +40,7 @@ pub(crate) struct Place {
     /// With a hundredth of the tolerance.
     pub(crate) tighter: Increments,
     /// Whether that tolerance was reached.
-    tight: bool,
+    pub(crate) tight: bool,
     /// With implicit coupling, where the run has explicit coupling of damage.
     coupled: Option<Increments>,
 }
@@ -124,11 +124,12 @@ impl ErrorEstimate {
         let repeats = RepeatedStretch {
             length: self.length,
             body: self.body,
+            couples: true,
         };
         let (place, [cost, _]) = repeats.at(s)?;
         self.cost[1] += cost;
         match place {
-            Some(place) => self.places.push(place),
+            Some(place) => self.places.push(Place { step, ..place }),
             None => self.failed += 1,
         }
         Ok(())

@@ -20,6 +20,8 @@ const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 pub(crate) struct RepeatedStretch {
     pub length: u32,
     pub body: Option<RubbedBody>,
+    /// Whether explicit coupling of damage is compared with implicit coupling.
+    pub couples: bool,
 }
 
 impl RepeatedStretch {
@@ -52,7 +54,7 @@ impl RepeatedStretch {
         let tighter = stretch(s, 1, &|s| tighten(s, most))?;
         let damages = s.laws.iter().any(Interface::damages);
         let mut coupled = None;
-        if damages && s.options.coupling == Coupling::Explicit {
+        if self.couples && damages && s.options.coupling == Coupling::Explicit {
             coupled = stretch(s, 1, &|s| {
                 s.options.coupling = Coupling::Implicit {
                     tolerance: 1e-3,

@@ -348,12 +348,13 @@ impl<S: Dimensional> Builder<'_, S> {
             h: case.time.step,
             theta: case.time.theta,
         };
-        // A scene of springs can be slow: the error is then measured by the heat of slip.
-        let springs = simulation.laws.iter().any(Interface::compliant);
+        // A scene of springs can be slow: its error is measured by the heat of slip, unless the case gives a tolerance of its own.
+        let springs = simulation.laws.iter().all(Interface::compliant);
+        let by_heat = springs && !simulation.laws.is_empty() && case.solver.tolerance.is_none();
         let norm = case
             .solver
             .norm
-            .unwrap_or(if springs { Norm::Power } else { Norm::Balance });
+            .unwrap_or(if by_heat { Norm::Power } else { Norm::Balance });
         let tolerance = case.solver.tolerance;
         simulation.options.solver = solve::Options {
             tolerance: tolerance.unwrap_or(norm.default_tolerance()),

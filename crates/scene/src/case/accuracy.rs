@@ -28,7 +28,7 @@ pub struct AccuracySpec {
     /// Smallest step (s); a sixty-fourth of `time.step` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_step: Option<f64>,
-    /// Smallest tolerance; a thousandth of the case's by default.
+    /// Smallest tolerance; 1/256 of the case's by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_tolerance: Option<f64>,
     /// Share of the cost of the run that may go into the repeated steps by which it measures its error.

@@ -175,7 +175,7 @@ pub struct SolverSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// Definition of the error, `Balance`, `Velocity` or `Power`, see [`fretwork_core::solve::error`]; by default `Power` where
-    /// contacts are springs and `Balance` elsewhere.
+    /// all contacts are springs and no tolerance is given, `Balance` elsewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub norm: Option<Norm>,
     /// Largest number of iterations per step.
