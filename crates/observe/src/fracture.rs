@@ -76,7 +76,6 @@ impl Broken {
 #[derive(Clone, Debug)]
 pub struct Fracture {
     jumps: bool,
-    step: f64,
     /// One an interface.
     broken: Vec<Broken>,
 }
@@ -86,7 +85,6 @@ impl Fracture {
     pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
         Self {
             jumps: case.jump.is_some(),
-            step: case.time.step,
             broken: vec![Broken::default(); s.laws.len()],
         }
     }
@@ -132,7 +130,7 @@ impl Fracture {
         out.step_times_frequency = sites.map(|sites| {
             let of = |n: f64, t: f64| {
                 let squared = (scale.normal.stiffness * n).max(scale.shear.stiffness * t);
-                self.step * squared.sqrt()
+                s.options.scheme.h * squared.sqrt()
             };
             [
                 of(sites.normal_median, sites.shear_median),
@@ -171,7 +169,7 @@ impl<S: Space> Observer<S> for Fracture {
         let bonded = memories.filter(|(k, m)| m.made > 0 && s.laws[*k].opens());
         let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(s, k)).collect();
         summary.fracture = (!interfaces.is_empty())
-            .then(|| FractureSummary::new(interfaces, self.jumps, self.step));
+            .then(|| FractureSummary::new(interfaces, self.jumps, &s.options));
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

@@ -2,6 +2,8 @@
 
 use crate::quantity::number;
 use fretwork_core::contact::Slides;
+use fretwork_core::step::Options;
+use fretwork_core::step::coupling::Coupling;
 use serde::Serialize;
 
 /// Relative difference of the released energy from that of the laws from which bonds count as not resolved.
@@ -10,8 +12,9 @@ pub const WRONG_ENERGY: f64 = 0.05;
 pub const AT_ONCE: f64 = 0.1;
 /// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at once however small the step.
 const BRITTLE: f64 = 1.05;
-/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`.
-const RESOLVED: f64 = 0.01;
+/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`: with damage at its start or end, and
+/// with damage at its middle.
+const RESOLVED: [f64; 2] = [0.01, 0.07];
 
 /// What the energy to break a bond is compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -71,14 +74,18 @@ pub struct FractureSummary {
     pub interfaces: Vec<BondEnergies>,
     /// Whether cycles were skipped: damage then grows by more than what the energies of a step say, and nothing is compared.
     pub jumps: bool,
-    /// Time step (s).
+    /// Time step (s), and the slide per step over critical opening with which it would resolve a bond.
     #[serde(skip)]
-    pub step: f64,
+    pub step: [f64; 2],
 }
 
 impl FractureSummary {
-    /// Of the bonds of some interfaces, in a run with a time step (s).
-    pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, step: f64) -> Self {
+    /// Of the bonds of some interfaces, in a run with these options.
+    pub fn new(interfaces: Vec<BondEnergies>, jumps: bool, options: &Options) -> Self {
+        let resolved = match options.coupling {
+            Coupling::Midpoint => RESOLVED[1],
+            Coupling::Explicit | Coupling::Implicit { .. } => RESOLVED[0],
+        };
         let known = || interfaces.iter().filter(|b| b.comparable);
         let declared: f64 = known().filter_map(|b| b.declared).sum();
         let released: f64 = known().map(|b| b.released).sum();
@@ -86,7 +93,7 @@ impl FractureSummary {
             released_over_declared: (declared > 0.0 && !jumps).then(|| released / declared),
             interfaces,
             jumps,
-            step,
+            step: [options.scheme.h, resolved],
         }
     }
 
@@ -123,10 +130,12 @@ impl FractureSummary {
         }
         let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
         let slide = slides.fold(0.0, f64::max);
-        let target = if slide > RESOLVED {
+        let [step, resolved] = self.step;
+        let target = if slide > resolved {
             format!(
-                " ({:.0e} s would let them slide by 1 % of their critical opening in a step)",
-                self.step * RESOLVED / slide
+                " ({:.0e} s would let them slide by {:.0} % of their critical opening in a step)",
+                step * resolved / slide,
+                100.0 * resolved
             )
         } else {
             String::new()
