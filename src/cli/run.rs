@@ -6,12 +6,13 @@ use super::{CaseArgs, Failure, again};
 use crate::interrupt;
 use crate::record::checkpoint::Found;
 use crate::record::{self, Run, RunError, RunOptions, Summary};
-use crate::scene::build::{Dimensional, Origin};
+use crate::scene::build::Origin;
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
 use crate::step::StepError;
 use clap::Args;
+use fretwork_observe::standard::Observed;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +104,7 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 }
 
 /// Runs or resumes a case; `None` if the run is already finished.
-fn run_case<S: Dimensional>(
+fn run_case<S: Observed>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,

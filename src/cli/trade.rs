@@ -7,7 +7,7 @@ use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
 use crate::laws::SearchPath;
-use crate::scene::build::{Built, Dimensional};
+use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
@@ -22,6 +22,7 @@ use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
 use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
 use clap::Args;
+use fretwork_observe::standard::Observed;
 use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -394,7 +395,7 @@ impl Facts {
         }
     }
 
-    fn from<S: Dimensional>(loaded: &Loaded, built: &Built<S>) -> Self {
+    fn from<S: Observed>(loaded: &Loaded, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let demands = Demands::of(s);
         let serves =

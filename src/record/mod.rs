@@ -11,6 +11,7 @@ pub use fretwork_observe::{
 pub use fretwork_plot::picture;
 pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};
 
+pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};
 pub use run::{OnProgress, Progress, Run, RunError, RunOptions, run, statistics_columns, stopped};
 pub use summary::Summary;

@@ -5,9 +5,10 @@ use super::output::{Output, flatten, listed};
 use crate::laws::Interface;
 use crate::record::Summary;
 use crate::record::statistics_columns;
-use crate::scene::build::{Built, Dimensional};
+use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::scene::measures::MeasureSpec;
+use fretwork_observe::standard::Observed;
 use serde_json::Value;
 
 /// The outputs of a case.
@@ -34,7 +35,7 @@ const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
 
 impl Offer {
     /// The outputs of a case and its scene.
-    pub fn of<S: Dimensional>(case: &Case, built: &Built<S>) -> Self {
+    pub fn of<S: Observed>(case: &Case, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let bonds =
             |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());

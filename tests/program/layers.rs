@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
-const LAYERS: [(&str, &[&str], &[&str]); 5] = [
+const LAYERS: [(&str, &[&str], &[&str]); 6] = [
     (
         "core",
         &[],
@@ -24,8 +24,13 @@ const LAYERS: [(&str, &[&str], &[&str]); 5] = [
         ],
     ),
     (
-        "scene",
+        "sample",
         &["core"],
+        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "plotters"],
+    ),
+    (
+        "scene",
+        &["core", "sample"],
         &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
     ),
     (

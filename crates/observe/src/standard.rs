@@ -13,14 +13,37 @@ use super::run_state::{DrivenBodies, Phases, RunState};
 use super::scars::Scars;
 use super::strain::LocalShear;
 use super::wear::Wear;
-use fretwork_core::geometry::space::Space;
+use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::step::Simulation;
+use fretwork_scene::build::Dimensional;
 use fretwork_scene::case::Case;
 use fretwork_scene::processes;
 
+/// A dimension for which this crate compiles the observers, so that the program does not compile them again.
+pub trait Observed: Dimensional {
+    /// The observers of a run, see [`observers`].
+    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self>;
+}
+
+impl Observed for Dim2 {
+    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self> {
+        list(case, s, density)
+    }
+}
+
+impl Observed for Dim3 {
+    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self> {
+        list(case, s, density)
+    }
+}
+
 /// The observers of a run of a case, from the current state of its simulation on, in the order of the columns of the
 /// statistics. `density` is that of the first bodies (kg/m^3).
-pub fn observers<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
+pub fn observers<S: Observed>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
+    S::observers(case, s, density)
+}
+
+fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
     let test = processes::FrictionTest::of(case, s);
     let mut all = Observers::default();
     all.push(Box::new(RunState::new(

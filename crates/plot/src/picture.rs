@@ -9,7 +9,7 @@ pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
@@ -53,7 +53,7 @@ pub enum Subject<'a> {
 
 impl Camera {
     /// A view of the whole scene in its current state, or of the window given in the case.
-    pub fn new<S: Space>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
+    pub fn new<S: Steps>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
         let mut camera = Self {
             window: output.window.unwrap_or_default(),
             fixed: output.window.is_some() && S::D == 2,
@@ -92,9 +92,12 @@ impl Camera {
     }
 
     /// Adapts the window to the current scene, unless the case gives one.
-    pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
+    pub fn follow<S: Steps>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {
-            self.window = Self::whole(simulation);
+            self.window = match S::in_dimension(simulation) {
+                InDimension::Dim2(s) => Self::whole(s),
+                InDimension::Dim3(s) => Self::whole(s),
+            };
         }
     }
 
@@ -146,7 +149,21 @@ impl Camera {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn draw<S: Space>(
+    pub fn draw<S: Steps>(
+        &self,
+        simulation: &Simulation<S>,
+        subject: Subject<'_>,
+        title: &str,
+        caption: Vec<String>,
+        path: &Path,
+    ) -> Result<(), ReportError> {
+        match S::in_dimension(simulation) {
+            InDimension::Dim2(s) => self.draw_in(s, subject, title, caption, path),
+            InDimension::Dim3(s) => self.draw_in(s, subject, title, caption, path),
+        }
+    }
+
+    fn draw_in<S: Space>(
         &self,
         simulation: &Simulation<S>,
         subject: Subject<'_>,

@@ -64,7 +64,10 @@ impl Raster {
                 let light = (0.5 + 0.54 * facing) * (0.62 + 0.38 * nz.sqrt());
                 let gleam = 36.0 * facing.powi(24);
                 self.depth[at] = depth;
-                self.colour[at] = base.map(|c| (light * f64::from(c) + gleam).min(255.0) as u8);
+                // Not `base.map`, which is not inlined.
+                let [red, green, blue] = base;
+                let lit = |c: u8| (light * f64::from(c) + gleam).min(255.0) as u8;
+                self.colour[at] = [lit(red), lit(green), lit(blue)];
             }
         }
     }
@@ -182,7 +185,8 @@ impl Raster {
                     }
                 }
                 let n = (by * by) as u32;
-                out.push(sum.map(|s| ((s + n / 2) / n) as u8));
+                let mean = |s: u32| ((s + n / 2) / n) as u8;
+                out.push([mean(sum[0]), mean(sum[1]), mean(sum[2])]);
             }
         }
         (width, height, out)
@@ -196,10 +200,11 @@ fn span(low: f64, high: f64, end: usize) -> std::ops::Range<usize> {
 }
 
 fn tinted(under: Rgb, colour: Rgb, share: f32) -> Rgb {
-    std::array::from_fn(|i| {
+    let mixed = |i: usize| {
         let (u, c) = (f32::from(under[i]), f32::from(colour[i]));
         (u + share * (c - u) + 0.5) as u8
-    })
+    };
+    [mixed(0), mixed(1), mixed(2)]
 }
 
 /// Depth of a polygon's plane as `a x + b y + c`; `None` if it is seen edge on.

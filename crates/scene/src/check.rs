@@ -5,12 +5,10 @@ use super::case::{AccurateResult, BodySpec, Case, Checkpoint};
 use super::phases::PhaseSpec;
 use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
-use fretwork_core::contact::detect::detect;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Kind;
-use fretwork_core::step::Simulation;
 use fretwork_core::step::control::Until;
 use fretwork_core::step::coupling::Coupling;
+use fretwork_core::step::{Simulation, Steps};
 
 /// Checks the numbers of a case.
 ///
@@ -372,20 +370,13 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
 ///
 /// # Errors
 /// The pair with the largest overlap.
-pub(super) fn overlaps<S: Space>(
+pub(super) fn overlaps<S: Steps>(
     simulation: &mut Simulation<S>,
     smallest: f64,
     origins: &[Origin],
 ) -> Result<(), ValidationError> {
+    S::detect(simulation);
     let s = simulation;
-    detect(
-        &mut s.state.network,
-        &s.shapes,
-        &s.state.bodies,
-        &s.table,
-        0.0,
-        0.0,
-    );
     let worst = s
         .state
         .network

@@ -21,7 +21,6 @@ pub mod mesh_file;
 pub mod methods;
 pub mod phases;
 pub mod processes;
-pub mod profile;
 pub mod profile_file;
 pub mod recorded;
 pub mod sample;
@@ -36,4 +35,5 @@ pub use build::{Built, Dimensional, Loaded, Scene, load, load_reader, load_text}
 pub use builder::CaseBuilder;
 pub use case::Case;
 pub use fretwork_core::geometry::space::{Dim2, Dim3};
+pub use fretwork_sample::profile;
 pub use source::InputError;

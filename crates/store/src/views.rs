@@ -6,7 +6,7 @@ use super::summary::Summary;
 use fretwork_core::fields::{FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Kind;
-use fretwork_core::step::Simulation;
+use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
@@ -185,7 +185,19 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append<S: Space>(
+pub fn append<S: Steps>(
+    results: &mut Results,
+    s: &Simulation<S>,
+    loaded: &Loaded,
+    values: Vec<Vec<f64>>,
+) -> Result<(), ResultsError> {
+    match S::in_dimension(s) {
+        InDimension::Dim2(s) => append_in(results, s, loaded, values),
+        InDimension::Dim3(s) => append_in(results, s, loaded, values),
+    }
+}
+
+fn append_in<S: Space>(
     results: &mut Results,
     s: &Simulation<S>,
     loaded: &Loaded,

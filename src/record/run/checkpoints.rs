@@ -6,11 +6,11 @@ use crate::geometry::space::Space;
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
 use crate::report::Paint;
-use crate::scene::build::Dimensional;
 use crate::step::{ProcessState, State};
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
+use fretwork_observe::standard::Observed;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
@@ -39,7 +39,7 @@ struct RunLoopState<'a, S: Space> {
     processor: Duration,
 }
 
-impl<S: Dimensional> Recorder<'_, S> {
+impl<S: Observed> Recorder<'_, S> {
     /// Writes a checkpoint of the current state to the results.
     pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();

@@ -2,10 +2,10 @@
 
 use super::{Recorder, RunError, unwritable};
 use crate::record::fclib;
-use crate::scene::build::Dimensional;
 use crate::step::StepReport;
+use fretwork_observe::standard::Observed;
 
-impl<S: Dimensional> Recorder<'_, S> {
+impl<S: Observed> Recorder<'_, S> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
         let problem = self.simulation.local_problem();

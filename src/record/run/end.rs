@@ -6,12 +6,12 @@ use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
 use crate::report::{draw_panels, noted};
-use crate::scene::build::Dimensional;
 use fretwork_observe::RunEnd;
+use fretwork_observe::standard::Observed;
 use std::path::Path;
 use std::time::Duration;
 
-impl<S: Dimensional> Recorder<'_, S> {
+impl<S: Observed> Recorder<'_, S> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
         let statistics_read = self.read_statistics();

@@ -3,14 +3,14 @@
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
 use crate::report::{noted, quantity};
-use crate::scene::build::Dimensional;
 use fretwork_observe::picture::{Picture, Shows};
 use fretwork_observe::run_state::damage_ratio;
+use fretwork_observe::standard::Observed;
 
 /// Name prefixes of pictures: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
-impl<S: Dimensional> Recorder<'_, S> {
+impl<S: Observed> Recorder<'_, S> {
     /// Draws the pictures of a step.
     pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
@@ -61,7 +61,7 @@ impl<S: Dimensional> Recorder<'_, S> {
 }
 
 /// How a picture of an observer is drawn; none where the dimension has no such picture.
-fn subject<S: Dimensional>(picture: &Picture) -> Option<Subject<'_>> {
+fn subject<S: Observed>(picture: &Picture) -> Option<Subject<'_>> {
     Some(match &picture.shows {
         Shows::Paints(paints) => Subject::Painted(paints),
         Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),

@@ -31,7 +31,7 @@ use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
-use fretwork_observe::standard;
+use fretwork_observe::standard::{self, Observed};
 use fretwork_observe::{Observer, Observers};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -105,7 +105,7 @@ pub struct Run<'a, S: Space> {
     observers: Observers<S>,
 }
 
-impl<'a, S: Dimensional> Run<'a, S> {
+impl<'a, S: Observed> Run<'a, S> {
     /// A run of a case from its start.
     pub fn new(loaded: &'a Loaded, built: Built<S>, options: &'a RunOptions) -> Self {
         Self {
@@ -198,7 +198,7 @@ pub fn stopped<S: Space>(
 }
 
 /// The columns of the statistics that a run of a case has.
-pub fn statistics_columns<S: Dimensional>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
+pub fn statistics_columns<S: Observed>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
 }
 
@@ -238,7 +238,7 @@ struct Recorder<'a, S: Space> {
     summary: Summary,
 }
 
-impl<'a, S: Dimensional> Recorder<'a, S> {
+impl<'a, S: Observed> Recorder<'a, S> {
     /// From the start, or from where a run was stopped.
     fn new(run: Run<'a, S>) -> Result<Self, RunError> {
         let (loaded, mut built, options) = (run.loaded, run.built, run.options);

@@ -3,6 +3,7 @@
 use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
+use fretwork::record::Observed;
 use fretwork::record::{Summary, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
@@ -18,11 +19,7 @@ fn documented() -> BTreeSet<String> {
     words.map(str::to_owned).collect()
 }
 
-fn missing<S: Dimensional>(
-    loaded: &Loaded,
-    built: &Built<S>,
-    page: &BTreeSet<String>,
-) -> Vec<String> {
+fn missing<S: Observed>(loaded: &Loaded, built: &Built<S>, page: &BTreeSet<String>) -> Vec<String> {
     let case = &loaded.case;
     // Names that a case chose stand in the page as BODY and NAME.
     let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));

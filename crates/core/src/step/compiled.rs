@@ -1,8 +1,19 @@
 //! The time step, compiled once for each dimension, so that dependent crates do not compile the solver
 //! again.
 
+use super::fields::Fields;
 use super::{Simulation, StepError, StepReport};
+use crate::contact::detect::detect;
 use crate::geometry::space::{Dim2, Dim3, Space};
+
+/// A simulation whose dimension is known: other crates compile what they do with it once for each of the two.
+#[derive(Debug)]
+pub enum InDimension<'a> {
+    /// Two dimensions.
+    Dim2(&'a Simulation<Dim2>),
+    /// Three dimensions.
+    Dim3(&'a Simulation<Dim3>),
+}
 
 /// A dimension for which this crate compiles the time step.
 pub trait Steps: Space {
@@ -11,11 +22,26 @@ pub trait Steps: Space {
     /// # Errors
     /// As [`Simulation::step`].
     fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError>;
+    /// Detects the contacts at the current positions, without an alert distance.
+    fn detect(simulation: &mut Simulation<Self>);
+    /// The fields that every simulation has.
+    fn fields() -> Fields<Self>;
+    /// The simulation, of known dimension.
+    fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_>;
 }
 
 impl Steps for Dim2 {
     fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError> {
         simulation.one_step()
+    }
+    fn detect(simulation: &mut Simulation<Self>) {
+        touching(simulation);
+    }
+    fn fields() -> Fields<Self> {
+        Fields::default()
+    }
+    fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_> {
+        InDimension::Dim2(simulation)
     }
 }
 
@@ -23,6 +49,20 @@ impl Steps for Dim3 {
     fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError> {
         simulation.one_step()
     }
+    fn detect(simulation: &mut Simulation<Self>) {
+        touching(simulation);
+    }
+    fn fields() -> Fields<Self> {
+        Fields::default()
+    }
+    fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_> {
+        InDimension::Dim3(simulation)
+    }
+}
+
+fn touching<S: Space>(s: &mut Simulation<S>) {
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    detect(network, &s.shapes, bodies, &s.table, 0.0, 0.0);
 }
 
 impl<S: Steps> Simulation<S> {

@@ -42,7 +42,7 @@ mod systems;
 mod workspace;
 
 pub use columns::ContactRow;
-pub use compiled::Steps;
+pub use compiled::{InDimension, Steps};
 pub use error::StepError;
 pub use options::{Options, Scheme};
 pub use processes::ProcessState;

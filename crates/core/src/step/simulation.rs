@@ -4,7 +4,7 @@ use super::control::Phase;
 use super::fields::Fields;
 use super::process::Process;
 use super::workspace::Workspace;
-use super::{Options, State};
+use super::{Options, State, Steps};
 use crate::bodies::Bodies;
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, Network};
@@ -35,15 +35,7 @@ pub struct Simulation<S: Space> {
     pub(super) workspace: Workspace<S>,
 }
 
-impl<S: Space> Simulation<S> {
-    /// Bytes per contact in addition to the solver's rows and the bond: this step's and the last step's
-    /// contact, its pair in the neighbour list, its form, and its results.
-    pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
-        + size_of::<(u32, u32)>()
-        + size_of::<ContactForm<S>>()
-        + size_of::<ContactStep<S>>()
-        + size_of::<S::Vector>();
-
+impl<S: Steps> Simulation<S> {
     /// Builds a scene at rest at time zero.
     pub fn new(
         bodies: Bodies<S>,
@@ -67,11 +59,21 @@ impl<S: Space> Simulation<S> {
             phases: Vec::new(),
             options: Options::default(),
             state: State::at_rest(bodies, network),
-            fields: Fields::default(),
+            fields: S::fields(),
             processes: Vec::new(),
             workspace: Workspace::default(),
         }
     }
+}
+
+impl<S: Space> Simulation<S> {
+    /// Bytes per contact in addition to the solver's rows and the bond: this step's and the last step's
+    /// contact, its pair in the neighbour list, its form, and its results.
+    pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
+        + size_of::<(u32, u32)>()
+        + size_of::<ContactForm<S>>()
+        + size_of::<ContactStep<S>>()
+        + size_of::<S::Vector>();
 
     /// The options of the solver, with the tolerance that the current phase has set, if any.
     pub fn solver_in_force(&self) -> solve::Options {

@@ -2,7 +2,7 @@
 
 use super::{Builder, Dimensional, Origin};
 use crate::case::{GrainSpec, OneGrain};
-use crate::sample;
+use crate::sample::lattice::lattice;
 use crate::source::{InputError, ValidationError};
 use fretwork_core::bodies::Driven;
 use fretwork_core::geometry::shape::{Ball, Carried, HalfSpace, Surface};
@@ -137,7 +137,7 @@ impl<S: Dimensional> Builder<'_, S> {
         }
         self.few_enough(&format!("{here}.count"), count, MAX_MADE)?;
         let periodic = self.shapes.periodic.period[0].is_some();
-        let list = sample::lattice(S::D, periodic, count, radius, low, high, self.case.seed);
+        let list = lattice(S::D, periodic, count, radius, low, high, self.case.seed);
         if list.len() < count {
             let message = format!("only {} of {count} grains fit into the box", list.len());
             return Err(self.source.locate(

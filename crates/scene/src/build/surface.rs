@@ -2,6 +2,7 @@
 
 use super::{Builder, Built, Loaded, Scene};
 use crate::case::{ShapeSpec, Side};
+use crate::sample::deposit::Deposits;
 use crate::source::InputError;
 use crate::{profile, profile_file, standard};
 use fretwork_core::geometry::convex::ConvexPart;
@@ -24,7 +25,7 @@ const MAX_POINTS: usize = 1_000_000;
 const MAX_TERMS: f64 = 2e8;
 
 /// Operations that differ between dimensions, and shapes that exist in only one of them.
-pub trait Dimensional: Steps {
+pub trait Dimensional: Steps + Deposits {
     /// Builds a scene of this dimension, see [`Loaded::build_in`].
     ///
     /// # Errors
