@@ -6,10 +6,11 @@
 //! follows from the state, and costs are counted in iterations: the bits are the same on every machine, and after a resume.
 
 mod report;
+mod setting;
 
 pub use report::{AccuracyReport, ChosenSettings, SettingChange};
 
-use crate::error_estimate::{Change, Increments, Pair, Place, RepeatedStretch, cost};
+use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
 use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
@@ -17,17 +18,12 @@ use fretwork_scene::processes::FrictionTest;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
+use setting::{Decision, Setting};
 
 /// Parts of a step that are repeated at a time; the second half of them is compared.
 const LENGTH: u32 = 8;
-/// Most stretches from which the effect of a setting is taken, the latest.
-const KEPT: usize = 12;
-/// Stretches after which settings become finer although the effect may be scatter.
-const PATIENCE: usize = 6;
 /// Steps of the case after which parts that a law asked for are given up again.
 const CALM: u32 = 20;
-/// Fewest stretches with a setting before its effect is stated.
-const FEWEST: u32 = 3;
 /// Steps until the next stretch after one that failed.
 const AFTER_FAILURE: u64 = 50;
 /// Stretches at the start that may cost as much as the run.
@@ -41,103 +37,6 @@ const TOLERANCE_FACTOR: f64 = 4.0;
 /// Extrapolation from a quarter of the step to none, at the first order.
 const STEP_LIMIT: f64 = 4.0 / 3.0;
 
-/// A setting that is chosen.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-struct Setting {
-    /// How often it was made finer.
-    level: u32,
-    /// Finest level permitted.
-    finest: u32,
-    /// Results without and with a finer setting, of the latest stretches.
-    pairs: Vec<[[f64; 2]; 2]>,
-    /// The effect of a finer setting, as last found.
-    effect: Option<Change>,
-    /// Stretches measured since the last change.
-    measured: u32,
-}
-
-/// What is done with a setting.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Decision {
-    Keep,
-    Finer(u32),
-    Coarser,
-}
-
-impl Setting {
-    fn new(finest: u32) -> Self {
-        Self {
-            finest,
-            ..Self::default()
-        }
-    }
-
-    /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the result that the setting may change.
-    fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
-        self.pairs.push([pair.coarse, pair.fine]);
-        self.measured += 1;
-        if self.pairs.len() > KEPT {
-            self.pairs.remove(0);
-        }
-        let pairs = self.pairs.iter().map(|[coarse, fine]| Pair {
-            coarse: *coarse,
-            fine: *fine,
-        });
-        let Some(effect) = Change::over(&pairs.collect::<Vec<_>>(), limit) else {
-            return Decision::Keep;
-        };
-        self.effect = Some(effect);
-        let size = effect.change.abs();
-        let certain = size - effect.half_width > allowed;
-        let likely = size > allowed && self.pairs.len() >= PATIENCE;
-        if (certain || likely) && self.level < self.finest {
-            let levels = (size / allowed).ln() / factor.ln();
-            return Decision::Finer(
-                (levels.ceil() as u32)
-                    .clamp(1, 2)
-                    .min(self.finest - self.level),
-            );
-        }
-        // At the first order the effect then stays below half of what is allowed.
-        if self.level > 0 && effect.bound() * factor < 0.5 * allowed {
-            return Decision::Coarser;
-        }
-        Decision::Keep
-    }
-
-    /// The effect, where it was measured with the setting in force, not only expected of it.
-    fn shown(&self) -> Option<Change> {
-        self.effect.filter(|_| self.measured >= FEWEST)
-    }
-
-    /// Adopts a decision; returns whether it changed anything. What was found before counts with the effect that it would have had at
-    /// the first order, so that knowledge is not lost with every change.
-    fn adopt(&mut self, decision: Decision, factor: f64) -> bool {
-        let times = match decision {
-            Decision::Keep => return false,
-            Decision::Finer(levels) => {
-                self.level += levels;
-                factor.powi(-(levels as i32))
-            }
-            Decision::Coarser => {
-                self.level -= 1;
-                factor
-            }
-        };
-        self.measured = 0;
-        for [coarse, fine] in &mut self.pairs {
-            for (coarse, fine) in coarse.iter().zip(fine) {
-                *fine = coarse + times * (*fine - coarse);
-            }
-        }
-        if let Some(effect) = &mut self.effect {
-            effect.change *= times;
-            effect.half_width *= times;
-        }
-        true
-    }
-}
-
 /// Chooses step and tolerance of a run; all of it is part of a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AccuracyControl {
@@ -150,8 +49,6 @@ pub struct AccuracyControl {
     step: Setting,
     tolerance: Setting,
     body: Option<RubbedBody>,
-    /// Step of the case from which errors are measured.
-    from: u64,
     /// Step of the case before which the next stretch is repeated.
     next: u64,
     /// Stretches repeated, and those that failed.
@@ -211,7 +108,6 @@ impl AccuracyControl {
         let spec = case.accuracy.as_ref()?;
         let test = FrictionTest::of(case, s);
         let start = test.map_or(0.0, |t| t.clock.start / case.time.step);
-        let from = start.round().max(0.0) as u64;
         let coarsest = [
             s.options.scheme.h,
             s.options.solver.tolerance,
@@ -233,8 +129,7 @@ impl AccuracyControl {
             step: Setting::new(step),
             tolerance: Setting::new(tolerance),
             body: test.map(|t| t.body),
-            from,
-            next: from,
+            next: start.round().max(0.0) as u64,
             stretches: [0; 2],
             cost: [0.0; 2],
             asked: 0,
@@ -311,6 +206,11 @@ impl AccuracyControl {
         (self.step.level + self.asked).min(self.step.finest)
     }
 
+    /// The tolerance now in force.
+    fn chosen_tolerance(&self) -> f64 {
+        self.coarsest[1] / TOLERANCE_FACTOR.powi(self.tolerance.level as i32)
+    }
+
     /// Goes on in a simulation that was restored with its state: impulses are those of the step in force.
     pub fn resume<S: Steps>(&mut self, s: &mut Simulation<S>) {
         s.options.scheme.h = self.coarsest[0] / f64::from(1u32 << self.level());
@@ -319,7 +219,7 @@ impl AccuracyControl {
 
     /// Sets step, tolerance and correction.
     fn set<S: Steps>(&mut self, s: &mut Simulation<S>) {
-        let [h, tolerance, correction] = self.coarsest;
+        let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
         if s.options.scheme.h != h / parts {
             s.change_step(h / parts);
@@ -330,8 +230,7 @@ impl AccuracyControl {
         } else {
             1.0 - (1.0 - correction).powf(1.0 / parts)
         };
-        let level = i32::try_from(self.tolerance.level).unwrap_or(i32::MAX);
-        let tolerance = tolerance / TOLERANCE_FACTOR.powi(level);
+        let tolerance = self.chosen_tolerance();
         s.options.solver.tolerance = tolerance;
         self.smallest_tolerance = self.smallest_tolerance.min(tolerance);
     }
@@ -391,12 +290,10 @@ impl AccuracyControl {
             self.tolerance.adopt(tolerance, TOLERANCE_FACTOR),
         ];
         if changed.contains(&true) {
-            let [h, least, _] = self.coarsest;
-            let level = i32::try_from(self.tolerance.level).unwrap_or(i32::MAX);
             self.changes.push(SettingChange {
                 time: s.state.time,
-                step: h / f64::from(1u32 << self.step.level),
-                tolerance: least / TOLERANCE_FACTOR.powi(level),
+                step: self.coarsest[0] / f64::from(1u32 << self.step.level),
+                tolerance: self.chosen_tolerance(),
                 step_effect: effects[0],
                 tolerance_effect: effects[1],
             });
@@ -430,61 +327,6 @@ fn finest_levels(spec: &AccuracySpec, [h, tolerance, _]: &[f64; 3]) -> [u32; 2] 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn pair(change: f64) -> Pair {
-        Pair {
-            coarse: [1.0, 1.0],
-            fine: [1.0 + change, 1.0],
-        }
-    }
-
-    #[test]
-    fn a_certain_effect_makes_a_setting_finer_by_what_it_needs() {
-        let mut setting = Setting::new(6);
-        for expected in [Decision::Keep, Decision::Keep, Decision::Finer(2)] {
-            // 4 % at the first order: two halvings bring it to 1 %.
-            assert_eq!(setting.decide(pair(0.03), STEP_LIMIT, 2.0, 0.01), expected);
-        }
-        assert!(setting.adopt(Decision::Finer(2), 2.0) && setting.level == 2);
-        // 1 % is left of the effect, and another stretch with 1 % leaves it there.
-        assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
-        assert_eq!(
-            setting.decide(pair(0.0075), STEP_LIMIT, 2.0, 0.011),
-            Decision::Keep
-        );
-        assert!((setting.effect.unwrap().change - 0.01).abs() < 1e-12);
-        // Not beyond the finest.
-        let mut setting = Setting::new(0);
-        for _ in 0..20 {
-            assert_eq!(setting.decide(pair(0.03), 1.0, 2.0, 0.01), Decision::Keep);
-        }
-    }
-
-    #[test]
-    fn a_small_effect_makes_a_setting_coarser_again() {
-        let mut setting = Setting::new(6);
-        setting.level = 1;
-        for expected in [Decision::Keep, Decision::Keep, Decision::Coarser] {
-            assert_eq!(setting.decide(pair(0.002), 1.0, 2.0, 0.01), expected);
-        }
-        // Half of what is allowed would be exceeded.
-        setting.pairs.clear();
-        for _ in 0..6 {
-            assert_eq!(setting.decide(pair(0.003), 1.0, 2.0, 0.01), Decision::Keep);
-        }
-    }
-
-    #[test]
-    fn scatter_is_waited_for() {
-        let mut setting = Setting::new(6);
-        let effects = [0.1, -0.1, 0.12, -0.06, 0.1, 0.1];
-        let decided = effects.map(|e| setting.decide(pair(e), 1.0, 2.0, 0.02));
-        assert!(
-            decided[..5].iter().all(|d| *d == Decision::Keep),
-            "{decided:?}"
-        );
-        assert_eq!(decided[5], Decision::Finer(2));
-    }
 
     #[test]
     fn bounds_are_levels() {
