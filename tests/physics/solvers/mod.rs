@@ -2,6 +2,7 @@
 //!
 //! What a method says of its error is never believed: `made` computes it anew, from its formula.
 
+mod cycles;
 mod limits;
 mod made;
 

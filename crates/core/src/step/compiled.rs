@@ -62,7 +62,7 @@ impl Steps for Dim3 {
 
 fn touching<S: Space>(s: &mut Simulation<S>) {
     let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    detect(network, &s.shapes, bodies, &s.table, 0.0, 0.0);
+    detect(network, &s.shapes, bodies, &s.table, [0.0; 2], false);
 }
 
 impl<S: Steps> Simulation<S> {

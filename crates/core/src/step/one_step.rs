@@ -79,7 +79,15 @@ impl<S: Space> Simulation<S> {
         motion::advance(&mut self.state.bodies, (1.0 - theta) * h);
         self.begin_systems((1.0 - theta) * h);
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
-        detect(network, &self.shapes, bodies, &self.table, time, h);
+        let parallel = self.options.solver.parallel;
+        detect(
+            network,
+            &self.shapes,
+            bodies,
+            &self.table,
+            [time, h],
+            parallel,
+        );
         report.projected = self.project();
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);

@@ -94,6 +94,7 @@ impl<S: Space> Simulation<S> {
             velocities: free,
             time: self.state.time,
             h: self.options.scheme.h,
+            parallel: self.options.solver.parallel,
         };
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         let all = free.iter().copied();
@@ -153,6 +154,7 @@ impl<S: Space> Simulation<S> {
                 velocities: &velocities,
                 time: self.state.time,
                 h: info.h,
+                parallel: self.options.solver.parallel,
             };
             if solves == MAX_SOLVES {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);

@@ -104,8 +104,8 @@ impl<S: Space> Simulation<S> {
             &self.shapes,
             &self.state.bodies,
             &self.table,
-            self.state.time,
-            0.0,
+            [self.state.time, 0.0],
+            self.options.solver.parallel,
         );
         self.state.projection_work += against_loads;
         Some(Projected {

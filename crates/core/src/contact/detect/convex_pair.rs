@@ -7,49 +7,92 @@ use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
 /// The pair: bodies, materials, and the size used where the contact point defines none (m).
-struct Pair {
+pub(super) struct Pair<S: Space> {
     name: (u32, u32),
     bodies: [u32; 2],
     law: u16,
     radius: f64,
+    /// Vectors from the centres of the two bodies to the origin of the contact points (m).
+    origins: [S::Vector; 2],
+}
+
+/// Contact points of pairs with at least one convex piece.
+pub(super) struct PairPoints<S: Space> {
+    /// Each pair, `None` if it has no law, and the end of its points.
+    pairs: Vec<(Option<Pair<S>>, usize)>,
+    points: Vec<ContactPoint<S::Vector>>,
+}
+
+impl<S: Space> PairPoints<S> {
+    /// Iterates over the pairs and their points.
+    pub(super) fn iter(
+        &self,
+    ) -> impl Iterator<Item = (&Option<Pair<S>>, &[ContactPoint<S::Vector>])> {
+        let mut from = 0;
+        self.pairs.iter().map(move |(pair, end)| {
+            let points = &self.points[from..*end];
+            from = *end;
+            (pair, points)
+        })
+    }
 }
 
 impl<S: Space> Narrow<'_, S> {
-    /// Processes a pair with at least one convex piece.
-    pub(super) fn convex_pair(&mut self, network: &mut Network<S>, a: u32, b: u32) {
-        let old = self.old_contacts_of(network, (a, b));
-        let tolerances = ContactTolerances {
-            reach: self.reach(network, old.clone()),
-            slack: SLACK * network.alert,
-            held: old.clone().any(|k| held(network, Some(k))),
+    /// Finds the contact points of those pairs that have a convex piece.
+    pub(super) fn find_points(&self, network: &Network<S>, pairs: &[(u32, u32)]) -> PairPoints<S> {
+        let mut found = PairPoints {
+            pairs: Vec::new(),
+            points: Vec::new(),
         };
-        let mut contact_points = std::mem::take(&mut self.contact_points);
-        contact_points.clear();
-        if let Some((pair, to_candidate, to_antagonist)) =
-            self.contact_points(a, b, &tolerances, &mut contact_points)
-        {
-            self.create_contacts(
-                network,
-                &pair,
-                &contact_points,
-                old,
-                [to_candidate, to_antagonist],
-            );
-        } else {
-            old.for_each(|k| drop_contact(network, k));
+        let old = &network.old;
+        // Pairs and contacts are sorted.
+        let mut at = pairs
+            .first()
+            .map_or(0, |first| old.partition_point(|c| c.key.pair() < *first));
+        let mut points = Vec::new();
+        for &(a, b) in pairs.iter().filter(|(a, b)| (a | b) & Key::PIECE != 0) {
+            while old.get(at).is_some_and(|c| c.key.pair() < (a, b)) {
+                at += 1;
+            }
+            let of_pair = old[at..].iter().take_while(|c| c.key.pair() == (a, b));
+            let old = at..at + of_pair.count();
+            at = old.end;
+            let tolerances = ContactTolerances {
+                reach: self.reach(network, old.clone()),
+                slack: SLACK * network.alert,
+                held: old.clone().any(|k| held(network, Some(k))),
+            };
+            points.clear();
+            let pair = self.contact_points(a, b, &tolerances, &mut points);
+            found.points.append(&mut points);
+            found.pairs.push((pair, found.points.len()));
         }
-        self.contact_points = contact_points;
+        found
     }
 
-    /// Finds the contact points of a pair in world axes, and the vectors from the centres of the two bodies
-    /// to their origin. `None` if the pair has no law.
+    /// Updates the contacts of a pair with at least one convex piece.
+    pub(super) fn convex_pair(
+        &mut self,
+        network: &mut Network<S>,
+        name: (u32, u32),
+        pair: &Option<Pair<S>>,
+        points: &[ContactPoint<S::Vector>],
+    ) {
+        let old = self.old_contacts_of(network, name);
+        match pair {
+            Some(pair) => self.create_contacts(network, pair, points, old),
+            None => old.for_each(|k| drop_contact(network, k)),
+        }
+    }
+
+    /// Finds the contact points of a pair in world axes. `None` if the pair has no law.
     fn contact_points(
         &self,
         a: u32,
         b: u32,
         tolerances: &ContactTolerances,
         out: &mut Vec<ContactPoint<S::Vector>>,
-    ) -> Option<(Pair, S::Vector, S::Vector)> {
+    ) -> Option<Pair<S>> {
         let balls = self.shapes.balls.len();
         let at = |name: u32| (name & !Key::PIECE) as usize;
         let of = |body: u32| self.bodies.position[body as usize];
@@ -76,17 +119,17 @@ impl<S: Space> Narrow<'_, S> {
                 m.on_candidate = S::rotate(&rotation, &m.on_candidate);
                 m.on_antagonist = S::rotate(&rotation, &m.on_antagonist);
             }
-            let pair = Pair {
+            return Some(Pair {
                 name: (a, b),
                 bodies: [piece.body, surface.body],
                 law,
                 radius: piece.size,
-            };
-            return Some((pair, origin - of(piece.body), origin - of(surface.body)));
+                origins: [origin - of(piece.body), origin - of(surface.body)],
+            });
         }
         let k = at(b);
         let (other, centre) = (&self.shapes.pieces[k], self.centres[balls + k]);
-        let (pair, own_centre, apart);
+        let (bodies, law, radius, own_centre, apart);
         if a & Key::PIECE == 0 {
             let ball = &self.shapes.balls[a as usize];
             own_centre = self.centres[a as usize];
@@ -96,40 +139,39 @@ impl<S: Space> Narrow<'_, S> {
             if meeting.gap <= tolerances.reach {
                 out.push(meeting);
             }
-            pair = Pair {
-                name: (a, b),
-                bodies: [ball.body, other.body],
-                law: self.laws.get(ball.material, other.material)?,
-                radius: ball.radius,
-            };
+            bodies = [ball.body, other.body];
+            law = self.laws.get(ball.material, other.material)?;
+            radius = ball.radius;
         } else {
             let piece = &self.shapes.pieces[at(a)];
             own_centre = self.centres[balls + at(a)];
             apart = self.shapes.periodic.shortest(own_centre - centre);
             let roundings = [piece.rounding, other.rounding];
             self.cores[at(a)].contact_points(&self.cores[k], &apart, roundings, tolerances, out);
-            pair = Pair {
-                name: (a, b),
-                bodies: [piece.body, other.body],
-                law: self.laws.get(piece.material, other.material)?,
-                radius: piece.size * other.size / (piece.size + other.size),
-            };
+            bodies = [piece.body, other.body];
+            law = self.laws.get(piece.material, other.material)?;
+            radius = piece.size * other.size / (piece.size + other.size);
         }
         // For the candidate, the antagonist's centre may be a periodic image.
-        let to_candidate = own_centre - apart - of(pair.bodies[0]);
-        let to_antagonist = centre - of(pair.bodies[1]);
-        Some((pair, to_candidate, to_antagonist))
+        let [i, j] = bodies.map(of);
+        Some(Pair {
+            name: (a, b),
+            bodies,
+            law,
+            radius,
+            origins: [own_centre - apart - i, centre - j],
+        })
     }
 
     /// Creates contacts from the contact points within the alert distance, with the memory of old ones.
     fn create_contacts(
         &mut self,
         network: &mut Network<S>,
-        pair: &Pair,
+        pair: &Pair<S>,
         contact_points: &[ContactPoint<S::Vector>],
         old: std::ops::Range<usize>,
-        origins: [S::Vector; 2],
     ) {
+        let origins = pair.origins;
         let matched = match_old_contacts(&network.old, contact_points, old.clone(), &origins[0]);
         let pairs = contact_points.iter().copied().zip(matched);
         let mut met: Vec<_> = pairs

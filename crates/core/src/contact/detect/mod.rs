@@ -14,17 +14,20 @@ pub use prediction::{
     Motion, add_predicted, find_missed, is_calm, report_first_move, report_passing,
 };
 
-use super::network::{Contact, Key, Network};
+use super::network::{Contact, Network};
 use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 use narrow::Narrow;
 use neighbours::NeighbourSearch;
+use rayon::prelude::*;
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
 /// face.
 const SLACK: f64 = 0.01;
+/// Pairs per task.
+const CHUNK: usize = 256;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
@@ -70,14 +73,14 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 /// Finds the contacts of this step at the current positions and carries their memory over.
 ///
 /// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `h` is the time
-/// since the last detection (s).
+/// since the last detection (s). Contact points of convex pairs are found by several threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     laws: &LawTable,
-    time: f64,
-    h: f64,
+    [time, h]: [f64; 2],
+    parallel: bool,
 ) {
     let centres = centres(shapes, bodies);
     if must_rebuild(network, shapes, bodies, &centres) {
@@ -89,13 +92,17 @@ pub fn detect<S: Space>(
     network.contacts.clear();
     let candidates = std::mem::take(&mut network.candidates);
     let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
-    for &(a, b) in &candidates {
-        if (a | b) & Key::PIECE != 0 {
-            narrow.convex_pair(network, a, b);
-        } else if b & Key::SURFACE == 0 {
-            narrow.ball_pair(network, a, b);
-        } else {
-            narrow.ball_on_surface(network, a, b);
+    // What the points of a pair depend on is not changed by other pairs, so that they are found first.
+    if parallel {
+        let chunks = candidates.par_chunks(CHUNK);
+        let found: Vec<_> = chunks.map(|c| narrow.find_points(network, c)).collect();
+        for (pairs, found) in candidates.chunks(CHUNK).zip(&found) {
+            narrow.update_contacts(network, pairs, found);
+        }
+    } else {
+        for pairs in candidates.chunks(CHUNK) {
+            let found = narrow.find_points(network, pairs);
+            narrow.update_contacts(network, pairs, &found);
         }
     }
     let left = narrow.left();

@@ -1,9 +1,10 @@
 //! Narrow phase: gaps and normals of candidate pairs, and transfer of contact memory.
 
+use super::convex_pair::PairPoints;
 use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
-use crate::geometry::convex::{ContactPoint, ConvexCollider, Core};
+use crate::geometry::convex::{ConvexCollider, Core};
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -21,7 +22,6 @@ pub(super) struct Narrow<'a, S: Space> {
     /// Index of the next old contact.
     at: usize,
     touches: Vec<ClosestPoint<S::Vector>>,
-    pub(super) contact_points: Vec<ContactPoint<S::Vector>>,
 }
 
 impl<'a, S: Space> Narrow<'a, S> {
@@ -44,7 +44,27 @@ impl<'a, S: Space> Narrow<'a, S> {
             h,
             at: 0,
             touches: Vec::new(),
-            contact_points: Vec::new(),
+        }
+    }
+
+    /// Updates the contacts of pairs, of which the convex ones have these contact points.
+    pub(super) fn update_contacts(
+        &mut self,
+        network: &mut Network<S>,
+        pairs: &[(u32, u32)],
+        found: &PairPoints<S>,
+    ) {
+        let mut convex = found.iter();
+        for &(a, b) in pairs {
+            if (a | b) & Key::PIECE != 0 {
+                if let Some((pair, points)) = convex.next() {
+                    self.convex_pair(network, (a, b), pair, points);
+                }
+            } else if b & Key::SURFACE == 0 {
+                self.ball_pair(network, a, b);
+            } else {
+                self.ball_on_surface(network, a, b);
+            }
         }
     }
 

@@ -5,12 +5,13 @@
 use super::extents::Extents;
 use super::order::{PredictedMeeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
-use super::{LawTable, centres, rebuild};
+use super::{CHUNK, LawTable, centres, rebuild};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::grid;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
+use rayon::prelude::*;
 
 /// Penetration, as a fraction of the fast motion, from which a pair without a contact gets one.
 pub(super) const TOLERATED: f64 = 0.05;
@@ -31,6 +32,8 @@ pub struct Motion<'a, S: Space> {
     pub time: f64,
     /// Its length (s).
     pub h: f64,
+    /// Whether pairs are distributed over threads; the results are the same.
+    pub parallel: bool,
 }
 
 /// Stage of the step at which pairs are examined.
@@ -135,6 +138,7 @@ pub fn report_first_move<S: Space>(
         velocities: &velocities,
         time,
         h: length,
+        parallel: false,
     };
     report_passing(network, shapes, bodies, laws, &motion);
 }
@@ -285,26 +289,43 @@ fn find_closing<S: Space>(
         alert: network.alert,
     };
     let fast = network.fast;
-    let mut prediction = Prediction {
+    let search = Search {
         network,
         sweep: &sweep,
         laws,
         travels: &travels,
         turning,
         stage,
-        found: Vec::new(),
-        meetings: Vec::new(),
     };
-    for &names in &candidates {
-        if let Some(pair) = prediction.fast_pair(names) {
-            prediction.follow(names, &pair);
+    let examine = |pairs: &[(u32, u32)]| -> Vec<Meeting<S>> {
+        let pairs = pairs.iter();
+        pairs.filter_map(|names| search.examine(*names)).collect()
+    };
+    let met: Vec<Meeting<S>> = if motion.parallel {
+        let parts = candidates.par_chunks(CHUNK).map(examine);
+        let parts: Vec<_> = parts.collect();
+        parts.into_iter().flatten().collect()
+    } else {
+        examine(&candidates)
+    };
+    let (mut found, mut meetings) = (Vec::new(), Vec::new());
+    for meeting in met {
+        let known = found.len();
+        found.extend(meeting.contacts);
+        if let Some(at) = meeting.at {
+            meetings.push(PredictedMeeting {
+                names: meeting.names,
+                bodies: meeting.bodies,
+                at,
+                travel: meeting.travel,
+                contacts: known..found.len(),
+            });
+        }
+        if meeting.passing {
+            let step_size = &mut network.step_size;
+            step_size.record_passing(sweep.time, sweep.bodies, meeting.bodies);
         }
     }
-    let Prediction {
-        mut found,
-        meetings,
-        ..
-    } = prediction;
     if stage == Stage::Before {
         let body = |name| body_of(shapes, name);
         mark_later(&mut found, &meetings, &sweep, &candidates, body, fast);
@@ -328,8 +349,8 @@ fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> usize {
 }
 
 /// The search for pairs that meet in the step.
-struct Prediction<'a, S: Space> {
-    network: &'a mut Network<S>,
+struct Search<'a, S: Space> {
+    network: &'a Network<S>,
     sweep: &'a Sweep<'a, S>,
     laws: &'a LawTable,
     /// Displacement of each body in the step (m).
@@ -337,11 +358,23 @@ struct Prediction<'a, S: Space> {
     /// Whether a surface moves by rotation.
     turning: bool,
     stage: Stage,
-    found: Vec<Contact<S>>,
-    meetings: Vec<PredictedMeeting>,
 }
 
-impl<'a, S: Space> Prediction<'a, S> {
+/// A pair that meets in the step.
+struct Meeting<S: Space> {
+    names: (u32, u32),
+    bodies: [u32; 2],
+    /// Fraction of the step after which it meets; `None` if it cannot be followed.
+    at: Option<f64>,
+    /// Largest relative displacement of two of its points in the step (m).
+    travel: f64,
+    /// Its contacts there.
+    contacts: Vec<Contact<S>>,
+    /// Whether it is reported as passing.
+    passing: bool,
+}
+
+impl<'a, S: Space> Search<'a, S> {
     /// Returns the pair with these keys if its relative motion in the step is fast.
     fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
         let turns = self.turning && names.1 & Key::SURFACE != 0;
@@ -366,38 +399,35 @@ impl<'a, S: Space> Prediction<'a, S> {
         }
     }
 
-    /// Follows a pair through the step: adds its contacts if it meets, or reports it.
-    fn follow(&mut self, names: (u32, u32), pair: &Pair<S>) {
+    /// Follows a pair through the step, if its relative motion is fast: its contacts if it meets, or that it is to be reported.
+    fn examine(&self, names: (u32, u32)) -> Option<Meeting<S>> {
+        let pair = &self.fast_pair(names)?;
         let sweep = self.sweep;
         let [one, other] = pair.materials();
         let law = self.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
-        let Some(margin) = margin(self.network, names, pair, self.stage, compliant) else {
-            return;
-        };
+        let margin = margin(self.network, names, pair, self.stage, compliant)?;
         if sweep.course(pair, margin.deepest) == Course::Clear {
-            return;
+            return None;
         }
-        let step_size = &mut self.network.step_size;
-        if self.stage == Stage::Report {
-            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
-            return;
+        let mut meeting = Meeting {
+            names,
+            bodies: pair.bodies(),
+            at: None,
+            travel: pair.travel,
+            contacts: Vec::new(),
+            passing: self.stage == Stage::Report,
+        };
+        if meeting.passing {
+            return Some(meeting);
         }
-        let known = self.found.len();
         if let (Course::Meets(s), Some(law)) = (sweep.course(pair, margin.begins), law) {
-            sweep.contacts(pair, s, law, &mut self.found);
-            self.meetings.push(PredictedMeeting {
-                names,
-                bodies: pair.bodies(),
-                at: s,
-                travel: pair.travel,
-                contacts: known..self.found.len(),
-            });
+            meeting.at = Some(s);
+            sweep.contacts(pair, s, law, &mut meeting.contacts);
         }
-        if self.found.len() == known && self.stage == Stage::After {
-            // The pair cannot be followed, or cannot be held at the point of meeting.
-            step_size.record_passing(sweep.time, sweep.bodies, pair.bodies());
-        }
+        // A pair that cannot be followed, or cannot be held at the point of meeting, is reported.
+        meeting.passing = meeting.contacts.is_empty() && self.stage == Stage::After;
+        Some(meeting)
     }
 }
 

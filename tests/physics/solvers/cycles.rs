@@ -1,0 +1,91 @@
+//! The smallest problems on which sweeps over rigid contacts never end, and what ends them: a disk that spins between walls.
+//!
+//! A sweep solves one contact after the other. A contact that sticks projects the velocity orthogonally, one that slides along
+//! (1, mu) against its normal, which lengthens it by up to 1/cos(delta), tan(delta) = mu. If all n walls slide, whose contact lines
+//! are pi/n apart, a sweep multiplies the velocity by (cos(pi/n - delta)/cos(delta))^n: above one for mu > tan(pi/(2n)).
+
+use fretwork::solve::local::solver::{Limits, Method, Outcome, solve};
+use fretwork::solve::local::{Csr, LocalProblem};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+
+/// A disk of mass 1, radius 1 and inertia 1/2 between walls whose normals have these angles (rad), with this free velocity
+/// (m/s, rad/s); `compliance` on the diagonal of W.
+fn pit(angles: &[f64], velocity: [f64; 3], mu: f64, compliance: f64) -> LocalProblem {
+    let rows = angles.iter().flat_map(|a| {
+        let (s, c) = a.sin_cos();
+        [c, s, 0.0, -s, c, -1.0]
+    });
+    let h = DMatrix::from_row_iterator(2 * angles.len(), 3, rows);
+    let inverse_mass = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 1.0, 2.0]));
+    let n = 2 * angles.len();
+    let w = &h * inverse_mass * h.transpose() + DMatrix::identity(n, n) * compliance;
+    let entries: Vec<_> = (0..n * n)
+        .map(|k| ((k / n) as u32, (k % n) as u32, w[(k / n, k % n)]))
+        .collect();
+    LocalProblem {
+        dimension: 2,
+        w: Csr::from_triplets(n, n, &entries),
+        q: (&h * DVector::from_row_slice(&velocity))
+            .as_slice()
+            .to_vec(),
+        mu: vec![mu; angles.len()],
+    }
+}
+
+/// Floor and wall.
+fn corner(mu: f64, compliance: f64) -> LocalProblem {
+    pit(&[0.5 * PI, 0.0], [0.0, -1.0, 10.0], mu, compliance)
+}
+
+/// Five walls all around, in an order that cycles; most orders do not.
+fn five(mu: f64) -> LocalProblem {
+    let angles = [0.0, 144.0, 108.0, 72.0, 36.0f64].map(f64::to_radians);
+    pit(&angles, [0.0, -1.0, 10.0], mu, 0.0)
+}
+
+fn by(method: Method, problem: &LocalProblem) -> Outcome {
+    let limits = Limits {
+        tolerance: 1e-8,
+        scale_free: None,
+        max_iterations: 10_000,
+        seconds: 20.0,
+    };
+    solve(problem, method, &limits)
+}
+
+/// Two contacts: all slide for mu = 1.2 > tan(pi/4), and p = (1, mu, mu, mu^2)/(1 + mu^2) solves the problem.
+#[test]
+fn a_disk_that_spins_in_a_corner_is_not_solved_by_sweeps() {
+    let problem = corner(1.2, 0.0);
+    for method in [Method::Nlgs, Method::NlgsSymmetric, Method::Pg, Method::Cpg] {
+        let outcome = by(method, &problem);
+        assert!(
+            !outcome.converged && outcome.error > 1e-2,
+            "{}: {:e}",
+            method.name(),
+            outcome.error
+        );
+    }
+    for method in [
+        Method::Anderson,
+        Method::Newton,
+        Method::Interior,
+        Method::Auto,
+    ] {
+        let outcome = by(method, &problem);
+        assert!(outcome.converged, "{}: {:e}", method.name(), outcome.error);
+    }
+    // Below the threshold sweeps end, and above it where the contacts give way: all slide with mu/(1 + c) < 1.
+    assert!(by(Method::Nlgs, &corner(0.9, 0.0)).converged);
+    assert!(!by(Method::Nlgs, &corner(1.2, 0.19)).converged);
+    assert!(by(Method::Nlgs, &corner(1.2, 0.21)).converged);
+}
+
+/// Five contacts have the threshold tan(pi/10) = 0.325, that of the friction of grains.
+#[test]
+fn five_walls_cycle_at_the_friction_of_grains() {
+    assert!(by(Method::Nlgs, &five(0.32)).converged);
+    assert!(!by(Method::Nlgs, &five(0.33)).converged);
+    assert!(by(Method::Auto, &five(0.4)).converged);
+}
