@@ -65,7 +65,7 @@ pub const PRESETS: &[(&str, &str)] = &[
     ("correction", "position correction, 0 to 0.2"),
     (
         "accuracy",
-        "step and tolerance chosen by the run for 10 %, 3 % and 1 %",
+        "step and tolerance chosen by the run for 3 %, 1 %, 0.3 % and 0.1 %",
     ),
     ("grains", "half the grains of the first lattice or deposit"),
 ];
@@ -268,7 +268,7 @@ fn accuracy_levels(case: &Case) -> Choices {
         number: None,
     };
     let mut levels = vec![level("fixed", "accuracy=None".into())];
-    let shares = ["0.1", "0.03", "0.01"];
+    let shares = ["0.03", "0.01", "0.003", "0.001"];
     levels.extend(shares.map(|share| level(share, format!("accuracy={share}"))));
     // What the case asks for may be another result, within other bounds.
     let own = if case.accuracy.is_some() {

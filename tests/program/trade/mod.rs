@@ -1,6 +1,7 @@
 //! `fretwork trade` through the program: errors against a closed form, statistics recomputed from what the runs left, the
 //! frontier by its definition, resuming, the budget, interruption, and wrong input.
 
+mod accuracy;
 mod budget;
 mod errors;
 mod refusals;

@@ -1,0 +1,44 @@
+//! Runs that choose their step and tolerance, beside fixed ones.
+
+use super::{Folder, frontier_is_what_nothing_dominates, number, settings, study};
+
+/// A case that asks for nothing is its own fixed setting; a run that is asked for a tenth of a per cent refines its step until it is nearer to
+/// the reference of an eighth of the step.
+#[test]
+fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
+    let folder = Folder::new("accuracy");
+    let out = folder.out();
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
+    let found = study(&[
+        case,
+        "--set",
+        "time.step=1e-3",
+        "--set",
+        "solver.tolerance=1e-4",
+        "--knob",
+        "accuracy",
+        "--vary",
+        "time.step=1.25e-4,1e-3",
+        "--output",
+        "friction_coefficient=0.3%",
+        "--seeds",
+        "1",
+        "--budget",
+        "2m",
+        "--out",
+        &out,
+    ]);
+    let all = settings(&found);
+    let named = |name: &str| {
+        let found = all.iter().find(|s| s["setting"] == name);
+        found.unwrap_or_else(|| panic!("no {name} in {all:#?}"))
+    };
+    let error = |name: &str| number(named(name), "/outputs/friction_coefficient/error/mean").abs();
+    assert_eq!(
+        named("accuracy 0.001")["sets"],
+        serde_json::json!(["accuracy=0.001"])
+    );
+    let (own, chosen) = (error("the case's own"), error("accuracy 0.001"));
+    assert!(own > 0.005 && chosen < 0.5 * own, "{own} and {chosen}");
+    frontier_is_what_nothing_dominates(&found, "friction_coefficient");
+}
