@@ -15,6 +15,7 @@ mod compliant;
 mod extremes;
 mod library;
 mod masonry;
+mod midpoint;
 mod packing;
 mod peer_traps;
 mod periodic_cell;

@@ -1,0 +1,119 @@
+//! Damage coupled at the middle of a step: laws with internal variables, and bonds that turn.
+
+use fretwork::geometry::space::Dim2;
+use fretwork::scene::load;
+use fretwork::shipped::search_path;
+use std::path::Path;
+
+/// What is left of a bond: damage, internal variables, and the energy that it released (J/m).
+#[derive(Debug, PartialEq)]
+struct Left {
+    damage: f64,
+    variables: Vec<f64>,
+    released: f64,
+}
+
+/// The bond of the verification cases between disks of radius 1 m, whose upper one moves as given, after `steps` steps of 20 ms in all.
+fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
+    let mut sets = vec![
+        format!("bodies.1.dofs={dofs}"),
+        format!("time.step={:e}", 0.02 / f64::from(steps)),
+        "time.end=0.02".to_owned(),
+        format!("coupling={coupling}"),
+    ];
+    sets.extend(laws.iter().map(|l| format!("interfaces.grain.{l}")));
+    let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim2>(&search_path());
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    for _ in 0..steps {
+        s.step().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let memory = &s.state.network.memory[0];
+    assert_eq!(memory.bonds.len(), 1);
+    Left {
+        damage: memory.bonds[0].damage,
+        variables: memory.variables.iter().map(|v| v[0]).collect(),
+        released: s.state.energy.fracture,
+    }
+}
+
+/// Three pulls, each further than the one before.
+const PULLS: &str = "(x: Velocity(Constant(0.0)), rz: Fixed, y: Displacement(Table([(0.0, 0.0), (0.004, 6e-6), (0.008, 1e-6), (0.012, 7e-6), (0.016, 1e-6), (0.02, 8e-6)])))";
+
+/// Openings that are given leave nothing to the coupling: damage and internal variables are those of explicit coupling, to the last bit, so that a
+/// prediction leaves no trace in them.
+#[test]
+fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
+    let elastic = [
+        "cohesion=elastic-bond",
+        "parameters.cohesion={\"k_n\": 1e12, \"k_t\": 1e12}",
+    ];
+    let damaging = [
+        (
+            "nguyen",
+            "{\"strength\": 1e7, \"energy\": 5e2, \"length\": 2e-5}",
+        ),
+        (
+            "roe-siegmund",
+            "{\"strength\": 1e7, \"energy\": 5e2, \"length\": 4e-5, \"endurance\": 0.25}",
+        ),
+        (
+            "exponential-softening",
+            "{\"strength\": 1e6, \"energy\": 5.0}",
+        ),
+    ];
+    for (law, parameters) in damaging {
+        let [damage, parameters] = [
+            format!("damage={law}"),
+            format!("parameters.damage={parameters}"),
+        ];
+        let laws = [elastic[0], elastic[1], &damage, &parameters];
+        let [explicit, middle] = ["Explicit", "Midpoint"].map(|c| moved(PULLS, &laws, c, 1000));
+        assert!(
+            explicit.damage > 0.05 && explicit.damage < 1.0,
+            "{law}: {explicit:?}"
+        );
+        assert_eq!(
+            (middle.damage, &middle.variables),
+            (explicit.damage, &explicit.variables),
+            "{law}"
+        );
+        // What the bond released differs, by the first order of explicit coupling.
+        assert!(
+            middle.released != explicit.released && middle.released > 0.0,
+            "{law}: {middle:?}"
+        );
+    }
+}
+
+/// A pull with a turn: shear, tension and a bending moment of the same bond. What it releases converges with the second order of the
+/// step, that of explicit coupling with the first.
+#[test]
+fn what_a_turned_bond_releases_is_of_the_second_order() {
+    let dofs =
+        "(x: Velocity(Constant(1e-4)), y: Velocity(Constant(2e-4)), rz: Velocity(Constant(3e-4)))";
+    let laws = [
+        "cohesion=parallel-bond",
+        "parameters.cohesion={\"k_n\": 1e12, \"k_t\": 5e11, \"sigma_c\": 1e30, \"tau_c\": 1e30}",
+        "damage=exponential-softening",
+        "parameters.damage={\"strength\": 1e6, \"energy\": 10.0}",
+    ];
+    // Of second order to 1e-9 of it.
+    let exact = moved(dofs, &laws, "Midpoint", 20_000).released;
+    let error = |coupling: &str, steps: u32| {
+        let left = moved(dofs, &laws, coupling, steps);
+        assert!(left.damage > 0.3 && left.damage < 1.0, "{left:?}");
+        left.released / exact - 1.0
+    };
+    let steps = [200, 400, 800];
+    let [explicit, middle] = ["Explicit", "Midpoint"].map(|c| steps.map(|n| error(c, n)));
+    println!("{exact}: {explicit:?} and {middle:?}");
+    assert!(
+        (explicit[0] / explicit[2] - 4.0).abs() < 0.2,
+        "{explicit:?}"
+    );
+    // The onset of damage lies somewhere in a step, so that single ratios scatter about four.
+    assert!(middle[0] / middle[2] > 10.0, "{middle:?}");
+    assert!(middle[2].abs() < 0.02 * explicit[2].abs(), "{middle:?}");
+}
