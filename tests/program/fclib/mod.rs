@@ -126,7 +126,7 @@ fn every_shared_file_comes_back_as_it_was_read() {
         assert_eq!(fclib::read(&out.0).unwrap(), problem, "{}", path.display());
         count += 1;
     }
-    assert_eq!(count, 7);
+    assert_eq!(count, 8);
 }
 
 #[test]
