@@ -64,6 +64,7 @@ fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
         ),
     ];
     for (law, parameters) in damaging {
+        let remembers = law != "exponential-softening";
         let [damage, parameters] = [
             format!("damage={law}"),
             format!("parameters.damage={parameters}"),
@@ -74,6 +75,7 @@ fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
             explicit.damage > 0.05 && explicit.damage < 1.0,
             "{law}: {explicit:?}"
         );
+        assert_eq!(!explicit.variables.is_empty(), remembers, "{law}");
         assert_eq!(
             (middle.damage, &middle.variables),
             (explicit.damage, &explicit.variables),

@@ -24,7 +24,7 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
         "--seeds",
         "1",
         "--budget",
-        "2m",
+        "10m",
         "--out",
         &out,
     ]);
@@ -38,6 +38,9 @@ fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
         named("accuracy 0.001")["sets"],
         serde_json::json!(["accuracy=0.001"])
     );
+    for share in ["0.03", "0.01", "0.003"] {
+        assert!(named(&format!("accuracy {share}"))["failed"].is_null());
+    }
     let (own, chosen) = (error("the case's own"), error("accuracy 0.001"));
     assert!(own > 0.005 && chosen < 0.5 * own, "{own} and {chosen}");
     frontier_is_what_nothing_dominates(&found, "friction_coefficient");

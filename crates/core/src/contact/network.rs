@@ -221,14 +221,16 @@ impl<S: Space> Network<S> {
         self.contacts.iter().all(|c| c.bodies.iter().all(below))
     }
 
-    /// Returns whether its contacts and their memory are those of interfaces with these numbers of internal variables.
+    /// Returns whether its contacts and their memory are those of interfaces with these numbers of internal variables, and in order.
     pub(crate) fn fits_interfaces(&self, mut variables: impl Iterator<Item = usize>) -> bool {
         let memory_fits = |m: &Memory<S>| variables.next() == Some(m.variables.len());
         let in_range = |c: &Contact<S>| {
             let memory = self.memory.get(c.law as usize);
             memory.is_some_and(|m| c.memory().is_none_or(|slot| slot < m.bonds.len()))
         };
-        self.memory.iter().all(memory_fits) && self.contacts.iter().all(in_range)
+        // Detection searches them by pair.
+        let sorted = self.contacts.is_sorted_by_key(|c| c.key.pair());
+        sorted && self.memory.iter().all(memory_fits) && self.contacts.iter().all(in_range)
     }
 
     /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs has

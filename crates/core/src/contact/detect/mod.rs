@@ -28,6 +28,8 @@ use rayon::prelude::*;
 const SLACK: f64 = 0.01;
 /// Pairs per task.
 const CHUNK: usize = 256;
+/// Tasks whose contact points are kept at a time: a few megabytes.
+const BATCH: usize = 128;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
@@ -94,10 +96,12 @@ pub fn detect<S: Space>(
     let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
     // What the points of a pair depend on is not changed by other pairs, so that they are found first.
     if parallel {
-        let chunks = candidates.par_chunks(CHUNK);
-        let found: Vec<_> = chunks.map(|c| narrow.find_points(network, c)).collect();
-        for (pairs, found) in candidates.chunks(CHUNK).zip(&found) {
-            narrow.update_contacts(network, pairs, found);
+        for batch in candidates.chunks(BATCH * CHUNK) {
+            let chunks = batch.par_chunks(CHUNK);
+            let found: Vec<_> = chunks.map(|c| narrow.find_points(network, c)).collect();
+            for (pairs, found) in batch.chunks(CHUNK).zip(&found) {
+                narrow.update_contacts(network, pairs, found);
+            }
         }
     } else {
         for pairs in candidates.chunks(CHUNK) {
