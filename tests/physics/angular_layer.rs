@@ -102,7 +102,9 @@ fn threads_do_not_change_a_bit_of_a_layer_of_polygons() {
         s.options.solver.parallel = threads > 1;
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap().install(|| {
-            (0..120).for_each(|_| drop(s.step().unwrap()));
+            for _ in 0..120 {
+                s.step().unwrap();
+            }
         });
         let memory = &s.state.network.memory;
         assert!(s.state.network.contacts.len() > 512 && memory.iter().any(|m| m.broken > 0));
