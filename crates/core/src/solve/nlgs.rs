@@ -28,7 +28,7 @@ pub struct Options {
     pub accelerated: bool,
     /// Solution method.
     pub method: Method,
-    /// Whether colours are distributed over threads.
+    /// Whether the colours of an iteration, and the pairs of detection, are distributed over threads; the results are the same.
     pub parallel: bool,
 }
 
