@@ -7,6 +7,7 @@ use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
+use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
@@ -104,6 +105,7 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
         simulation: &s,
         table: &table,
         title: "test",
+        uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,
     };
     let drawn = write_outputs(&out, &observers.figures(&end));

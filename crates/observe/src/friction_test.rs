@@ -192,7 +192,8 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        figures::friction_test(end.title, end.table, &self.state.cycles, S::D)
+        let known = &end.uncertainty.friction_coefficient;
+        figures::friction_test(end.title, end.table, &self.state.cycles, known, S::D)
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

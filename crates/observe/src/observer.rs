@@ -7,7 +7,7 @@
 use super::output::Output;
 use super::picture::Picture;
 use super::statistics::{Column, Table};
-use super::summary::Summary;
+use super::summary::{Summary, Uncertainty};
 use fretwork_core::code::CodeError;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
@@ -23,6 +23,8 @@ pub struct RunEnd<'a, S: Space> {
     pub table: &'a Table,
     /// Title of the case.
     pub title: &'a str,
+    /// The main results with what is known of their error; of figures only: empty until all observers have summarised.
+    pub uncertainty: &'a Uncertainty,
     /// Time that the run took by the clock.
     pub wall: Duration,
 }

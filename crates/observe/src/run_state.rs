@@ -209,8 +209,8 @@ impl<S: Space> Observer<S> for RunState {
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         vec![
-            figures::damage_ratio(end.title, end.table),
-            figures::energy_balance(end.title, end.table, S::D),
+            figures::damage_ratio(end.title, end.table, &end.uncertainty.damage_ratio),
+            figures::energy_balance(end.title, end.table, &end.uncertainty.friction_energy, S::D),
         ]
     }
 

@@ -44,6 +44,7 @@ impl<S: Observed> Recorder<'_, S> {
             simulation: &self.simulation,
             table: &self.table,
             title: &self.loaded.case.name,
+            uncertainty: &self.summary.uncertainty,
             wall,
         }
     }

@@ -9,6 +9,7 @@ use fretwork::record::RunEnd;
 use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
+use fretwork::record::summary::Uncertainty;
 use fretwork::scene::measures::MeasureSpec;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
@@ -238,6 +239,7 @@ fn blocks_are_measured() {
         simulation: &s,
         table: &table,
         title: "",
+        uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,
     };
     write_outputs(&folder, &profile.figures(&end)).unwrap();

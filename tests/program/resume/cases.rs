@@ -26,10 +26,11 @@ fn fretting_with_damage_in_the_plane() {
     let sets = [
         "grains.0.count=700",
         "time.step=1e-4",
-        "solver.tolerance=1e-4",
+        "solver.tolerance=1e-3",
         "time.end=0.056",
         "output.checkpoint=Steps(70)",
         "uncertainty.repeats=6",
+        "uncertainty.steps=2",
         "output.frames=3",
         "output.figures=false",
     ];
@@ -103,8 +104,8 @@ fn the_circuit() {
         "grains.0.count=300",
         "time.end=0.07",
         "output.checkpoint=Steps(150)",
-        "uncertainty.repeats=8",
-        "uncertainty.steps=3",
+        "uncertainty.repeats=5",
+        "uncertainty.steps=2",
         "output.frames=2",
         "output.fclib=30",
     ];
@@ -121,7 +122,7 @@ fn scars_and_jumps() {
     // A row of the statistics is begun before some checkpoints and ends after.
     let sets = [
         "output.checkpoint=Steps(300)",
-        "uncertainty.repeats=12",
+        "uncertainty.repeats=8",
         "output.frames=2",
         "output.every=40",
     ];

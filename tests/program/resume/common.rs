@@ -59,12 +59,20 @@ pub fn marked(path: &Path) -> bool {
 
 impl Job<'_> {
     pub fn command(&self, out: &Path, extra: &[&str]) -> Command {
+        // Repeated steps are most of the work of a short run: only of jobs that name them.
+        let repeats = self.sets.iter().any(|s| s.starts_with("uncertainty."));
+        let without: &[&str] = if repeats {
+            &[]
+        } else {
+            &["--set", "uncertainty.repeats=0"]
+        };
         let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
         command
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .args(["run", &format!("cases/{}.ron", self.case), "--out"])
             .arg(out)
             .args(self.sets.iter().flat_map(|s| ["--set", s]))
+            .args(without)
             .args(extra)
             .stdin(Stdio::null());
         command

@@ -2,13 +2,16 @@
 
 pub(crate) mod biaxial;
 pub(crate) mod circuit;
+mod error;
 pub(crate) mod jump;
 pub(crate) mod scars;
 
+use self::error::{error_bar, estimated};
 use crate::chart::{Axis, Chart, Series, Style, quantity};
 use crate::friction::{Cycle, Cycles};
 use crate::output::Output;
 use crate::statistics::Table;
+use crate::summary::Estimate;
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -58,8 +61,10 @@ fn newton(dimension: usize) -> &'static str {
 }
 
 /// Broken bonds and mean damage against time.
-pub(crate) fn damage_ratio(title: &str, table: &Table) -> Output {
-    Output::charts("damage_ratio.png".into(), [damage(title, table)], 1)
+pub(crate) fn damage_ratio(title: &str, table: &Table, known: &Estimate) -> Output {
+    let mut chart = damage(title, table);
+    estimated(&mut chart, "damage ratio", known, "");
+    Output::charts("damage_ratio.png".into(), [chart], 1)
 }
 
 /// The loops of a fretting test, and its friction coefficient.
@@ -67,6 +72,7 @@ pub(crate) fn friction_test(
     title: &str,
     table: &Table,
     cycles: &Cycles,
+    known: &Estimate,
     dimension: usize,
 ) -> Vec<Output> {
     let mut out = Vec::new();
@@ -74,7 +80,9 @@ pub(crate) fn friction_test(
         let panels = loops(title, table, cycles, newton(dimension));
         out.push(Output::charts("fretting_loops.png".into(), panels, 2));
     }
-    let chart = friction(title, table, cycles);
+    let mut chart = friction(title, table, cycles);
+    estimated(&mut chart, "friction coefficient", known, "");
+    chart = chart.with_unless_zero(error_bar(cycles, known));
     out.push(Output::charts(
         "friction_coefficient.png".into(),
         [chart],
@@ -95,8 +103,16 @@ pub(crate) fn force_displacement(
 }
 
 /// The energy balance against time.
-pub(crate) fn energy_balance(title: &str, table: &Table, dimension: usize) -> Output {
-    Output::charts("energy.png".into(), [energy(title, table, dimension)], 1)
+pub(crate) fn energy_balance(
+    title: &str,
+    table: &Table,
+    known: &Estimate,
+    dimension: usize,
+) -> Output {
+    let mut chart = energy(title, table, dimension);
+    let unit = if dimension == 2 { "J/m" } else { "J" };
+    estimated(&mut chart, "friction", known, unit);
+    Output::charts("energy.png".into(), [chart], 1)
 }
 
 /// Pairs (x, y) of two columns.
@@ -458,11 +474,13 @@ mod tests {
         }];
         let shown = |table: &Table, cycles: Option<&Cycles>| -> Vec<String> {
             let mut all = vec![
-                damage_ratio("case", table),
+                damage_ratio("case", table, &Estimate::default()),
                 force_displacement("case", table, &lid, 2),
-                energy_balance("case", table, 2),
+                energy_balance("case", table, &Estimate::default(), 2),
             ];
-            all.extend(cycles.map_or(Vec::new(), |c| friction_test("case", table, c, 2)));
+            all.extend(cycles.map_or(Vec::new(), |c| {
+                friction_test("case", table, c, &Estimate::default(), 2)
+            }));
             let file = |output: Output| match output {
                 Output::Charts { file, charts, .. } if charts.iter().any(Chart::has_data) => {
                     Some(file)
