@@ -27,7 +27,15 @@ fn summary(case: &str, sets: &[String]) -> Summary {
         env!("CARGO_MANIFEST_DIR")
     );
     let mut sets = sets.to_vec();
-    sets.extend(["output.frames=0", "output.views=0", "output.figures=false"].map(String::from));
+    sets.extend(
+        [
+            "output.frames=0",
+            "output.views=0",
+            "output.figures=false",
+            "uncertainty.repeats=0",
+        ]
+        .map(String::from),
+    );
     let loaded = fretwork::scene::load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
         .build_in::<Dim2>(&search_path())

@@ -386,7 +386,12 @@ fn stresses_of_the_bins_add_up() {
 
 fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let path = format!("{}/cases/wheel_rail_rigid.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let without = ["uncertainty.repeats=0"];
+    let sets: Vec<String> = sets
+        .iter()
+        .chain(&without)
+        .map(|s| (*s).to_owned())
+        .collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built: Built<Dim2> = loaded
         .build_in(&SearchPath::new(&[]))

@@ -24,6 +24,7 @@ fn ledger(table: &mut Table) {
     let sets = [
         "output.frames=0".to_owned(),
         "output.figures=false".to_owned(),
+        "uncertainty.repeats=0".to_owned(),
     ];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded

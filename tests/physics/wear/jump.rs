@@ -13,6 +13,7 @@ fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
     let mut all = vec![
         "output.figures=false".to_owned(),
         "output.frames=0".to_owned(),
+        "uncertainty.repeats=0".to_owned(),
     ];
     all.extend(sets.iter().map(|s| (*s).to_owned()));
     let loaded = load(&path, &all).unwrap_or_else(|e| panic!("{e}"));

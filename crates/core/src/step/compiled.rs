@@ -5,6 +5,7 @@ use super::fields::Fields;
 use super::{Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Dim2, Dim3, Space};
+use crate::solve::{AutoState, ContactForm, MomentForm, Options, Problem, Report, solve};
 
 /// A simulation whose dimension is known: other crates compile what they do with it once for each of the two.
 #[derive(Debug)]
@@ -24,6 +25,14 @@ pub trait Steps: Space {
     fn step(simulation: &mut Simulation<Self>) -> Result<StepReport, StepError>;
     /// Detects the contacts at the current positions, without an alert distance.
     fn detect(simulation: &mut Simulation<Self>);
+    /// Solves a contact problem, as a step does; see [`crate::solve::solve`].
+    fn solve(
+        problem: &mut Problem<Self>,
+        forms: &[ContactForm<Self>],
+        moments: &[MomentForm<Self>],
+        options: &Options,
+        auto_state: &mut AutoState,
+    ) -> Report;
     /// The fields that every simulation has.
     fn fields() -> Fields<Self>;
     /// The simulation, of known dimension.
@@ -36,6 +45,15 @@ impl Steps for Dim2 {
     }
     fn detect(simulation: &mut Simulation<Self>) {
         touching(simulation);
+    }
+    fn solve(
+        problem: &mut Problem<Self>,
+        forms: &[ContactForm<Self>],
+        moments: &[MomentForm<Self>],
+        options: &Options,
+        auto_state: &mut AutoState,
+    ) -> Report {
+        solve(problem, forms, moments, options, auto_state)
     }
     fn fields() -> Fields<Self> {
         Fields::default()
@@ -51,6 +69,15 @@ impl Steps for Dim3 {
     }
     fn detect(simulation: &mut Simulation<Self>) {
         touching(simulation);
+    }
+    fn solve(
+        problem: &mut Problem<Self>,
+        forms: &[ContactForm<Self>],
+        moments: &[MomentForm<Self>],
+        options: &Options,
+        auto_state: &mut AutoState,
+    ) -> Report {
+        solve(problem, forms, moments, options, auto_state)
     }
     fn fields() -> Fields<Self> {
         Fields::default()
