@@ -39,6 +39,10 @@ with() {
                 --set output.views=0 --set output.figures=false "${options[@]}" >"$name.log" 2>&1 && touch "$name/finished"
             rm -f "$name"/*.h5 "$name"/*.vtkhdf
         fi
+        if [ ! -e "$name/finished" ]; then
+            echo "$case $setting $seed did not finish: $name.log" >&2
+            continue
+        fi
         # shellcheck disable=SC2086
         python3 docs/sensitivity.py row "$name" $outputs
     done
@@ -94,7 +98,7 @@ if case_is voronoi_block_3d "3 4 5" "statistics.left_fx:max energy.fracture brok
     explicit
 fi
 if case_is regime_map "19 20 21" "friction_coefficient broken $released $correction"; then
-    settings 2e-4 1e-3 2e-4
+    settings 1e-4 1e-3 2e-4
     explicit
     window_of_disks 800 0.004 0.226
 fi
@@ -117,7 +121,7 @@ if case_is wheel_rail_degradable "7 8" "friction_coefficient plateau_friction da
         rail_oxide:1.05e11:8.25e10 wheel_oxide:1.05e11:8.25e10 wheel_metal:1.05e11:1.05e11)
 fi
 if case_is third_body_steady "5 6" "friction_coefficient broken energy.friction $released" --set time.end=0.11; then
-    settings 2e-5 0.5 2e-7
+    settings 1e-5 0.5 2e-7
     with inertia --set inertia_scaling=2e6
     # shellcheck disable=SC2046
     with soft $(half_moduli rail_metal:8.25e10:8.25e10 rail_base:1.05e11:8.25e10 face:1.05e11:8.25e10 press:1.05e11:8.25e10)
@@ -153,7 +157,7 @@ if case_is shear_cell_3d "2 3 4" "friction_coefficient energy.friction wear.volu
 fi
 if case_is collapse "5 6 7" "statistics.beyond:last energy.friction energy.potential" \
     --set 'measures=[Mass(name: "beyond", axis: 0, above: 0.28)]'; then
-    settings 5e-4 5e-4 1.5e-4
+    settings 2.5e-4 5e-4 1.5e-4
 fi
 if case_is biaxial "11 12" "biaxial.peak_ratio $correction" --set grains.0.count=500 --set "bodies.right.position=[0.26, 0]" \
     --set "bodies.top.position=[0, 0.265]" --set "grains.0.high=[0.26, 0.265]"; then
