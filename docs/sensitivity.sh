@@ -178,16 +178,16 @@ fi
 if case_is newton_cradle "0" "energy.kinetic"; then
     settings 1e-4 1e-12 1e-3
 fi
-if case_is painleve_rod "0" "energy.kinetic energy.friction energy.impact"; then
+if case_is painleve_rod "0" "energy.kinetic energy.friction"; then
     settings 1e-4 1e-10 1e-3
 fi
-if case_is block_tower "0" "energy.potential statistics.ground_fy:last"; then
+if case_is block_tower "0" "statistics.ground_fy:last"; then
     settings 1e-3 1e-10 1e-3
 fi
-if case_is block_wall "0" "energy.potential statistics.table_fy:last"; then
+if case_is block_wall "0" "statistics.table_fy:last"; then
     settings 1e-3 1e-6 1e-3
 fi
-if case_is masonry_arch "0" "energy.potential statistics.ground_fy:last"; then
+if case_is masonry_arch "0" "statistics.ground_fy:last"; then
     settings 1e-3 1e-8 8e-3
 fi
 
