@@ -68,12 +68,8 @@ angular() {
     for seed in ${SEEDS:-7 8 9 10 11 12 13 14 15 16}; do
         run angular base "$seed" $case --set time.end=0.075
         run angular fine "$seed" $case --set time.end=0.075 --set time.step=6.25e-6 --set solver.tolerance=0.005
-    done
-    for seed in ${SEEDS:-7 8 9 10 11 12}; do
         run angular alert-twice "$seed" $case --set time.end=0.075 --set detection.alert=4e-7
         run angular inertia-tenth "$seed" $case --set time.end=0.075 --set inertia_scaling=5.8e7
-    done
-    for seed in ${SEEDS:-7 8 9 10 11}; do
         run angular window-twice "$seed" $case --set time.end=0.075 "${wide[@]}"
     done
     for seed in ${SEEDS:-7 8 9}; do

@@ -102,6 +102,7 @@ fn phases_and_measures() {
 fn the_circuit() {
     let sets = [
         "grains.0.count=300",
+        "time.step=2e-5",
         "time.end=0.07",
         "output.checkpoint=Steps(150)",
         "uncertainty.repeats=5",
@@ -113,7 +114,7 @@ fn the_circuit() {
         case: "third_body_steady",
         sets: &sets,
     };
-    resumes("circuit", job, &[9]);
+    resumes("circuit", job, &[14]);
 }
 
 /// A profile that wears, and jumps over cycles.
@@ -131,7 +132,11 @@ fn scars_and_jumps() {
         sets: &sets,
     };
     resumes("jumps", job, &[5]);
-    let sets = ["time.end=0.2", "output.checkpoint=Steps(300)"];
+    let sets = [
+        "time.step=5e-5",
+        "time.end=0.2",
+        "output.checkpoint=Steps(300)",
+    ];
     let job = Job {
         case: "punch_scar",
         sets: &sets,

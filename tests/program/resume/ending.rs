@@ -88,7 +88,12 @@ fn a_run_that_missed_the_tolerance_says_so_first() {
 fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
     let job = Job {
         case: CASE,
-        sets: &["time.end=0.2", "output.frames=0", "output.figures=false"],
+        sets: &[
+            "time.end=0.2",
+            "output.frames=0",
+            "output.figures=false",
+            "uncertainty.repeats=3",
+        ],
     };
     let out = Folder::new("ending-interval");
     let text = job.done(&out.0, &[]);

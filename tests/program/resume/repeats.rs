@@ -77,7 +77,7 @@ fn a_phase_that_begins_in_a_repeated_step_has_not_begun() {
 #[test]
 fn a_run_with_repeated_steps_has_the_same_statistics() {
     let fretting: &[&str] = &["grains.0.count=300", "time.step=1e-4", "time.end=0.056"];
-    let circuit: &[&str] = &["grains.0.count=200", "time.end=0.055"];
+    let circuit: &[&str] = &["grains.0.count=200", "time.step=2e-5", "time.end=0.055"];
     let drum: &[&str] = &["grains.0.count=60", "time.end=0.3", "measures=[]"];
     for (case, sets) in [
         ("wheel_rail_rigid", fretting),

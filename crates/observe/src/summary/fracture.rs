@@ -12,6 +12,9 @@ pub const WRONG_ENERGY: f64 = 0.05;
 pub const AT_ONCE: f64 = 0.1;
 /// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at once however small the step.
 const BRITTLE: f64 = 1.05;
+/// Slide over critical opening, in the steps in which they break, from which brittle bonds count as not resolved: the step, not the law, then
+/// decides which of several breaks.
+const OVERSHOOT: f64 = 0.2;
 /// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`: with damage at its start or end, and
 /// with damage at its middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
@@ -175,7 +178,10 @@ impl BondEnergies {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
         let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
         let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
-        if wrong.is_none() && at_once.is_none() {
+        let beyond = self
+            .slide_breaking
+            .filter(|s| self.brittle() && *s > OVERSHOOT);
+        if wrong.is_none() && at_once.is_none() && beyond.is_none() {
             return None;
         }
         let mut text = format!("the {} broken bonds of `{}`", self.broken, self.interface);
@@ -186,12 +192,47 @@ impl BondEnergies {
             let and = if ratio.is_some() { ", and" } else { "," };
             text += &format!("{and} {:.0} % of them broke within one step", 100.0 * share);
         }
-        if let Some(slide) = self.slide_breaking {
+        if let Some(slide) = beyond {
+            let and = if ratio.is_some() { ", and" } else { "," };
+            text += &format!(
+                "{and} which break at their peak, slid by {} of their opening at break in the step in which they broke: how many break depends on \
+                 the step",
+                number(slide, 2)
+            );
+        } else if let Some(slide) = self.slide_breaking {
             text += &format!(
                 " (they slide by {} of their critical opening in the steps in which they release energy)",
                 number(slide, 2)
             );
         }
         Some(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn brittle(slide: f64) -> FractureSummary {
+        let bonds = BondEnergies {
+            interface: "grains".to_owned(),
+            broken: 10,
+            critical_opening: Some(2e-6),
+            peak_opening: Some(2e-6),
+            slide_breaking: Some(slide),
+            ..BondEnergies::default()
+        };
+        FractureSummary::new(vec![bonds], false, &Options::default())
+    }
+
+    #[test]
+    fn brittle_bonds_that_are_overtaken_by_the_step_are_reported() {
+        assert_eq!(brittle(0.1).warning(), None);
+        let told = brittle(1.6).warning().unwrap_or_default();
+        assert!(
+            told.contains("10 broken bonds of `grains`, which break at their peak, slid by 1.6"),
+            "{told}"
+        );
+        assert!(told.contains("would let them slide by 7 %"), "{told}");
     }
 }
