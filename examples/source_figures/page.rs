@@ -40,7 +40,7 @@ pub fn page(singles: &[Single], quasi: &[Run], dynamic: &[Run], samples: &Sample
     );
     process(
         &mut out,
-        "Dynamic: [collapse of a column](../cases/collapse.ron), 400 grains",
+        "Dynamic: [collapse of a column](../cases/collapse.ron), 400 grains, steps of 0.5 ms",
         "solver_dynamic",
         "the grains fall, rest as a column, and collapse from 0.5 s on; below, kinetic energy and final surface",
         dynamic,
