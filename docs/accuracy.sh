@@ -4,7 +4,7 @@
 # Prints a line a run: group, setting, seed, friction coefficient, plateau Q/P, damage ratio, position correction (J/m), external work (J/m),
 # energy released by broken bonds over what their laws take, seconds of processor time.
 # Usage: docs/accuracy.sh [FOLDER [GROUP...]], from the root of the repository, after `cargo build --release`; needs python3; disks take ten minutes on two
-# cores, angular two hours. SEEDS="7 8" takes other seeds than each group's own.
+# cores, angular two and a half hours of one. SEEDS="7 8" takes other seeds than each group's own.
 set -eu
 out="${1:-results/accuracy}"
 shift || true

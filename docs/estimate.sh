@@ -30,9 +30,9 @@ study() {
 }
 
 first() {
-    study regime_map 5e-5 1e-5
+    study regime_map 2.5e-5 1e-5
     study shear_cell_3d 2.5e-5 1e-6 --set time.end=0.1
-    study punch_scar 1.25e-5 1e-8
+    study punch_scar 6.25e-6 1e-8
 }
 second() {
     study fretting_scar 2.5e-5 1e-10

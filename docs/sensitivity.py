@@ -3,7 +3,7 @@
 Usage: python3 docs/sensitivity.py row FOLDER OUTPUT...    a line of a run; its results are kept in FOLDER.tsv
        python3 docs/sensitivity.py table FOLDER            all such lines of a folder, as changes from `base`
 
-An output is a path in summary.json (`scars.0.depth`), a column of statistics.csv (`statistics.wall_fx:max`, `:last`), or a ratio of two.
+An output is a path in summary.json (`scars.0.depth`), a column of statistics.csv (`statistics.wall_fx:max`, or `:last`, the last row), or a ratio of two.
 """
 
 import csv

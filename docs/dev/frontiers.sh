@@ -15,8 +15,8 @@ study() {
     $program trade "cases/$name.ron" --out "$out/$name" --budget "${BUDGET:-60m}" "$@" | tee "$out/$name.txt"
 }
 wanted="$*"
-study collapse --seeds 10 --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
-study regime_map --seeds 10 --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output friction_coefficient=5%
+study collapse --seeds 10 --vary time.step=1.25e-4,2.5e-4,5e-4,1e-3 --vary solver.tolerance=5e-5,5e-4,5e-3 --output energy.friction=2%
+study regime_map --seeds 10 --vary time.step=5e-5,1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 --output friction_coefficient=5%
 study shear_cell_3d --seeds 10 --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%
 study plane_shear --seeds 10 --vary time.step=1e-4,2e-4,4e-4 --vary solver.tolerance=1e-4,1e-3,1e-2 \
     --output measures.bulk_mu=3% --output measures.bulk_phi=1%
@@ -33,7 +33,7 @@ study rotating_drum_3d --vary time.step=5e-4,1e-3,2e-3 --vary solver.tolerance=1
 study fault_propagation --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-4,1e-3,1e-2 --output damage_ratio=5%
 study voronoi_block_3d --vary time.step=1e-6,2e-6,4e-6 --vary solver.tolerance=1e-5,1e-4,1e-3 --output statistics.left_fx:max=2%
 study fretting_scar --vary time.step=5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.depth=2%
-study punch_scar --seeds 10 --vary time.step=2.5e-5,5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.middle=5%
+study punch_scar --seeds 10 --vary time.step=1.25e-5,2.5e-5,5e-5,1e-4,2e-4 --vary solver.tolerance=1e-8,1e-6,1e-4 --output scars.0.middle=5%
 study fretting_wear_jump --vary time.step=2.5e-4,5e-4,1e-3 --vary solver.tolerance=1e-6,1e-5,1e-4 --output scars.0.depth=4%
 study biaxial --vary time.step=2e-4,4e-4,8e-4 --vary solver.tolerance=5e-5,5e-4,5e-3 --output biaxial.peak_ratio=5%
-study third_body_steady --vary time.step=2e-5,4e-5,8e-5 --vary solver.tolerance=1e-5,1e-4,1e-3 --output friction_coefficient=5%
+study third_body_steady --vary time.step=5e-6,1e-5,2e-5 --vary solver.tolerance=5e-3,5e-2,0.5 --output friction_coefficient=5%

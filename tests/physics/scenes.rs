@@ -20,9 +20,9 @@ fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
 fn case_in<S: Dimensional>(name: &str, sets: &[&str]) -> (Loaded, Built<S>) {
     let path = format!("{}/cases/{name}.ron", env!("CARGO_MANIFEST_DIR"));
     let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = sets
+    let sets: Vec<String> = without
         .iter()
-        .chain(&without)
+        .chain(sets)
         .map(|s| (*s).to_owned())
         .collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));

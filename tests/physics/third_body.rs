@@ -387,9 +387,9 @@ fn stresses_of_the_bins_add_up() {
 fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let path = format!("{}/cases/wheel_rail_rigid.ron", env!("CARGO_MANIFEST_DIR"));
     let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = sets
+    let sets: Vec<String> = without
         .iter()
-        .chain(&without)
+        .chain(sets)
         .map(|s| (*s).to_owned())
         .collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));

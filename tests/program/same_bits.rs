@@ -138,7 +138,7 @@ fn contacts_in_another_order_give_the_same_sums() {
         ("plane_shear", 600),
         ("wheel_rail_rigid", 300),
         ("shear_cell_3d", 300),
-        ("collapse", 600),
+        ("collapse", 1200),
     ] {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));

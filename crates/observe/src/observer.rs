@@ -23,7 +23,7 @@ pub struct RunEnd<'a, S: Space> {
     pub table: &'a Table,
     /// Title of the case.
     pub title: &'a str,
-    /// The main results with what is known of their error; of figures only: empty until all observers have summarised.
+    /// The main results with what is known of their error. Filled only when files and figures are written.
     pub uncertainty: &'a Uncertainty,
     /// Time that the run took by the clock.
     pub wall: Duration,

@@ -165,7 +165,7 @@ fn a_fifth_slot_that_watches_changes_no_bit() {
         ("verification/healing", 200),
         ("verification/bond_fatigue", 100),
         ("verification/slide_to_stop", 200),
-        ("collapse", 60),
+        ("collapse", 120),
     ];
     path();
     for (name, steps) in interfaces {

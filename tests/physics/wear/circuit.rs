@@ -14,9 +14,9 @@ fn folder(name: &str) -> PathBuf {
 fn summary(case: &str, sets: &[&str]) -> Summary {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = sets
+    let sets: Vec<String> = without
         .iter()
-        .chain(&without)
+        .chain(sets)
         .map(|s| (*s).to_owned())
         .collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));

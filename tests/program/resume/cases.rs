@@ -84,6 +84,8 @@ fn phases_and_measures() {
         "phases.0.until=AtRest(share: 1e-3, held: 0.03, at_most: 0.3)",
         "measures.0.start=0.4",
         "measures.1.start=0.4",
+        // The number of places is the default one.
+        "uncertainty.steps=1",
         "output.layers=Some(0.01)",
         "output.shear=Some(1.0)",
         "output.checkpoint=Steps(100)",
@@ -114,7 +116,8 @@ fn the_circuit() {
         case: "third_body_steady",
         sets: &sets,
     };
-    resumes("circuit", job, &[14]);
+    // After the slider began to tear grains off at 0.05 s.
+    resumes("circuit", job, &[20]);
 }
 
 /// A profile that wears, and jumps over cycles.

@@ -30,7 +30,8 @@ pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
     let (Some(last), Some(value), true) = (last, known.value, cycles.oscillates()) else {
         return Series::default();
     };
-    let parts = [known.scatter, known.step, known.tolerance, known.coupling];
+    // That of the coupling is a part of that of the step.
+    let parts = [known.scatter, known.step, known.tolerance];
     let half: f64 = parts
         .into_iter()
         .flatten()
@@ -40,7 +41,7 @@ pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
         return Series::default();
     }
     let at = (f64::from(last.cycle), value);
-    Series::new("result ± all uncertainties", vec![at])
+    Series::new("result ± sum of the known half-widths", vec![at])
         .style(Style::Markers)
         .coloured(28, 30, 34)
         .intervals(vec![(value - half, value + half)])

@@ -82,7 +82,11 @@ pub(crate) fn friction_test(
     }
     let mut chart = friction(title, table, cycles);
     estimated(&mut chart, "friction coefficient", known, "");
-    chart = chart.with_unless_zero(error_bar(cycles, known));
+    let bar = error_bar(cycles, known);
+    if let (Some((_, top)), Some((_, end))) = (chart.y_range.as_mut(), bar.intervals.first()) {
+        *top = top.max(1.05 * end);
+    }
+    chart = chart.with_unless_zero(bar);
     out.push(Output::charts(
         "friction_coefficient.png".into(),
         [chart],
@@ -111,7 +115,7 @@ pub(crate) fn energy_balance(
 ) -> Output {
     let mut chart = energy(title, table, dimension);
     let unit = if dimension == 2 { "J/m" } else { "J" };
-    estimated(&mut chart, "friction", known, unit);
+    estimated(&mut chart, "energy dissipated by friction", known, unit);
     Output::charts("energy.png".into(), [chart], 1)
 }
 

@@ -131,9 +131,12 @@ impl FractureSummary {
         if texts.is_empty() {
             return None;
         }
+        let all_brittle = |b: &&BondEnergies| b.overshoot().is_some() || b.unresolved().is_none();
+        let brittle = self.interfaces.iter().filter(all_brittle).count() == self.interfaces.len();
         let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
         let slide = slides.fold(0.0, f64::max);
-        let [step, resolved] = self.step;
+        let [step, softening] = self.step;
+        let resolved = if brittle { OVERSHOOT } else { softening };
         let target = if slide > resolved {
             format!(
                 " ({:.0e} s would let them slide by {:.0} % of their critical opening in a step)",
@@ -143,8 +146,13 @@ impl FractureSummary {
         } else {
             String::new()
         };
+        let compare = if brittle {
+            "see whether their number changes"
+        } else {
+            "compare with `coupling: Explicit` and `Implicit(..)` at the same step, between which the energy lies"
+        };
         Some(format!(
-            "{}; take a smaller time.step{target}, and compare with `coupling: Explicit` and `Implicit(..)` at the same step, between which the energy lies",
+            "{}; take a smaller time.step{target}, and {compare}",
             texts.join("; ")
         ))
     }
@@ -174,17 +182,32 @@ impl BondEnergies {
         self.broken_at_once.filter(|_| !self.brittle())
     }
 
+    /// Slide in the steps in which they broke, of brittle bonds that the step does not resolve.
+    fn overshoot(&self) -> Option<f64> {
+        self.slide_breaking
+            .filter(|s| self.brittle() && *s > OVERSHOOT)
+    }
+
     fn unresolved(&self) -> Option<String> {
         let ratio = self.released_over_declared.filter(|_| self.comparable);
         let wrong = ratio.filter(|r| (r - 1.0).abs() > WRONG_ENERGY);
         let at_once = self.softening_at_once().filter(|s| *s > AT_ONCE);
-        let beyond = self
-            .slide_breaking
-            .filter(|s| self.brittle() && *s > OVERSHOOT);
-        if wrong.is_none() && at_once.is_none() && beyond.is_none() {
+        let overshoot = self.overshoot();
+        if wrong.is_none() && at_once.is_none() && overshoot.is_none() {
             return None;
         }
-        let mut text = format!("the {} broken bonds of `{}`", self.broken, self.interface);
+        let bonds = format!("the {} broken bonds of `{}`", self.broken, self.interface);
+        if let Some(slide) = overshoot {
+            let released = ratio.map_or(String::new(), |r| {
+                format!(" and released {} of their fracture energy", number(r, 3))
+            });
+            return Some(format!(
+                "{bonds} are brittle: they slid by {} of their critical opening (that without pressure) in the steps in which they \
+                 broke{released}, so that the step decides how many break",
+                number(slide, 2)
+            ));
+        }
+        let mut text = bonds;
         if let Some(ratio) = ratio {
             text += &format!(" released {} of their fracture energy", number(ratio, 3));
         }
@@ -192,14 +215,7 @@ impl BondEnergies {
             let and = if ratio.is_some() { ", and" } else { "," };
             text += &format!("{and} {:.0} % of them broke within one step", 100.0 * share);
         }
-        if let Some(slide) = beyond {
-            let and = if ratio.is_some() { ", and" } else { "," };
-            text += &format!(
-                "{and} which break at their peak, slid by {} of their opening at break in the step in which they broke: how many break depends on \
-                 the step",
-                number(slide, 2)
-            );
-        } else if let Some(slide) = self.slide_breaking {
+        if let Some(slide) = self.slide_breaking {
             text += &format!(
                 " (they slide by {} of their critical opening in the steps in which they release energy)",
                 number(slide, 2)
@@ -213,26 +229,34 @@ impl BondEnergies {
 mod tests {
     use super::*;
 
-    fn brittle(slide: f64) -> FractureSummary {
+    fn brittle(slide: f64, comparable: bool) -> FractureSummary {
         let bonds = BondEnergies {
             interface: "grains".to_owned(),
             broken: 10,
             critical_opening: Some(2e-6),
             peak_opening: Some(2e-6),
             slide_breaking: Some(slide),
+            released_over_declared: Some(1.4),
+            comparable,
             ..BondEnergies::default()
         };
         FractureSummary::new(vec![bonds], false, &Options::default())
     }
 
     #[test]
-    fn brittle_bonds_that_are_overtaken_by_the_step_are_reported() {
-        assert_eq!(brittle(0.1).warning(), None);
-        let told = brittle(1.6).warning().unwrap_or_default();
+    fn brittle_bonds_that_the_step_does_not_resolve_are_reported() {
+        assert_eq!(brittle(0.1, false).warning(), None);
+        let told = brittle(1.6, false).warning().unwrap_or_default();
         assert!(
-            told.contains("10 broken bonds of `grains`, which break at their peak, slid by 1.6"),
+            told.contains("10 broken bonds of `grains` are brittle: they slid by 1.6 of")
+                && told.contains("would let them slide by 20 %")
+                && told.ends_with("see whether their number changes"),
             "{told}"
         );
-        assert!(told.contains("would let them slide by 7 %"), "{told}");
+        let told = brittle(1.6, true).warning().unwrap_or_default();
+        assert!(
+            told.contains("in which they broke and released 1.40 of their fracture energy,"),
+            "{told}"
+        );
     }
 }
