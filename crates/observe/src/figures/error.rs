@@ -2,11 +2,19 @@
 
 use crate::chart::{Chart, Series, Style, quantity};
 use crate::friction::Cycles;
+use crate::quantity::number;
 use crate::summary::Estimate;
 
 /// Adds a result with the half-widths of what is known of its error to the line under the heading.
 pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &'static str) {
-    let shown = |x: f64| quantity(x, unit, 2);
+    let digits = |x: f64, digits: usize| {
+        if unit.is_empty() {
+            number(x, digits as i32)
+        } else {
+            quantity(x, unit, digits)
+        }
+    };
+    let shown = |x: f64| digits(x, 2);
     let settings = known.from_settings(shown);
     let scatter = known
         .scatter
@@ -16,7 +24,7 @@ pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &
     };
     let text = format!(
         "{name} {}{}{settings}",
-        quantity(value, unit, 4),
+        digits(value, 4),
         scatter.unwrap_or_default()
     )
     .replace("+-", "±");
