@@ -131,8 +131,9 @@ impl FractureSummary {
         if texts.is_empty() {
             return None;
         }
-        let all_brittle = |b: &&BondEnergies| b.overshoot().is_some() || b.unresolved().is_none();
-        let brittle = self.interfaces.iter().filter(all_brittle).count() == self.interfaces.len();
+        let resolved_or_brittle =
+            |b: &BondEnergies| b.overshoot().is_some() || b.unresolved().is_none();
+        let brittle = self.interfaces.iter().all(resolved_or_brittle);
         let slides = self.interfaces.iter().filter_map(|b| b.slide_breaking);
         let slide = slides.fold(0.0, f64::max);
         let [step, softening] = self.step;
