@@ -4,9 +4,9 @@ use super::made::{Made, friction, rng, well};
 use super::{run, tolerance};
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::LocalProblem;
-use fretwork::solve::local::form::Form;
+use fretwork::solve::local::compiled::Solves;
 use fretwork::solve::local::solver::{Limits, Method, field_error, solve};
-use fretwork::solve::local::state::{Budget, State};
+use fretwork::solve::local::state::Budget;
 use nalgebra::DMatrix;
 
 const LIMITS: Limits = Limits {
@@ -36,7 +36,10 @@ fn nothing_to_solve() {
     }
 }
 
-fn immovable<const D: usize>() {
+fn immovable<const D: usize>()
+where
+    Method: Solves<D>,
+{
     let mut rng = rng(21);
     for mu in [0.0, 0.3] {
         for at in [0, 3, 5] {
@@ -99,7 +102,10 @@ fn made<const D: usize>(seed: u64) -> Made<D> {
     made
 }
 
-fn not_a_number<const D: usize>() {
+fn not_a_number<const D: usize>()
+where
+    Method: Solves<D>,
+{
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for entry in [0, 1, D, 4 * D] {
             let good = made::<D>(22).problem();
@@ -133,10 +139,8 @@ fn not_a_number<const D: usize>() {
                 for norm in [Norm::Field, Norm::Velocity, Norm::Balance] {
                     for method in all() {
                         let (w, q) = (made.blocks(), made.free());
-                        let form = Form::new(&w, &q, &made.laws, norm);
-                        let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
                         let mut budget = Budget::new(1e-8, 200, 1.0);
-                        method.solver().solve(&form, &mut state, &mut budget);
+                        let state = method.solve_blocks(&w, &q, &made.laws, norm, &mut budget);
                         assert!(
                             state.error > 1e-8,
                             "{} with {bad} at {entry} (in W: {in_w}): {norm:?}",
@@ -195,16 +199,17 @@ fn tiny_and_huge_velocities() {
     }
 }
 
-fn at_once<const D: usize>() {
+fn at_once<const D: usize>()
+where
+    Method: Solves<D>,
+{
     let made = made::<D>(24);
     let (w, q) = (made.blocks(), made.free());
+    let before = made.error(&vec![0.0; made.p.len()], Norm::Field);
     for method in all() {
         for (iterations, seconds) in [(1, 10.0), (0, 10.0), (1_000_000, 0.0)] {
-            let form = Form::new(&w, &q, &made.laws, Norm::Field);
-            let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
-            let before = state.error;
             let mut budget = Budget::new(0.0, iterations, seconds);
-            method.solver().solve(&form, &mut state, &mut budget);
+            let state = method.solve_blocks(&w, &q, &made.laws, Norm::Field, &mut budget);
             let name = method.name();
             let most = if seconds > 0.0 { iterations } else { 0 };
             assert!(

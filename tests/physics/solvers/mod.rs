@@ -7,7 +7,7 @@ mod limits;
 mod made;
 
 use fretwork::solve::error::Norm;
-use fretwork::solve::local::form::Form;
+use fretwork::solve::local::compiled::Solves;
 use fretwork::solve::local::law::Law;
 use fretwork::solve::local::solver::Method;
 use fretwork::solve::local::state::{Budget, State};
@@ -31,13 +31,14 @@ fn iterations(method: Method) -> u32 {
 }
 
 /// Solves from p = 0, checks what must hold whatever comes out, and says whether it is solved.
-fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>, bool) {
+fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>, bool)
+where
+    Method: Solves<D>,
+{
     let (w, q) = (made.blocks(), made.free());
-    let form = Form::new(&w, &q, &made.laws, norm);
-    let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
     let (tolerance, most) = (tolerance(method), iterations(method));
     let mut budget = Budget::new(tolerance, most, 20.0);
-    method.solver().solve(&form, &mut state, &mut budget);
+    let state = method.solve_blocks(&w, &q, &made.laws, norm, &mut budget);
     let p = state.p.as_flattened();
     let name = format!("{} on {}", method.name(), made.name);
     assert!(p.iter().all(|x| x.is_finite()), "{name}: {p:?}");
@@ -64,7 +65,9 @@ fn share<const D: usize>(
     norm: Norm,
     least: impl Fn(Method) -> f64,
     further: impl Fn(Method, &Made<D>, &State<D>),
-) {
+) where
+    Method: Solves<D>,
+{
     for method in Method::ALL.iter().copied() {
         let (mut solved, mut served, mut left) = (0, 0, Vec::new());
         for made in problems {
@@ -94,7 +97,10 @@ fn share<const D: usize>(
 
 const FRICTION: [f64; 5] = [0.0, 0.1, 0.5, 1.0, 1.5];
 
-fn one_solution<const D: usize>(seed: u64) {
+fn one_solution<const D: usize>(seed: u64)
+where
+    Method: Solves<D>,
+{
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     // mu < lambda_min / lambda_max: the law with the De Saxce term is strongly monotone.
@@ -178,7 +184,10 @@ fn hyperstatic_rigid_bodies() {
     share(&space, Norm::Field, least, |_, _, _| {});
 }
 
-fn any_unit<const D: usize>(seed: u64) {
+fn any_unit<const D: usize>(seed: u64)
+where
+    Method: Solves<D>,
+{
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     for mu in FRICTION {
@@ -205,7 +214,10 @@ fn any_unit_of_mass() {
     any_unit::<3>(8);
 }
 
-fn other_laws<const D: usize>(seed: u64) {
+fn other_laws<const D: usize>(seed: u64)
+where
+    Method: Solves<D>,
+{
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     let kinds: [(&str, &[usize]); 7] = [
@@ -279,7 +291,10 @@ fn the_other_laws() {
 }
 
 /// The same problem twice gives the same bits.
-fn same_bits<const D: usize>(seed: u64) {
+fn same_bits<const D: usize>(seed: u64)
+where
+    Method: Solves<D>,
+{
     for made in packings::<D>(&[(2, 4)], seed) {
         for method in Method::ALL.iter().copied() {
             let bits = || -> Vec<u64> {
