@@ -35,6 +35,7 @@
 //! | laws | [`laws`]: an [`Interface`](laws::Interface) of [`Plugin`](laws::Plugin)s, found by a [`SearchPath`](laws::SearchPath); [`certify`] tests what they promise |
 //! | solve | [`solve`]: a [`Problem`](solve::Problem), its methods and the error that they reach |
 //! | energy ledger | [`energy`]: [`Energy`](energy::Energy) |
+//! | bodies that deform | [`elastic`]: finite elements as dynamical systems of the step |
 //! | processes, wear | [`process`], [`wear`] |
 //! | the step itself | [`step`]: [`Simulation::step`](step::Simulation::step), [`run_until`](step::Simulation::run_until) |
 //! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
@@ -83,6 +84,7 @@ pub mod trade;
 pub use fretwork_core::{
     bodies, certify, contact, energy, fields, geometry, laws, process, solve, step, wear,
 };
+pub use fretwork_elastic as elastic;
 pub use fretwork_plot as report;
 
 /// The page of the documentation on the library: its code is run as tests.

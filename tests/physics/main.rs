@@ -12,6 +12,7 @@ mod bond_energy;
 mod bond_formation;
 mod bonded;
 mod compliant;
+mod elastic;
 mod extremes;
 mod library;
 mod masonry;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
-const LAYERS: [(&str, &[&str], &[&str]); 6] = [
+const LAYERS: [(&str, &[&str], &[&str]); 7] = [
     (
         "core",
         &[],
@@ -22,6 +22,11 @@ const LAYERS: [(&str, &[&str], &[&str]); 6] = [
             "csv",
             "fretwork-shipped",
         ],
+    ),
+    (
+        "elastic",
+        &["core"],
+        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "plotters"],
     ),
     (
         "sample",

@@ -1,7 +1,7 @@
 //! A body that is not rigid, as a user of the library writes one: two masses on a linear spring with a damper, which touch by a
 //! ball each or by one ball half-way between them. The spring may stiffen as it is stretched.
 
-use fretwork::bodies::{Contactor, DynamicalSystem, Nodes, SystemStep, SystemWork};
+use fretwork::bodies::{Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork};
 use fretwork::geometry::space::{Space, VectorLike};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -258,7 +258,7 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
         let ball = |nodes| Contactor {
             nodes,
             radius: self.radius,
-            ball: true,
+            shape: ContactorShape::Ball,
             material: 0,
         };
         match self.touching {

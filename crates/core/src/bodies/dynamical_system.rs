@@ -55,12 +55,23 @@ pub struct SystemWork {
 pub struct Contactor {
     /// The nodes that carry its origin.
     pub nodes: Nodes,
-    /// Radius of the ball about the origin (m); of other shapes a length of their size, see [`Contactor::ball`].
+    /// Radius of a ball about the origin (m); of other shapes a length of their size, which laws take for a radius.
     pub radius: f64,
-    /// Whether it touches as a ball. Other shapes are given to its body by the caller.
-    pub ball: bool,
-    /// Index of the material of the ball.
+    /// What touches.
+    pub shape: ContactorShape,
+    /// Index of the material of a ball or a point.
     pub material: u16,
+}
+
+/// The shape of a contactor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactorShape {
+    /// A ball about the origin.
+    Ball,
+    /// The origin itself: a point of a surface, which touches balls, pieces and surfaces but no other point.
+    Point,
+    /// Shapes that the caller gives to the body.
+    Given,
 }
 
 /// Where a contactor stands and how it moves.
@@ -120,6 +131,21 @@ impl Nodes {
     }
 }
 
+/// A mesh that a system deforms, for results and pictures.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DeformedMesh<S: Space> {
+    /// Points without load (m).
+    pub points: Vec<S::Vector>,
+    /// Their displacements (m).
+    pub displacement: Vec<S::Vector>,
+    /// The D + 1 points of each element, one after the other.
+    pub elements: Vec<u32>,
+    /// The D points of each facet of the boundary.
+    pub boundary: Vec<u32>,
+    /// Stress in each element (Pa): xx, yy, zz, yz, xz, xy; in plane strain zz is along the depth.
+    pub stress: Vec<[f64; 6]>,
+}
+
 /// A body with generalised coordinates of its own.
 ///
 /// In each step it is called in this order:
@@ -130,7 +156,7 @@ impl Nodes {
 /// 4. [`contact_nodes`](Self::contact_nodes) once for each contact, then [`compliance`](Self::compliance) of the nodes that are
 ///    touched; where the step is solved again with more contacts, nodes of all contacts again, and the compliance if other
 ///    nodes are touched,
-/// 5. [`set_velocity`](Self::set_velocity) with v+; several times where a step is solved again,
+/// 5. [`set_contact_impulse`](Self::set_contact_impulse) and [`set_velocity`](Self::set_velocity) with v+; several times where a step is solved again,
 /// 6. `advance` by theta h, and [`work`](Self::work) at the end.
 ///
 /// Velocities have [`freedoms`](Self::freedoms) entries, in the system's own units.
@@ -160,6 +186,10 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// The current generalised velocities.
     fn velocity(&self) -> &[f64];
+
+    /// Is told the generalised impulse of all contacts (N s) before the velocity that it leads to is set: systems of which motion is
+    /// imposed have the work of that from it. Here nothing.
+    fn set_contact_impulse(&mut self, _impulse: &[f64]) {}
 
     /// Takes generalised velocities, as many as [`Self::freedoms`].
     fn set_velocity(&mut self, velocity: &[f64]);
@@ -273,6 +303,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
             }
         }
         blocks
+    }
+
+    /// Its mesh as it is now; none of systems that have no mesh.
+    fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+        None
     }
 
     /// Its state between two steps, as bytes that [`Self::restore`] understands: coordinates, velocities, and what else

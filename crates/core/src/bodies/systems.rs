@@ -139,9 +139,10 @@ impl<S: Space> Systems<S> {
     /// Begins a step with all systems.
     pub fn begin_step(&mut self, step: &SystemStep<S>) {
         for entry in &mut self.entries {
+            // An imposed velocity may jump at the start of a step.
+            entry.system.begin_step(step);
             entry.start.clear();
             entry.start.extend_from_slice(entry.system.velocity());
-            entry.system.begin_step(step);
         }
     }
 
@@ -199,13 +200,15 @@ impl<S: Space> Systems<S> {
     pub fn apply(&mut self, system: usize, impulses: impl Iterator<Item = (u32, S::Vector)>) {
         let entry = &mut self.entries[system];
         let mut impulses = impulses.peekable();
+        let mut change = vec![0.0; entry.system.freedoms()];
         if impulses.peek().is_none() {
+            entry.system.set_contact_impulse(&change);
             return entry.system.set_velocity(&entry.free);
         }
-        let mut change = vec![0.0; entry.system.freedoms()];
         for (node, impulse) in impulses {
             entry.system.add_impulse(node, &impulse, &mut change);
         }
+        entry.system.set_contact_impulse(&change);
         entry.system.solve(&mut change);
         for (change, free) in change.iter_mut().zip(&entry.free) {
             *change += free;

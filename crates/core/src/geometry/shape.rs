@@ -7,17 +7,38 @@ use super::recede::Recede;
 use super::space::{Space, VectorLike};
 use std::fmt::Debug;
 
-/// A disk or a sphere carried by a body.
+/// A disk or a sphere carried by a body, or a point.
 #[derive(Clone, Debug)]
 pub struct Ball<S: Space> {
     /// Index of the body.
     pub body: u32,
-    /// Radius (m).
+    /// Radius (m); zero for a point of a surface, see [`Ball::size`].
     pub radius: f64,
     /// Centre in the body's frame (m); zero for a grain.
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
+}
+
+impl<S: Space> Ball<S> {
+    /// Its size in contacts (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
+    /// that it stands for, the length of its body.
+    pub fn size(&self, lengths: &[f64]) -> f64 {
+        if self.radius > 0.0 {
+            self.radius
+        } else {
+            lengths[self.body as usize]
+        }
+    }
+}
+
+/// Size of the contact of two balls of these radii (m), which are not both zero: half their harmonic mean; of a point its size.
+pub fn reduced_radius(radii: [f64; 2], sizes: [f64; 2]) -> f64 {
+    match radii {
+        [0.0, _] => sizes[0],
+        [_, 0.0] => sizes[1],
+        [a, b] => a * b / (a + b),
+    }
 }
 
 /// Nearest point of a surface to a ball, in the surface's frame.

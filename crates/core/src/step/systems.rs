@@ -2,7 +2,7 @@
 //! those of rigid bodies.
 
 use super::{Simulation, StepError};
-use crate::bodies::{DynamicalSystem, SystemStep};
+use crate::bodies::{ContactorShape, DynamicalSystem, SystemStep};
 use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::Ball;
@@ -28,8 +28,8 @@ impl<S: Space> Default for SystemContacts<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Adds a dynamical system to a scene that has not stepped, with a body and a ball for each contactor; gives its index. The
-    /// bodies are [`crate::bodies::Systems::bodies`]: shapes other than balls may be added to them.
+    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and its ball or point; gives its index. The
+    /// bodies are [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
     ///
     /// Energy that it holds counts as work done on it before the start.
     pub fn add_system(&mut self, system: Box<dyn DynamicalSystem<S>>) -> usize {
@@ -37,10 +37,15 @@ impl<S: Space> Simulation<S> {
         let contactors = system.contactors();
         let index = self.state.systems.add(system, &mut self.state.bodies);
         for (contactor, body) in contactors.iter().zip(self.state.systems.bodies(index)) {
-            if contactor.ball {
+            let radius = match contactor.shape {
+                ContactorShape::Ball => Some(contactor.radius),
+                ContactorShape::Point => Some(0.0),
+                ContactorShape::Given => None,
+            };
+            if let Some(radius) = radius {
                 self.shapes.balls.push(Ball {
                     body: *body,
-                    radius: contactor.radius,
+                    radius,
                     offset: S::Vector::zero(),
                     material: contactor.material,
                 });

@@ -141,7 +141,7 @@ impl<S: Space> Narrow<'_, S> {
             }
             bodies = [ball.body, other.body];
             law = self.laws.get(ball.material, other.material)?;
-            radius = ball.radius;
+            radius = ball.size(&self.bodies.length);
         } else {
             let piece = &self.shapes.pieces[at(a)];
             own_centre = self.centres[balls + at(a)];

@@ -80,6 +80,8 @@ pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
         .balls
         .iter()
         .map(|b| b.radius)
+        // A point of a surface is not thin: what is behind it belongs to its body.
+        .filter(|r| *r > 0.0)
         .chain(pieces)
         .fold(f64::INFINITY, f64::min);
     alert.min(FAST * thinnest)

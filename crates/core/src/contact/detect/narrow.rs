@@ -5,7 +5,7 @@ use super::{LawTable, drop_contact, frame, held};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ConvexCollider, Core};
-use crate::geometry::shape::{Ball, ClosestPoint, Shapes};
+use crate::geometry::shape::{Ball, ClosestPoint, Shapes, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
 /// One pass over the candidate pairs, in order, in parallel with the old contacts.
@@ -101,6 +101,10 @@ impl<'a, S: Space> Narrow<'a, S> {
             .shortest(self.centres[a as usize] - self.centres[b as usize]);
         let old = self.old_contacts_of(network, (a, b)).next();
         let sum = p.radius + q.radius;
+        if sum == 0.0 {
+            // Points of surfaces do not touch each other.
+            return;
+        }
         let squared = d.dot(&d);
         let limit = sum + network.alert;
         if squared >= limit * limit && !held(network, old) {
@@ -125,6 +129,8 @@ impl<'a, S: Space> Narrow<'a, S> {
         let Some(law) = self.laws.get(p.material, q.material) else {
             return;
         };
+        let lengths = &self.bodies.length;
+        let size = reduced_radius([p.radius, q.radius], [p.size(lengths), q.size(lengths)]);
         let closest_point = self.centres[a as usize] - normal * p.radius;
         let central = simple(p, i) && simple(q, j);
         let arms = if central {
@@ -150,12 +156,12 @@ impl<'a, S: Space> Narrow<'a, S> {
                     gap: length - sum,
                     normal,
                     arms,
-                    radius: p.radius * q.radius / sum,
+                    radius: size,
                 },
                 self.time,
             )
         };
-        self.add_contact(network, found, old, p.radius * q.radius / sum);
+        self.add_contact(network, found, old, size);
     }
 
     /// Returns whether a body's response to impulses is isotropic.
@@ -180,6 +186,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             return;
         };
         let mut taken = vec![false; old.len()];
+        let size = ball.size(&self.bodies.length);
         let (i, j) = (ball.body as usize, surface.body as usize);
         for touch in &touches {
             // The contact of the same feature, or else the nearest of those no longer found.
@@ -220,12 +227,12 @@ impl<'a, S: Space> Narrow<'a, S> {
                         gap,
                         normal,
                         arms: [arm, closest_point - self.bodies.position[j]],
-                        radius: ball.radius,
+                        radius: size,
                     },
                     self.time,
                 )
             };
-            self.add_contact(network, found, matched, ball.radius);
+            self.add_contact(network, found, matched, size);
         }
         for k in old.clone() {
             if !taken[k - old.start] {

@@ -9,7 +9,7 @@ use super::extents::Extents;
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core};
-use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes};
+use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
 /// The bodies, and their velocities over the step.
@@ -23,10 +23,10 @@ pub(super) struct Sweep<'a, S: Space> {
     pub alert: f64,
 }
 
-/// Collision shape of a body.
+/// Collision shape of a body; of a ball also its size, of a piece half its smallest thickness (m).
 #[derive(Clone, Copy)]
 enum Shape<'a, S: Space> {
-    Ball(&'a Ball<S>),
+    Ball(&'a Ball<S>, f64),
     ConvexCollider(&'a ConvexCollider<S>, f64),
     Surface(&'a Carried<S>),
 }
@@ -34,7 +34,7 @@ enum Shape<'a, S: Space> {
 impl<S: Space> Shape<'_, S> {
     fn body(&self) -> u32 {
         match self {
-            Self::Ball(b) => b.body,
+            Self::Ball(b, _) => b.body,
             Self::ConvexCollider(p, _) => p.body,
             Self::Surface(s) => s.body,
         }
@@ -42,7 +42,7 @@ impl<S: Space> Shape<'_, S> {
 
     fn material(&self) -> u16 {
         match self {
-            Self::Ball(b) => b.material,
+            Self::Ball(b, _) => b.material,
             Self::ConvexCollider(p, _) => p.material,
             Self::Surface(s) => s.material,
         }
@@ -50,7 +50,7 @@ impl<S: Space> Shape<'_, S> {
 
     fn offset(&self) -> &S::Vector {
         match self {
-            Self::Ball(b) => &b.offset,
+            Self::Ball(b, _) => &b.offset,
             Self::ConvexCollider(p, _) => &p.offset,
             Self::Surface(s) => &s.offset,
         }
@@ -59,7 +59,7 @@ impl<S: Space> Shape<'_, S> {
     /// Returns the radius of its bounding ball (m).
     fn bound(&self) -> f64 {
         match self {
-            Self::Ball(b) => b.radius,
+            Self::Ball(b, _) => b.radius,
             Self::ConvexCollider(p, _) => p.bound,
             Self::Surface(_) => 0.0,
         }
@@ -68,7 +68,7 @@ impl<S: Space> Shape<'_, S> {
     /// Returns half of its smallest thickness (m).
     fn half_thickness(&self) -> f64 {
         match self {
-            Self::Ball(b) => b.radius,
+            Self::Ball(_, size) => *size,
             Self::ConvexCollider(_, half) => *half,
             Self::Surface(_) => f64::INFINITY,
         }
@@ -77,7 +77,7 @@ impl<S: Space> Shape<'_, S> {
     /// Returns its size in the reduced radius of a single-point contact (m).
     fn size(&self) -> f64 {
         match self {
-            Self::Ball(b) => b.radius,
+            Self::Ball(_, size) => *size,
             Self::ConvexCollider(p, _) => p.size,
             Self::Surface(_) => f64::INFINITY,
         }
@@ -151,7 +151,8 @@ impl<'a, S: Space> Sweep<'a, S> {
             let k = (name & !Key::PIECE) as usize;
             Shape::ConvexCollider(&self.shapes.pieces[k], self.extents.pieces[k])
         } else {
-            Shape::Ball(&self.shapes.balls[name as usize])
+            let ball = &self.shapes.balls[name as usize];
+            Shape::Ball(ball, ball.size(&self.bodies.length))
         }
     }
 
@@ -183,7 +184,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         let [(v, w), (v_other, w_other)] =
             [0, 1].map(|k: usize| self.velocities[shapes[k].body() as usize]);
         let lever = |shape: &Shape<S>| match shape {
-            Shape::Ball(b) => b.offset.norm(),
+            Shape::Ball(b, _) => b.offset.norm(),
             Shape::ConvexCollider(p, _) => p.offset.norm() + p.bound,
             Shape::Surface(_) => 0.0,
         };
@@ -319,8 +320,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         let apart = one.centre - other.centre - pair.image;
         let turned = |p: &ConvexCollider<S>, pose: &Pose<S>| p.core.turned(&pose.rotation);
         match (&pair.shapes[0], &pair.shapes[1]) {
-            (Shape::Ball(a), Shape::Ball(b)) => out.push(point_of_balls::<S>(a, b, apart)),
-            (Shape::Ball(a), Shape::ConvexCollider(b, _)) => {
+            (Shape::Ball(a, _), Shape::Ball(b, _)) => out.push(point_of_balls::<S>(a, b, apart)),
+            (Shape::Ball(a, _), Shape::ConvexCollider(b, _)) => {
                 let core = turned(b, other);
                 out.push(core.contact_point_with_ball(&apart, a.radius, b.rounding));
             }
@@ -329,7 +330,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 let (a, b) = (turned(a, one), turned(b, other));
                 a.contact_points(&b, &apart, roundings, &tolerances, out);
             }
-            (Shape::Ball(a), Shape::Surface(b)) => {
+            (Shape::Ball(a, _), Shape::Surface(b)) => {
                 let place = S::unrotate(&other.rotation, &apart);
                 let mut touches = Vec::new();
                 b.shape.touches(&place, a.radius + reach, &mut touches);
@@ -387,7 +388,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         let [(v, w), (v_other, w_other)] = [i, j].map(|b| self.velocities[b as usize]);
         let sizes = [pair.shapes[0].size(), pair.shapes[1].size()];
         let radius = match (&pair.shapes[0], &pair.shapes[1]) {
-            (_, Shape::Surface(_)) | (Shape::Ball(_), Shape::ConvexCollider(..)) => sizes[0],
+            (_, Shape::Surface(_)) | (Shape::Ball(..), Shape::ConvexCollider(..)) => sizes[0],
+            (Shape::Ball(a, _), Shape::Ball(b, _)) => reduced_radius([a.radius, b.radius], sizes),
             _ => sizes[0] * sizes[1] / (sizes[0] + sizes[1]),
         };
         for m in met {

@@ -1,0 +1,620 @@
+//! A body of finite elements in small strain, as a dynamical system: its inertia, stiffness and damping are constant, so that
+//!
+//! ```text
+//! A = M + h theta C + h^2 theta^2 K
+//! ```
+//!
+//! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its corners. Contacts act on the points
+//! of a part of the boundary; the dense compliance of these, P A^-1 P^T, is found once too.
+//!
+//! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
+//! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
+
+use crate::element::{Simplex, Symmetric};
+use crate::freedom::Freedoms;
+use crate::material::{Elasticity, ElasticityError};
+use crate::matrix::{Factor, Sparse};
+use crate::mesh::{Mesh, MeshError};
+use crate::support::{Rayleigh, Support};
+use fretwork_core::bodies::{
+    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Nodes, SystemStep, SystemWork,
+};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use std::sync::Arc;
+
+/// Most coordinates of touched points whose compliance is kept whole: 4000^2 numbers are 128 MB.
+const MAX_SURFACE: usize = 4000;
+
+/// Why a body cannot be made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BodyError {
+    /// Its mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// Its material.
+    #[error(transparent)]
+    Material(#[from] ElasticityError),
+    /// A part that the mesh has not.
+    #[error("the mesh has no part `{0}`; its parts are {1}")]
+    NoPart(String, String),
+    /// Two different drives of one displacement.
+    #[error(
+        "parts `{0}` and `{1}` share points that both drive along axis {2} (0 is x): leave that axis out of one of them"
+    )]
+    Twice(String, String, usize),
+    /// Motion imposed at one time and a force at another.
+    #[error(
+        "the drive of part `{0}` imposes motion at one time and a force at another; a deformable body cannot change that within a run"
+    )]
+    Changes(String),
+    /// Damping that is negative or not finite.
+    #[error("factors of Rayleigh damping must not be negative, got {0:e} 1/s and {1:e} s")]
+    Damping(f64, f64),
+    /// Nothing keeps the body from turning.
+    #[error(
+        "nothing keeps the body `{0}` from turning, and small strain cannot follow a rotation: hold one of its parts along one axis more"
+    )]
+    Turns(String),
+}
+
+/// What is formed for the length of a step.
+#[derive(Clone, Debug)]
+struct Formed {
+    /// h and theta.
+    of: [f64; 2],
+    factor: Factor,
+    /// Compliance of the surface's coordinates, column by column; empty where there are too many.
+    surface: Vec<f64>,
+}
+
+/// What does not change, shared by copies.
+#[derive(Debug)]
+struct Model<S: Space> {
+    name: String,
+    mesh: Mesh<S>,
+    material: Elasticity,
+    damping: Rayleigh,
+    freedoms: Freedoms<S>,
+    mass: Vec<f64>,
+    stiffness: Sparse,
+    contactors: Vec<Contactor>,
+    /// Freely moving coordinates of touched points, and where each coordinate is among them.
+    surface: Vec<u32>,
+    place: Vec<u32>,
+}
+
+/// A body of finite elements.
+#[derive(Clone, Debug)]
+pub struct ElasticBody<S: Space> {
+    model: Arc<Model<S>>,
+    formed: Option<Arc<Formed>>,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    /// Both at the start of the step.
+    start: [Vec<f64>; 2],
+    /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
+    jump: f64,
+    /// Impulse of contacts on the coordinates in the step (N s).
+    contact: Vec<f64>,
+}
+
+/// What a body is made of.
+#[derive(Clone, Debug)]
+pub struct BodySpec<'a, S: Space> {
+    /// What a user calls it.
+    pub name: &'a str,
+    /// Its mesh.
+    pub mesh: Mesh<S>,
+    /// Its material.
+    pub material: Elasticity,
+    /// Its damping.
+    pub damping: Rayleigh,
+    /// What holds and drives it.
+    pub supports: &'a [Support],
+    /// The part of the boundary whose points touch; `None` where it does not touch.
+    pub touching: Option<&'a str>,
+    /// Index of the material for interface laws.
+    pub surface_material: u16,
+    /// Its velocity at the start (m/s), of all that is not held.
+    pub velocity: S::Vector,
+}
+
+impl<S: Space> ElasticBody<S> {
+    /// A body at rest and without load.
+    ///
+    /// # Errors
+    /// See [`BodyError`].
+    pub fn new(spec: BodySpec<S>) -> Result<Self, BodyError> {
+        let BodySpec {
+            name,
+            mesh,
+            material,
+            damping,
+            supports,
+            touching,
+            surface_material,
+            velocity,
+        } = spec;
+        material.check()?;
+        let factors = [damping.mass, damping.stiffness];
+        if !factors.iter().all(|f| *f >= 0.0 && f.is_finite()) {
+            return Err(BodyError::Damping(damping.mass, damping.stiffness));
+        }
+        let freedoms = Freedoms::new(&mesh, supports)?;
+        if crate::rigid::turns(&mesh, supports) {
+            return Err(BodyError::Turns(name.to_owned()));
+        }
+        let (mass, stiffness) = assemble(&mesh, &material, &freedoms);
+        let points = match touching {
+            None => Vec::new(),
+            Some(part) => mesh.points_of(part).ok_or_else(|| {
+                let names: Vec<&str> = mesh.part_names().collect();
+                BodyError::NoPart(part.to_owned(), names.join(", "))
+            })?,
+        };
+        let tributary = mesh.tributary();
+        let size = |p: u32| match S::D {
+            2 => 0.5 * tributary[p as usize],
+            _ => (tributary[p as usize] / std::f64::consts::PI).sqrt(),
+        };
+        let contactor = |p: &u32| Contactor {
+            nodes: Nodes::one(*p),
+            radius: size(*p),
+            shape: ContactorShape::Point,
+            material: surface_material,
+        };
+        let contactors = points.iter().map(contactor).collect();
+        let coordinates = points
+            .iter()
+            .flat_map(|p| (0..S::D).map(|axis| freedoms.of(*p, axis) as u32));
+        let mut surface: Vec<u32> = coordinates
+            .filter(|c| (*c as usize) < freedoms.free)
+            .collect();
+        surface.sort_unstable();
+        surface.dedup();
+        let total = freedoms.total();
+        let mut place = vec![u32::MAX; total];
+        for (k, coordinate) in surface.iter().enumerate() {
+            place[*coordinate as usize] = k as u32;
+        }
+        let axes = freedoms.axis.iter().take(freedoms.free);
+        let mut start: Vec<f64> = axes.map(|axis| velocity[usize::from(*axis)]).collect();
+        start.resize(total, 0.0);
+        let model = Model {
+            name: name.to_owned(),
+            mesh,
+            material,
+            damping,
+            freedoms,
+            mass,
+            stiffness,
+            contactors,
+            surface,
+            place,
+        };
+        Ok(Self {
+            model: Arc::new(model),
+            formed: None,
+            displacement: vec![0.0; total],
+            velocity: start,
+            start: [vec![0.0; total], vec![0.0; total]],
+            jump: 0.0,
+            contact: vec![0.0; total],
+        })
+    }
+
+    /// Displacement of a point of the mesh (m).
+    fn displacement(&self, point: u32) -> S::Vector {
+        self.model.of(&self.displacement, point)
+    }
+
+    /// Stress in each element (Pa).
+    fn stresses(&self) -> Vec<Symmetric> {
+        let mesh = &self.model.mesh;
+        let stress = |points: &[u32]| {
+            let simplex = Simplex::<S>::new(&mesh.corners(points));
+            let displacements: Vec<S::Vector> =
+                points.iter().map(|p| self.displacement(*p)).collect();
+            simplex.map_or([0.0; 6], |s| s.stress(&self.model.material, &displacements))
+        };
+        mesh.elements().map(stress).collect()
+    }
+
+    /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N; N/m in 2D): what the support
+    /// needs to impose the motion, without contacts at its own points.
+    fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
+        let model = &self.model;
+        let (average, theta_point) = self.average(step);
+        let [elastic, viscous] = model.internal(&theta_point, &average);
+        let free = model.freedoms.free;
+        (free..model.freedoms.total())
+            .map(|c| {
+                let change = self.velocity[c] - self.start[1][c];
+                let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
+                let inertia = model.mass[c] * (change / step.h - gravity);
+                inertia + elastic[c] + viscous[c] - self.contact[c] / step.h
+            })
+            .collect()
+    }
+
+    /// Blocks of the compliance by solving for each node.
+    fn solved_compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
+        let count = nodes.len();
+        let mut out = vec![S::Matrix::uniform(0.0); count * count];
+        let mut response = vec![0.0; self.model.freedoms.total()];
+        for (b, node) in nodes.iter().enumerate() {
+            for k in 0..S::D {
+                let mut unit = S::Vector::zero();
+                unit[k] = 1.0;
+                response.fill(0.0);
+                self.add_impulse(*node, &unit, &mut response);
+                self.solve(&mut response);
+                for (a, seen) in nodes.iter().enumerate() {
+                    let block = &mut out[a * count + b];
+                    *block = *block + S::Matrix::dyad(&self.model.of(&response, *seen), &unit);
+                }
+            }
+        }
+        out
+    }
+
+    /// v_theta, and q + h theta v_theta.
+    fn average(&self, step: &SystemStep<S>) -> (Vec<f64>, Vec<f64>) {
+        let [q, v] = &self.start;
+        let SystemStep { h, theta, .. } = *step;
+        let average: Vec<f64> = v
+            .iter()
+            .zip(&self.velocity)
+            .map(|(v, w)| (1.0 - theta) * v + theta * w)
+            .collect();
+        let at = q.iter().zip(&average).map(|(q, v)| q + h * theta * v);
+        let at = at.collect();
+        (average, at)
+    }
+
+    /// Time function of a drive at a step, at its theta-point.
+    fn force(drive: &Dof, step: &SystemStep<S>) -> f64 {
+        let over = drive.over(step.time, step.h);
+        over.force(step.time + step.theta * step.h)
+    }
+}
+
+impl<S: Space> Model<S> {
+    /// The entries of a vector of coordinates at a point.
+    fn of(&self, values: &[f64], point: u32) -> S::Vector {
+        let mut out = S::Vector::zero();
+        for axis in 0..S::D {
+            out[axis] = values[self.freedoms.of(point, axis)];
+        }
+        out
+    }
+
+    /// K q and C v.
+    fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
+        let elastic = self.stiffness.times(q);
+        let mut viscous = vec![0.0; v.len()];
+        let Rayleigh { mass, stiffness } = self.damping;
+        if stiffness > 0.0 {
+            viscous = self.stiffness.times(v);
+            viscous.iter_mut().for_each(|f| *f *= stiffness);
+        }
+        for (c, f) in viscous.iter_mut().enumerate() {
+            *f += mass * self.mass[c] * v[c];
+        }
+        [elastic, viscous]
+    }
+
+    fn form(&self, h: f64, theta: f64) -> Formed {
+        let step = h * theta;
+        let free = self.freedoms.free;
+        let inertia = 1.0 + step * self.damping.mass;
+        let diagonal: Vec<f64> = self.mass[..free].iter().map(|m| m * inertia).collect();
+        let scale = step * self.damping.stiffness + step * step;
+        let a = self.stiffness.leading(free, scale, &diagonal);
+        // The mass is positive and the stiffness not negative.
+        let factor = Factor::new(&a).unwrap_or_else(|| {
+            // Rounding of a stiffness that is far above the inertia: the inertia is raised to what can be told from it.
+            let most = (0..free).map(|r| a.at(r, r)).fold(0.0, f64::max);
+            let raised: Vec<f64> = diagonal.iter().map(|m| m + 1e-14 * most).collect();
+            let a = self.stiffness.leading(free, scale, &raised);
+            Factor::new(&a).unwrap_or_default()
+        });
+        let count = self.surface.len();
+        let mut surface = Vec::new();
+        if count <= MAX_SURFACE {
+            surface = vec![0.0; count * count];
+            let mut column = vec![0.0; free];
+            for (k, coordinate) in self.surface.iter().enumerate() {
+                column.fill(0.0);
+                column[*coordinate as usize] = 1.0;
+                factor.solve(&mut column, 1);
+                for (j, other) in self.surface.iter().enumerate() {
+                    surface[k * count + j] = column[*other as usize];
+                }
+            }
+        }
+        Formed {
+            of: [h, theta],
+            factor,
+            surface,
+        }
+    }
+}
+
+/// The lumped mass of each coordinate (kg), and the stiffness.
+fn assemble<S: Space>(
+    mesh: &Mesh<S>,
+    material: &Elasticity,
+    freedoms: &Freedoms<S>,
+) -> (Vec<f64>, Sparse) {
+    let mut mass = vec![0.0; freedoms.total()];
+    let mut entries = Vec::new();
+    for points in mesh.elements() {
+        let Some(simplex) = Simplex::<S>::new(&mesh.corners(points)) else {
+            continue;
+        };
+        let share = material.density * simplex.volume / (S::D + 1) as f64;
+        for (a, p) in points.iter().enumerate() {
+            for axis in 0..S::D {
+                mass[freedoms.of(*p, axis)] += share;
+            }
+            for (b, q) in points.iter().enumerate() {
+                let block = simplex.stiffness(material, a, b);
+                for i in 0..S::D {
+                    for j in 0..S::D {
+                        let at = (freedoms.of(*p, i), freedoms.of(*q, j));
+                        entries.push((at.0, at.1, block.entry(i, j)));
+                    }
+                }
+            }
+        }
+    }
+    let stiffness = Sparse::from_entries(freedoms.total(), entries.into_iter());
+    (mass, stiffness)
+}
+
+impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
+    fn name(&self) -> &str {
+        &self.model.name
+    }
+
+    fn freedoms(&self) -> usize {
+        self.model.freedoms.total()
+    }
+
+    fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    fn set_contact_impulse(&mut self, impulse: &[f64]) {
+        self.contact.copy_from_slice(impulse);
+    }
+
+    fn set_velocity(&mut self, velocity: &[f64]) {
+        self.velocity.copy_from_slice(velocity);
+    }
+
+    fn begin_step(&mut self, step: &SystemStep<S>) {
+        let model = Arc::clone(&self.model);
+        self.jump = 0.0;
+        for driven in &model.freedoms.imposed {
+            let c = driven.coordinate as usize;
+            let drive = driven.drive.over(step.time, step.h);
+            if let Some(speeds) = drive.speeds(step.time, step.h, step.theta) {
+                let before = self.velocity[c];
+                self.jump += 0.5 * model.mass[c] * (speeds.start.powi(2) - before.powi(2));
+                self.velocity[c] = speeds.start;
+            }
+        }
+        self.start[0].copy_from_slice(&self.displacement);
+        self.start[1].copy_from_slice(&self.velocity);
+        self.contact.fill(0.0);
+        let of = [step.h, step.theta];
+        if self.formed.as_ref().is_none_or(|formed| formed.of != of) {
+            self.formed = Some(Arc::new(model.form(step.h, step.theta)));
+        }
+    }
+
+    fn advance(&mut self, time: f64) {
+        for (q, v) in self.displacement.iter_mut().zip(&self.velocity) {
+            *q += v * time;
+        }
+    }
+
+    fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64> {
+        let model = &self.model;
+        let SystemStep { time, h, theta, .. } = *step;
+        let [q, v] = &self.start;
+        let mut end = v.clone();
+        for driven in &model.freedoms.imposed {
+            let drive = driven.drive.over(time, h);
+            if let Some(speeds) = drive.speeds(time, h, theta) {
+                end[driven.coordinate as usize] = speeds.end;
+            }
+        }
+        // With imposed coordinates at their final velocity, what the others lack is A^-1 of the rest of the forces.
+        let pairs = v.iter().zip(&end);
+        let average: Vec<f64> = pairs.map(|(v, w)| v + theta * (w - v)).collect();
+        let at: Vec<f64> = q
+            .iter()
+            .zip(&average)
+            .map(|(q, v)| q + h * theta * v)
+            .collect();
+        let [elastic, viscous] = model.internal(&at, &average);
+        let free = model.freedoms.free;
+        let mut impulse: Vec<f64> = (0..free)
+            .map(|c| {
+                let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
+                h * (model.mass[c] * gravity - elastic[c] - viscous[c])
+            })
+            .collect();
+        for driven in &model.freedoms.forces {
+            impulse[driven.coordinate as usize] += h * Self::force(&driven.drive, step);
+        }
+        if let Some(formed) = &self.formed {
+            formed.factor.solve(&mut impulse, 1);
+        }
+        for (v, dv) in end.iter_mut().zip(&impulse) {
+            *v += dv;
+        }
+        end
+    }
+
+    fn solve(&self, impulse: &mut [f64]) {
+        let (free, imposed) = impulse.split_at_mut(self.model.freedoms.free);
+        if let Some(formed) = &self.formed {
+            formed.factor.solve(free, 1);
+        }
+        imposed.fill(0.0);
+    }
+
+    fn work(&self, step: &SystemStep<S>) -> SystemWork {
+        let model = &self.model;
+        let SystemStep { h, theta, .. } = *step;
+        let (average, _) = self.average(step);
+        let [stretched, viscous] = model.internal(&average, &average);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut work = SystemWork {
+            damping: h * dot(&viscous, &average),
+            scheme: (theta - 0.5) * h * h * dot(&stretched, &average),
+            external: self.jump,
+            ..SystemWork::default()
+        };
+        for (c, m) in model.mass.iter().enumerate() {
+            let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
+            let change = self.velocity[c] - self.start[1][c];
+            work.potential -= h * m * gravity * average[c];
+            work.scheme += (theta - 0.5) * m * change * change;
+        }
+        for driven in &model.freedoms.forces {
+            let force = Self::force(&driven.drive, step);
+            work.external += h * force * average[driven.coordinate as usize];
+        }
+        if !model.freedoms.imposed.is_empty() {
+            let moved = &average[model.freedoms.free..];
+            work.external += h * dot(&self.reactions(step), moved);
+        }
+        work
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        let terms = self.model.mass.iter().zip(&self.velocity);
+        0.5 * terms.map(|(m, v)| m * v * v).sum::<f64>()
+    }
+
+    fn stored_energy(&self) -> f64 {
+        0.5 * self.model.stiffness.form(&self.displacement)
+    }
+
+    fn mass(&self) -> f64 {
+        // Each coordinate along the first axis has its share once.
+        let axes = self.model.freedoms.axis.iter();
+        let along = axes.zip(&self.model.mass).filter(|(axis, _)| **axis == 0);
+        along.map(|(_, m)| m).sum()
+    }
+
+    fn length(&self) -> f64 {
+        let points = self.model.mesh.points();
+        let extent = |k: usize| {
+            let at = points.iter().map(|p| p[k]);
+            at.clone().fold(f64::NEG_INFINITY, f64::max) - at.fold(f64::INFINITY, f64::min)
+        };
+        0.5 * (0..S::D).map(extent).fold(0.0, f64::max)
+    }
+
+    fn is_driven(&self) -> bool {
+        let imposed = &self.model.freedoms.imposed;
+        imposed.iter().any(|d| !matches!(d.drive, Dof::Fixed))
+    }
+
+    fn node_position(&self, node: u32) -> S::Vector {
+        self.model.mesh.points()[node as usize] + self.displacement(node)
+    }
+
+    fn node_velocity(&self, node: u32, velocity: &[f64]) -> S::Vector {
+        self.model.of(velocity, node)
+    }
+
+    fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]) {
+        for axis in 0..S::D {
+            generalised[self.model.freedoms.of(node, axis)] += impulse[axis];
+        }
+    }
+
+    fn contactors(&self) -> Vec<Contactor> {
+        self.model.contactors.clone()
+    }
+
+    fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
+        let count = self.model.surface.len();
+        let formed = self.formed.as_ref().filter(|f| !f.surface.is_empty());
+        let Some(formed) = formed else {
+            return self.solved_compliance(nodes);
+        };
+        let coordinates: Vec<[u32; 3]> = nodes
+            .iter()
+            .map(|node| {
+                let mut at = [u32::MAX; 3];
+                for (axis, at) in at.iter_mut().enumerate().take(S::D) {
+                    *at = self.model.place[self.model.freedoms.of(*node, axis)];
+                }
+                at
+            })
+            .collect();
+        let mut units = [S::Vector::zero(); 3];
+        for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
+            unit[axis] = 1.0;
+        }
+        let mut out = Vec::with_capacity(nodes.len() * nodes.len());
+        for a in &coordinates {
+            for b in &coordinates {
+                let mut block = S::Matrix::uniform(0.0);
+                for j in (0..S::D).filter(|j| b[*j] != u32::MAX) {
+                    let column = &formed.surface[b[j] as usize * count..][..count];
+                    let mut response = S::Vector::zero();
+                    for i in (0..S::D).filter(|i| a[*i] != u32::MAX) {
+                        response[i] = column[a[i] as usize];
+                    }
+                    block = block + S::Matrix::dyad(&response, &units[j]);
+                }
+                out.push(block);
+            }
+        }
+        out
+    }
+
+    fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+        let mesh = &self.model.mesh;
+        let all = 0..mesh.points().len() as u32;
+        Some(DeformedMesh {
+            points: mesh.points().to_vec(),
+            displacement: all.map(|p| self.displacement(p)).collect(),
+            elements: mesh.elements().flatten().copied().collect(),
+            boundary: (0..mesh.facets())
+                .flat_map(|f| mesh.facet(f).iter().copied())
+                .collect(),
+            stress: self.stresses(),
+        })
+    }
+
+    fn save(&self) -> Vec<u8> {
+        postcard::to_stdvec(&(&self.displacement, &self.velocity)).unwrap_or_default()
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> bool {
+        let read: Result<(Vec<f64>, Vec<f64>), _> = postcard::from_bytes(saved);
+        let total = self.model.freedoms.total();
+        match read {
+            Ok((q, v)) if q.len() == total && v.len() == total => {
+                self.start = [q.clone(), v.clone()];
+                (self.displacement, self.velocity) = (q, v);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn clone_box(&self) -> Box<dyn DynamicalSystem<S>> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,133 @@
+//! Degrees of freedom of a mesh with supports: which displacement of which point is which generalised coordinate.
+
+use crate::body::BodyError;
+use crate::mesh::Mesh;
+use crate::support::Support;
+use fretwork_core::bodies::Dof;
+use fretwork_core::geometry::space::Space;
+use std::marker::PhantomData;
+
+/// A coordinate that is imposed or has a force on it.
+#[derive(Clone, Debug)]
+pub struct Driven {
+    /// Index of the coordinate.
+    pub coordinate: u32,
+    /// Its drive.
+    pub drive: Dof,
+}
+
+/// The coordinates: those that move freely first, then those that are imposed.
+#[derive(Clone, Debug)]
+pub struct Freedoms<S: Space> {
+    of: Vec<u32>,
+    /// Number of coordinates that move freely.
+    pub free: usize,
+    /// Axis of each coordinate.
+    pub axis: Vec<u8>,
+    /// Coordinates with a force.
+    pub forces: Vec<Driven>,
+    /// Imposed coordinates, in order.
+    pub imposed: Vec<Driven>,
+    space: PhantomData<S>,
+}
+
+impl<S: Space> Freedoms<S> {
+    /// Numbers the coordinates of a mesh.
+    ///
+    /// # Errors
+    /// A part that the mesh has not, a point in two parts that are driven differently along an axis, or a drive that imposes
+    /// motion at one time and a force at another.
+    pub fn new(mesh: &Mesh<S>, supports: &[Support]) -> Result<Self, BodyError> {
+        let d = S::D;
+        // The holder of each displacement: support and axis.
+        let mut held: Vec<Option<usize>> = vec![None; mesh.points().len() * d];
+        for (s, support) in supports.iter().enumerate() {
+            let Some(points) = mesh.points_of(&support.part) else {
+                let names: Vec<&str> = mesh.part_names().collect();
+                return Err(BodyError::NoPart(support.part.clone(), names.join(", ")));
+            };
+            for (axis, drive) in support.axes.iter().enumerate().take(d) {
+                let Some(drive) = drive else { continue };
+                if drive.imposes() && drive.yields() {
+                    return Err(BodyError::Changes(support.part.clone()));
+                }
+                for point in &points {
+                    let slot = &mut held[*point as usize * d + axis];
+                    match *slot {
+                        Some(other) => {
+                            let other: &Support = &supports[other];
+                            // At a common corner of two parts that do the same, either will do.
+                            let same = other.axes[axis].as_ref() == Some(drive) && drive.imposes();
+                            if !same {
+                                let [one, two] = [&other.part, &support.part].map(Clone::clone);
+                                return Err(BodyError::Twice(one, two, axis));
+                            }
+                        }
+                        None => *slot = Some(s),
+                    }
+                }
+            }
+        }
+        Ok(Self::number(supports, &held))
+    }
+
+    fn number(supports: &[Support], held: &[Option<usize>]) -> Self {
+        let d = S::D;
+        let mut out = Self {
+            of: vec![u32::MAX; held.len()],
+            free: 0,
+            axis: Vec::new(),
+            forces: Vec::new(),
+            imposed: Vec::new(),
+            space: PhantomData,
+        };
+        for imposed in [false, true] {
+            let mut known = vec![[u32::MAX; 3]; supports.len()];
+            for (k, holder) in held.iter().enumerate() {
+                let axis = k % d;
+                let drive = holder.and_then(|s| supports[s].axes[axis].as_ref());
+                if drive.is_some_and(Dof::imposes) != imposed {
+                    continue;
+                }
+                let next = out.axis.len() as u32;
+                let coordinate = match holder {
+                    Some(s) if known[*s][axis] != u32::MAX => known[*s][axis],
+                    Some(s) => {
+                        known[*s][axis] = next;
+                        next
+                    }
+                    None => next,
+                };
+                out.of[k] = coordinate;
+                if coordinate < next {
+                    continue;
+                }
+                out.axis.push(axis as u8);
+                let Some(drive) = drive else { continue };
+                let driven = Driven {
+                    coordinate,
+                    drive: drive.clone(),
+                };
+                if imposed {
+                    out.imposed.push(driven);
+                } else if !matches!(drive, Dof::Free) {
+                    out.forces.push(driven);
+                }
+            }
+            if !imposed {
+                out.free = out.axis.len();
+            }
+        }
+        out
+    }
+
+    /// Number of coordinates.
+    pub fn total(&self) -> usize {
+        self.axis.len()
+    }
+
+    /// The coordinate that is the displacement of a point along an axis.
+    pub fn of(&self, point: u32, axis: usize) -> usize {
+        self.of[point as usize * S::D + axis] as usize
+    }
+}

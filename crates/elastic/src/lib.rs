@@ -1,0 +1,18 @@
+//! Bodies that deform, as dynamical systems of the core: finite elements of linear elasticity.
+
+pub mod body;
+pub mod compiled;
+pub mod element;
+pub mod freedom;
+pub mod generate;
+pub mod material;
+pub mod matrix;
+pub mod mesh;
+pub mod rigid;
+pub mod support;
+
+pub use body::{BodyError, BodySpec, ElasticBody};
+pub use compiled::Deformable;
+pub use material::Elasticity;
+pub use mesh::Mesh;
+pub use support::{Rayleigh, Support};

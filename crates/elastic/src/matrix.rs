@@ -1,0 +1,172 @@
+//! Symmetric sparse matrices, and their Cholesky factors by `faer`.
+
+use faer::linalg::solvers::SolveCore;
+use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Side};
+use std::collections::BTreeMap;
+
+/// A symmetric matrix in compressed rows, both triangles stored, columns in increasing order.
+#[derive(Clone, Debug, Default)]
+pub struct Sparse {
+    starts: Vec<usize>,
+    columns: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Sparse {
+    /// Of entries (row, column, value), added up where they are given twice, in their order.
+    pub fn from_entries(rows: usize, entries: impl Iterator<Item = (usize, usize, f64)>) -> Self {
+        let mut by_row: Vec<BTreeMap<usize, f64>> = vec![BTreeMap::new(); rows];
+        for (row, column, value) in entries {
+            *by_row[row].entry(column).or_default() += value;
+        }
+        let mut out = Self {
+            starts: vec![0],
+            ..Self::default()
+        };
+        for row in by_row {
+            for (column, value) in row {
+                out.columns.push(column);
+                out.values.push(value);
+            }
+            out.starts.push(out.columns.len());
+        }
+        out
+    }
+
+    /// Entries of a row, by column.
+    fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.starts[row]..self.starts[row + 1];
+        let columns = self.columns[range.clone()].iter().copied();
+        columns.zip(self.values[range].iter().copied())
+    }
+
+    /// The entry of a row and a column.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.row(row)
+            .find(|(c, _)| *c == column)
+            .map_or(0.0, |(_, a)| a)
+    }
+
+    /// Number of stored entries.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The product with a vector.
+    pub fn times(&self, x: &[f64]) -> Vec<f64> {
+        let row = |r: usize| self.row(r).map(|(c, a)| a * x[c]).sum();
+        (0..self.starts.len() - 1).map(row).collect()
+    }
+
+    /// x . A x.
+    pub fn form(&self, x: &[f64]) -> f64 {
+        let product = self.times(x);
+        product.iter().zip(x).map(|(a, b)| a * b).sum()
+    }
+
+    /// The first `n` rows and columns times `scale`, plus a diagonal.
+    pub fn leading(&self, n: usize, scale: f64, diagonal: &[f64]) -> Self {
+        let mut out = Self {
+            starts: vec![0],
+            ..Self::default()
+        };
+        for (r, added) in diagonal.iter().enumerate().take(n) {
+            let mut put = false;
+            for (c, a) in self.row(r).filter(|(c, _)| *c < n) {
+                if c > r && !put {
+                    out.columns.push(r);
+                    out.values.push(*added);
+                    put = true;
+                }
+                out.columns.push(c);
+                out.values
+                    .push(scale * a + if c == r { *added } else { 0.0 });
+                put |= c == r;
+            }
+            if !put {
+                out.columns.push(r);
+                out.values.push(*added);
+            }
+            out.starts.push(out.columns.len());
+        }
+        out
+    }
+}
+
+/// The Cholesky factor of a positive definite matrix; by default that of one without rows.
+#[derive(Clone, Default)]
+pub struct Factor {
+    factor: Option<Llt<usize, f64>>,
+}
+
+impl std::fmt::Debug for Factor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Factor").finish_non_exhaustive()
+    }
+}
+
+impl Factor {
+    /// Factorises; `None` where the matrix is not positive definite.
+    pub fn new(a: &Sparse) -> Option<Self> {
+        let n = a.starts.len() - 1;
+        if n == 0 {
+            return Some(Self { factor: None });
+        }
+        if !a.values.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        // Rows of a symmetric matrix are its columns.
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
+        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).ok()?;
+        let matrix = SparseColMatRef::new(pattern, &a.values);
+        let factor = Llt::try_new_with_symbolic(symbolic, matrix, Side::Lower).ok()?;
+        Some(Self {
+            factor: Some(factor),
+        })
+    }
+
+    /// x = A^-1 x, for as many columns as `x` holds one after the other.
+    pub fn solve(&self, x: &mut [f64], columns: usize) {
+        if let Some(factor) = &self.factor {
+            let rows = x.len() / columns;
+            let matrix = MatMut::from_column_major_slice_mut(x, rows, columns);
+            factor.solve_in_place_with_conj(Conj::No, matrix);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_solve() {
+        // A chain of springs, and a second one without mass at an end.
+        let n = 200;
+        let entries = (0..n - 1).flat_map(|k| {
+            [
+                (k, k, 1.0),
+                (k + 1, k + 1, 1.0),
+                (k, k + 1, -1.0),
+                (k + 1, k, -1.0),
+            ]
+        });
+        let k = Sparse::from_entries(n, entries);
+        assert_eq!(k.form(&vec![3.0; n]), 0.0);
+        let a = k.leading(n, 2.0, &vec![0.1; n]);
+        let factor = Factor::new(&a).unwrap();
+        let x: Vec<f64> = (0..n).map(|k| (k as f64).sin()).collect();
+        let mut b = a.times(&x);
+        b.extend(a.times(&vec![1.0; n]));
+        factor.solve(&mut b, 2);
+        for (k, x) in x.iter().enumerate() {
+            assert!((b[k] - x).abs() < 1e-12 && (b[n + k] - 1.0).abs() < 1e-12);
+        }
+        // Free at both ends it is singular; without the last node it is not.
+        let singular = k.leading(n, 1.0, &vec![-1e-9; n]);
+        assert!(Factor::new(&singular).is_none());
+        assert!(Factor::new(&k.leading(n - 1, 1.0, &vec![0.0; n])).is_some());
+    }
+}

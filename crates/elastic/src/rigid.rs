@@ -1,0 +1,102 @@
+//! Whether supports leave a body free to turn as a rigid one, which small strain cannot follow.
+
+use crate::mesh::Mesh;
+use crate::support::Support;
+use fretwork_core::bodies::Dof;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use nalgebra::DMatrix;
+
+/// Whether some rigid motion with a rotation meets all supports: u = t + w x X, of which u along a held axis is zero where motion
+/// is imposed and the same at all points of a part elsewhere. (Imposed motion other than zero changes nothing: a part in its
+/// holder does not turn.)
+pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
+    let d = S::D;
+    let spins = if d == 2 { 1 } else { 3 };
+    let held = |s: &Support| -> Vec<(usize, Dof)> {
+        let axes = s.axes.iter().take(d).enumerate();
+        axes.filter_map(|(k, dof)| Some((k, dof.clone()?)))
+            .collect()
+    };
+    let common: usize = supports.iter().map(|s| held(s).len()).sum();
+    let unknowns = d + spins + common;
+    let points = mesh.points();
+    let centre =
+        points.iter().fold(S::Vector::zero(), |sum, x| sum + *x) * (1.0 / points.len() as f64);
+    let size = points
+        .iter()
+        .map(|x| (*x - centre).norm())
+        .fold(0.0, f64::max);
+    let mut normal = DMatrix::<f64>::zeros(unknowns, unknowns);
+    let mut next = d + spins;
+    for support in supports {
+        let of_part = mesh.points_of(&support.part).unwrap_or_default();
+        for (axis, dof) in held(support) {
+            for point in &of_part {
+                let arm = (points[*point as usize] - centre) * (1.0 / size);
+                let mut row = vec![0.0; unknowns];
+                row[axis] = 1.0;
+                for k in 0..spins {
+                    let mut spin = S::Spin::zero();
+                    spin[k] = 1.0;
+                    row[d + k] = S::spin_velocity(&spin, &arm)[axis];
+                }
+                if !dof.imposes() {
+                    row[next] = -1.0;
+                }
+                for i in 0..unknowns {
+                    for j in 0..unknowns {
+                        normal[(i, j)] += row[i] * row[j] / of_part.len() as f64;
+                    }
+                }
+            }
+            if dof.imposes() {
+                // No common motion is left.
+                normal[(next, next)] += 1.0;
+            }
+            next += 1;
+        }
+    }
+    let modes = normal.symmetric_eigen();
+    let most = modes.eigenvalues.iter().copied().fold(1.0, f64::max);
+    (0..unknowns).any(|k| {
+        let turning: f64 = (d..d + spins)
+            .map(|r| modes.eigenvectors[(r, k)].powi(2))
+            .sum();
+        modes.eigenvalues[k] < 1e-12 * most && turning > 1e-8
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{block, even};
+    use fretwork_core::geometry::space::{Dim2, Dim3};
+
+    fn support(part: &str, axes: &[Option<Dof>]) -> Support {
+        Support {
+            part: part.to_owned(),
+            axes: axes.to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_part_in_a_holder_cannot_turn() {
+        let mesh = block::<Dim2>(&[even(0.0, 2.0, 2), even(0.0, 1.0, 2)]).unwrap();
+        let held = |supports: &[Support]| !turns(&mesh, supports);
+        assert!(!held(&[]));
+        // A holder that slides keeps it from turning; one along its own line does not.
+        assert!(held(&[support("bottom", &[None, Some(Dof::Free)])]));
+        assert!(!held(&[support("bottom", &[Some(Dof::Fixed), None])]));
+        let sides = [
+            support("left", &[Some(Dof::Fixed), None]),
+            support("bottom", &[None, Some(Dof::Fixed)]),
+        ];
+        assert!(held(&sides));
+        let mesh = block::<Dim3>(&[even(0.0, 1.0, 1), even(0.0, 1.0, 1), even(0.0, 1.0, 1)]);
+        let mesh = mesh.unwrap();
+        let up = support("bottom", &[None, None, Some(Dof::Fixed)]);
+        assert!(turns(&mesh, std::slice::from_ref(&up)));
+        let side = support("left", &[Some(Dof::Fixed)]);
+        assert!(!turns(&mesh, &[up, side]));
+    }
+}

@@ -1,0 +1,89 @@
+//! Bodies of finite elements against closed forms: impact of a bar, bending, Hertz, Cattaneo and Mindlin.
+
+mod bar;
+mod bending;
+mod line_contact;
+
+use crate::extremes::bench::Sketch;
+use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
+use fretwork::elastic::generate::{block, even, graded};
+use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support};
+use fretwork::geometry::space::{Dim2, Space, VectorLike};
+use fretwork::scene::build::Dimensional;
+use fretwork::step::{Simulation, Steps};
+
+/// Steel of the field's benchmarks.
+const STEEL: Elasticity = Elasticity {
+    young: 210e9,
+    poisson: 0.3,
+    density: 7800.0,
+};
+
+/// A support of a part, with a drive along some axes.
+fn support(part: &str, axes: &[Option<Dof>]) -> Support {
+    Support {
+        part: part.to_owned(),
+        axes: axes.to_vec(),
+    }
+}
+
+/// Undamped, without a surface that touches, at rest.
+fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> BodySpec<'_, S> {
+    BodySpec {
+        name: "specimen",
+        mesh,
+        material,
+        damping: Rayleigh::default(),
+        supports,
+        touching: None,
+        surface_material: 0,
+        velocity: S::Vector::zero(),
+    }
+}
+
+fn sketch(step: f64, theta: f64) -> Sketch {
+    Sketch {
+        step,
+        theta,
+        gravity: 0.0,
+        solver: "tolerance: 1e-12, norm: Velocity, max_iterations: 100000,".to_owned(),
+        detection: [1e-5, 1e-4],
+        ..Sketch::default()
+    }
+}
+
+fn scene<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+    sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn add<S: Deformable>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
+    let system = S::elastic_body(spec).unwrap_or_else(|e| panic!("{e}"));
+    s.add_system(system)
+}
+
+fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
+    for _ in 0..steps {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solver.converged, "{:?}", report.solver);
+    }
+}
+
+fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
+    let system = s.state.systems.get(system).unwrap();
+    system.deformed_mesh().unwrap()
+}
+
+/// The ledger closes to rounding.
+fn closes<S: Space>(s: &Simulation<S>, tolerance: f64) {
+    let off = s.state.energy.relative_residual();
+    assert!(off < tolerance, "{off:e}: {:?}", s.state.energy);
+}
+
+fn near(expected: f64, obtained: f64, tolerance: f64) {
+    let off = (obtained - expected).abs();
+    assert!(
+        off <= tolerance * expected.abs(),
+        "expected {expected:e}, obtained {obtained:e}: off by {:e}",
+        off / expected.abs()
+    );
+}
