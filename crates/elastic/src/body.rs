@@ -10,15 +10,18 @@
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
+use crate::compiled::Deformable;
 use crate::element::{Simplex, Symmetric};
 use crate::freedom::Freedoms;
 use crate::material::{Elasticity, ElasticityError};
 use crate::matrix::{Factor, Sparse};
 use crate::mesh::{Mesh, MeshError};
 use crate::support::{Rayleigh, Support};
+use crate::surface::SurfacePart;
 use fretwork_core::bodies::{
     Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Nodes, SystemStep, SystemWork,
 };
+use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
@@ -47,6 +50,14 @@ pub enum BodyError {
         "the drive of part `{0}` imposes motion at one time and a force at another; a deformable body cannot change that within a run"
     )]
     Changes(String),
+    /// A touching part in pieces.
+    #[error(
+        "the part `{0}` is no single chain of segments with two ends, see the point at {1} m: name a part of the outline that is one, without its whole circumference"
+    )]
+    NoChain(String, String),
+    /// Facets that form no surface.
+    #[error("the part `{0}` cannot touch as a surface: {1}")]
+    NoSurface(String, String),
     /// Damping that is negative or not finite.
     #[error("factors of Rayleigh damping must not be negative, got {0:e} 1/s and {1:e} s")]
     Damping(f64, f64),
@@ -78,6 +89,8 @@ struct Model<S: Space> {
     mass: Vec<f64>,
     stiffness: Sparse,
     contactors: Vec<Contactor>,
+    /// The part that touches.
+    part: Option<SurfacePart>,
     /// Freely moving coordinates of touched points, and where each coordinate is among them.
     surface: Vec<u32>,
     place: Vec<u32>,
@@ -98,6 +111,18 @@ pub struct ElasticBody<S: Space> {
     contact: Vec<f64>,
 }
 
+/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Touching<'a> {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
+    Points(&'a str),
+    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of pieces.
+    Surface(&'a str),
+}
+
 /// What a body is made of.
 #[derive(Clone, Debug)]
 pub struct BodySpec<'a, S: Space> {
@@ -111,15 +136,15 @@ pub struct BodySpec<'a, S: Space> {
     pub damping: Rayleigh,
     /// What holds and drives it.
     pub supports: &'a [Support],
-    /// The part of the boundary whose points touch; `None` where it does not touch.
-    pub touching: Option<&'a str>,
+    /// What of it touches.
+    pub touching: Touching<'a>,
     /// Index of the material for interface laws.
     pub surface_material: u16,
     /// Its velocity at the start (m/s), of all that is not held.
     pub velocity: S::Vector,
 }
 
-impl<S: Space> ElasticBody<S> {
+impl<S: Deformable> ElasticBody<S> {
     /// A body at rest and without load.
     ///
     /// # Errors
@@ -145,25 +170,8 @@ impl<S: Space> ElasticBody<S> {
             return Err(BodyError::Turns(name.to_owned()));
         }
         let (mass, stiffness) = assemble(&mesh, &material, &freedoms);
-        let points = match touching {
-            None => Vec::new(),
-            Some(part) => mesh.points_of(part).ok_or_else(|| {
-                let names: Vec<&str> = mesh.part_names().collect();
-                BodyError::NoPart(part.to_owned(), names.join(", "))
-            })?,
-        };
-        let tributary = mesh.tributary();
-        let size = |p: u32| match S::D {
-            2 => 0.5 * tributary[p as usize],
-            _ => (tributary[p as usize] / std::f64::consts::PI).sqrt(),
-        };
-        let contactor = |p: &u32| Contactor {
-            nodes: Nodes::one(*p),
-            radius: size(*p),
-            shape: ContactorShape::Point,
-            material: surface_material,
-        };
-        let contactors = points.iter().map(contactor).collect();
+        let (part, contactors) = contactors(&mesh, touching, surface_material)?;
+        let points: &[u32] = part.as_ref().map_or(&[], |part| &part.points);
         let coordinates = points
             .iter()
             .flat_map(|p| (0..S::D).map(|axis| freedoms.of(*p, axis) as u32));
@@ -189,6 +197,7 @@ impl<S: Space> ElasticBody<S> {
             mass,
             stiffness,
             contactors,
+            part,
             surface,
             place,
         };
@@ -341,6 +350,44 @@ impl<S: Space> Model<S> {
     }
 }
 
+/// The part of a mesh that touches, and its contactors.
+fn contactors<S: Deformable>(
+    mesh: &Mesh<S>,
+    touching: Touching,
+    material: u16,
+) -> Result<(Option<SurfacePart>, Vec<Contactor>), BodyError> {
+    let tributary = mesh.tributary();
+    let size = |p: u32| match S::D {
+        2 => 0.5 * tributary[p as usize],
+        _ => (tributary[p as usize] / std::f64::consts::PI).sqrt(),
+    };
+    let contactor = |p: u32, shape| Contactor {
+        nodes: Nodes::one(p),
+        radius: size(p),
+        shape,
+        material,
+    };
+    match touching {
+        Touching::Nothing => Ok((None, Vec::new())),
+        Touching::Points(name) => {
+            let part = SurfacePart::new(mesh, name)?;
+            let points = part.points.iter();
+            let all = points.map(|p| contactor(*p, ContactorShape::Point));
+            let all = all.collect();
+            Ok((Some(part), all))
+        }
+        Touching::Surface(name) => {
+            let part = SurfacePart::new(mesh, name)?;
+            let vertices = mesh.corners(&part.points);
+            if let Err(why) = S::surface(vertices, &part) {
+                return Err(BodyError::NoSurface(name.to_owned(), why));
+            }
+            let one = contactor(part.origin(), ContactorShape::Surface);
+            Ok((Some(part), vec![one]))
+        }
+    }
+}
+
 /// The lumped mass of each coordinate (kg), and the stiffness.
 fn assemble<S: Space>(
     mesh: &Mesh<S>,
@@ -373,7 +420,7 @@ fn assemble<S: Space>(
     (mass, stiffness)
 }
 
-impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
+impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn name(&self) -> &str {
         &self.model.name
     }
@@ -543,6 +590,33 @@ impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
 
     fn contactors(&self) -> Vec<Contactor> {
         self.model.contactors.clone()
+    }
+
+    fn contact_nodes(&self, contactor: &Contactor, arm: &S::Vector) -> Nodes {
+        match &self.model.part {
+            Some(part) if contactor.shape == ContactorShape::Surface => {
+                let at = self.node_position(part.origin()) + *arm;
+                part.nodes::<S>(&at, |p| self.node_position(p))
+            }
+            _ => contactor.nodes,
+        }
+    }
+
+    fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
+        let part = self.model.part.as_ref()?;
+        if contactor.shape != ContactorShape::Surface {
+            return None;
+        }
+        S::surface(self.surface_vertices(contactor), part).ok()
+    }
+
+    fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {
+        let Some(part) = &self.model.part else {
+            return Vec::new();
+        };
+        let origin = self.node_position(part.origin());
+        let points = part.points.iter();
+        points.map(|p| self.node_position(*p) - origin).collect()
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {

@@ -1,11 +1,24 @@
 //! The bodies, compiled once for each dimension, so that dependent crates do not compile them again.
 
 use crate::body::{BodyError, BodySpec, ElasticBody};
+use crate::surface::SurfacePart;
 use fretwork_core::bodies::DynamicalSystem;
+use fretwork_core::geometry::mesh::Mesh;
+use fretwork_core::geometry::polyline::Polyline;
+use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 
 /// A dimension for which this crate compiles its bodies.
 pub trait Deformable: Space {
+    /// The surface of facets, of vertices (m) that are those of a [`SurfacePart`].
+    ///
+    /// # Errors
+    /// Why they form no surface.
+    fn surface(
+        vertices: Vec<Self::Vector>,
+        part: &SurfacePart,
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+
     /// A body of finite elements, see [`ElasticBody::new`].
     ///
     /// # Errors
@@ -14,12 +27,28 @@ pub trait Deformable: Space {
 }
 
 impl Deformable for Dim2 {
+    fn surface(
+        vertices: Vec<Self::Vector>,
+        _part: &SurfacePart,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let profile = Polyline::new(vertices, None).map_err(|e| e.to_string())?;
+        Ok(Box::new(profile))
+    }
+
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {
         Ok(Box::new(ElasticBody::new(spec)?))
     }
 }
 
 impl Deformable for Dim3 {
+    fn surface(
+        vertices: Vec<Self::Vector>,
+        part: &SurfacePart,
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let mesh = Mesh::new(vertices, part.facets.clone()).map_err(|e| e.to_string())?;
+        Ok(Box::new(mesh))
+    }
+
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {
         Ok(Box::new(ElasticBody::new(spec)?))
     }

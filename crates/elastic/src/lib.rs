@@ -10,8 +10,9 @@ pub mod matrix;
 pub mod mesh;
 pub mod rigid;
 pub mod support;
+pub mod surface;
 
-pub use body::{BodyError, BodySpec, ElasticBody};
+pub use body::{BodyError, BodySpec, ElasticBody, Touching};
 pub use compiled::Deformable;
 pub use material::Elasticity;
 pub use mesh::Mesh;

@@ -27,7 +27,7 @@ fn falling(step: f64, theta: f64, cells: usize) -> Simulation<Dim2> {
         support("right", &[Some(Dof::Fixed), None]),
     ];
     let mut spec = body(mesh, material, &supports);
-    spec.touching = Some("bottom");
+    spec.touching = Touching::Points("bottom");
     spec.velocity[1] = -SPEED;
     add(&mut s, spec);
     s

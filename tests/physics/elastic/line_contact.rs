@@ -8,121 +8,214 @@
 //! ```
 
 use super::*;
+use nalgebra::Vector2;
 
-const RADIUS: f64 = 0.05;
+/// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under 178.9 N/mm.
+const STEEL: Elasticity = Elasticity {
+    young: 2.0 * 82e9 * 1.28,
+    poisson: 0.28,
+    density: 7800.0,
+};
+
+const RADIUS: f64 = 0.5;
 const A: f64 = 1e-3;
-const MU: f64 = 0.5;
+/// A thousandth of a second: waves cross the bodies in a hundredth of that, and the velocity that the load would give the cylinder
+/// without contacts, against which the error of the solver is measured, is still small.
+const STEP: f64 = 1e-3;
+/// Extent of the bodies (m).
+const FAR: f64 = 40.0 * A;
+const MU: f64 = 0.3;
 
-/// Load per length for the half-width A (N/m).
-fn load() -> f64 {
-    std::f64::consts::PI * STEEL.plane_strain() * A * A / (4.0 * RADIUS)
+/// E* of two bodies of steel, or of one and a rigid one (Pa).
+fn modulus(counter: Counter) -> f64 {
+    match counter {
+        Counter::Rigid => STEEL.plane_strain(),
+        Counter::Steel => 0.5 * STEEL.plane_strain(),
+    }
 }
 
-/// The cylinder at rest under its load, and the tangential force along x as a share of mu P, with `n` elements over the half-width.
+/// What is pressed on the block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Counter {
+    /// A rigid disk without friction: with friction shear tractions of a load without shift raise the pressure.
+    Rigid,
+    /// A cylinder of the same steel, of which the block is a mirror.
+    Steel,
+}
+
+/// Load per length for the half-width A (N/m).
+fn load(counter: Counter) -> f64 {
+    std::f64::consts::PI * modulus(counter) * A * A / (4.0 * RADIUS)
+}
+
+/// Coordinates along the contact, even where it is, and away from it, with `n` elements over the half-width.
+fn coordinates(n: usize) -> [Vec<f64>; 2] {
+    let size = A / n as f64;
+    let outside = graded(1.5 * A, FAR, size, 1.25);
+    let left = outside.iter().skip(1).map(|x| -x).rev();
+    let middle = even(-1.5 * A, 1.5 * A, 3 * n);
+    let right = outside.iter().skip(1).copied();
+    let x = left.chain(middle).chain(right).collect();
+    [x, graded(0.0, FAR, size, 1.15)]
+}
+
+/// The cylinder at rest under its load, and a tangential force along x, a share of mu P, with `n` elements over the half-width, and
+/// of `finer` quarters of that number on a cylinder of steel.
 /// The solution is static: steps are long against all waves.
-fn pressed(n: usize, tangential: f64) -> Simulation<Dim2> {
-    let (far, size) = (40.0 * A, A / n as f64);
-    let normal = load();
-    // The load first, then the tangential force.
-    let force = |from: f64, to: f64| {
-        let end = from + 5.0;
-        format!("Force(Ramp(from: 0.0, to: {to:?}, start: {from:?}, end: {end:?}))")
+fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<Dim2> {
+    let normal = load(counter);
+    let ramp = |from: f64, to: f64| TimeFunction::Ramp {
+        from: 0.0,
+        to,
+        start: from,
+        end: from + 10.0 * STEP,
     };
-    let along = force(6.0, tangential * MU * normal);
-    let down = force(0.0, -normal);
+    let (down, along) = (ramp(0.0, -normal), ramp(12.0 * STEP, share * MU * normal));
+    let floor = "(name: \"far\", material: \"m0\", shapes: [HalfSpace(normal: [0.0, 1.0])], position: [0.0, -1.0]),";
+    let disk = format!(
+        "(name: \"cylinder\", material: \"m0\", shapes: [Balls([([0.0, 0.0], {RADIUS:?})])], position: [0.0, {RADIUS:?}], \
+         dofs: (x: Fixed, y: Force(Ramp(from: 0.0, to: {:?}, start: 0.0, end: {:?})), rz: Fixed)),",
+        -normal,
+        10.0 * STEP
+    );
+    let rigid = counter == Counter::Rigid;
     let mut s = scene::<Dim2>(&Sketch {
-        bodies: format!(
-            "(name: \"cylinder\", material: \"m0\", shapes: [Balls([([0.0, 0.0], {RADIUS:?})])], position: [0.0, {RADIUS:?}], \
-             dofs: (x: {along}, y: {down}, rz: Fixed)),"
-        ),
-        mu: MU,
-        ..sketch(0.5, 1.0)
+        bodies: if rigid { disk } else { floor.to_owned() },
+        mu: if rigid { 0.0 } else { MU },
+        ..sketch(STEP, 1.0)
     });
-    // Even in the contact, coarser away from it.
-    let even_to = 1.5 * A;
-    let mut x = even(-even_to, even_to, 3 * n);
-    let outside = graded(even_to, far, size, 1.25);
-    x.extend(outside.iter().skip(1));
-    let left: Vec<f64> = outside.iter().skip(1).map(|x| -x).rev().collect();
-    x.splice(0..0, left);
-    let mut y = graded(0.0, -far, size, 1.15);
-    y.reverse();
-    let supports = [support("bottom", &[Some(Dof::Fixed), Some(Dof::Fixed)])];
-    let mut spec = body(block::<Dim2>(&[x, y]).unwrap(), STEEL, &supports);
-    spec.touching = Some("top");
-    add(&mut s, spec);
+    let [x, y] = coordinates(n);
+    let below: Vec<f64> = y.iter().map(|y| -y).rev().collect();
+    let held = [support("bottom", &[Some(Dof::Fixed), Some(Dof::Fixed)])];
+    let mut flat = body(block::<Dim2>(&[x.clone(), below]).unwrap(), STEEL, &held);
+    flat.touching = if rigid {
+        Touching::Points("top")
+    } else {
+        Touching::Surface("top")
+    };
+    add(&mut s, flat);
+    if !rigid {
+        let round = |p: &Vector2<f64>| {
+            let sagitta = RADIUS - (RADIUS * RADIUS - p.x * p.x).sqrt();
+            Vector2::new(p.x, p.y + sagitta * (1.0 - p.y / FAR))
+        };
+        let [x, y] = coordinates(finer * n / 4);
+        let mesh = block::<Dim2>(&[x, y]).unwrap().mapped(round).unwrap();
+        let driven = [support(
+            "top",
+            &[Some(Dof::Force(along)), Some(Dof::Force(down))],
+        )];
+        let mut cylinder = body(mesh, STEEL, &driven);
+        cylinder.name = "cylinder";
+        cylinder.touching = Touching::Points("bottom");
+        add(&mut s, cylinder);
+    }
     s
 }
 
-/// Place along x (m), pressure and shear traction (Pa) of each touching point.
+/// Place along x (m), pressure and shear traction (Pa) on the lower body at each touching point.
 fn tractions(s: &Simulation<Dim2>, n: usize) -> Vec<[f64; 3]> {
     let length = A / n as f64 * s.options.scheme.h;
     let contacts = s.state.network.contacts.iter();
     let mut out: Vec<[f64; 3]> = contacts
         .filter(|c| c.impulse[1] != 0.0)
         .map(|c| {
-            let system = c.bodies.map(|b| s.state.bodies.carrier(b as usize));
-            let side = usize::from(system[0].is_none());
-            let sign = if side == 0 { 1.0 } else { -1.0 };
-            let x = s.state.bodies.position[c.bodies[side] as usize][0];
-            [
-                x,
-                -sign * c.impulse[1] / length,
-                sign * c.impulse[0] / length,
-            ]
+            // The impulse on the candidate, which is above.
+            let n = c.normal;
+            let x = s.state.bodies.position[c.bodies[0] as usize][0] + c.arms[0][0];
+            let along = c.impulse[0] * n[1] - c.impulse[1] * n[0];
+            [x, c.impulse.dot(&n) / length, -along * n[1].abs() / length]
         })
         .collect();
     out.sort_by(|a, b| a[0].total_cmp(&b[0]));
     out
 }
 
-/// Root mean square of the difference from a closed form, as a share of p0.
+/// Root mean square of the difference from a closed form (Pa).
 fn off(tractions: &[[f64; 3]], which: usize, expected: impl Fn(f64) -> f64) -> f64 {
-    let p0 = 2.0 * load() / (std::f64::consts::PI * A);
     let squares = tractions
         .iter()
         .map(|t| (t[which] - expected(t[0])).powi(2));
-    (squares.sum::<f64>() / tractions.len() as f64).sqrt() / p0
+    (squares.sum::<f64>() / tractions.len() as f64).sqrt()
 }
 
 fn ellipse(x: f64, half: f64) -> f64 {
     (1.0 - (x / half).powi(2)).max(0.0).sqrt()
 }
 
-#[test]
-fn hertz() {
-    let p0 = 2.0 * load() / (std::f64::consts::PI * A);
-    let mut errors = Vec::new();
-    for n in [5, 10, 20] {
-        let mut s = pressed(n, 0.0);
+/// The half-width of an elliptic distribution from its second moment, P a^2/4.
+fn half_width(tractions: &[[f64; 3]]) -> f64 {
+    let moment: f64 = tractions.iter().map(|t| t[1] * t[0] * t[0]).sum();
+    let total: f64 = tractions.iter().map(|t| t[1]).sum();
+    2.0 * (moment / total).sqrt()
+}
+
+fn hertz(counter: Counter) {
+    if counter == Counter::Steel {
+        near(178.9e3, load(counter), 1e-3);
+    }
+    let p0 = 2.0 * load(counter) / (std::f64::consts::PI * A);
+    let [mut widths, mut errors] = [Vec::new(), Vec::new()];
+    for n in [4, 8, 16, 32] {
+        let mut s = pressed(counter, n, 4, 0.0);
         go(&mut s, 12);
         let found = tractions(&s, n);
         let total: f64 = found.iter().map(|t| t[1] * A / n as f64).sum();
-        near(load(), total, 1e-6);
-        errors.push(off(&found, 1, |x| p0 * ellipse(x, A)));
-        println!(
-            "{n}: {:?} {} {:e}",
-            errors,
-            found.len(),
-            found[found.len() / 2][1] / p0
-        );
+        near(load(counter), total, 1e-4);
+        widths.push(half_width(&found) / A - 1.0);
+        errors.push(off(&found, 1, |x| p0 * ellipse(x, A)) / p0);
     }
-    assert!(errors[2] < 0.02, "{errors:?}");
-    assert!(errors.windows(2).all(|e| e[1] < 0.75 * e[0]), "{errors:?}");
+    println!("{counter:?}: a {widths:?} p {errors:?}");
+    assert!(errors[3] < 0.02, "{errors:?}");
+    assert!(errors[3] < 0.5 * errors[0], "{errors:?}");
+    assert!(widths[3].abs() < 0.01, "{widths:?}");
+}
+
+#[test]
+fn hertz_on_a_rigid_cylinder() {
+    hertz(Counter::Rigid);
+}
+
+#[test]
+fn hertz_between_two_bodies() {
+    hertz(Counter::Steel);
+}
+
+/// Where points lie anywhere on the segments of the other body, forces of single points are off by some ten per cent, since one pass
+/// of points against segments does not carry a uniform pressure as one; load and half-width are those of Hertz all the same.
+#[test]
+fn meshes_that_do_not_match_have_the_load_and_the_width() {
+    for finer in [5, 7] {
+        let mut s = pressed(Counter::Steel, 16, finer, 0.0);
+        go(&mut s, 12);
+        let n = 4 * finer;
+        let found = tractions(&s, n);
+        let total: f64 = found.iter().map(|t| t[1] * A / n as f64).sum();
+        near(load(Counter::Steel), total, 1e-4);
+        near(A, half_width(&found), 0.01);
+    }
 }
 
 #[test]
 fn cattaneo_and_mindlin() {
-    let p0 = 2.0 * load() / (std::f64::consts::PI * A);
+    let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
     for share in [0.36, 0.75] {
-        let c = A * (1.0_f64 - share).sqrt();
-        let mut s = pressed(20, share);
+        let stuck = (1.0_f64 - share).sqrt();
+        let mut s = pressed(Counter::Steel, 20, 4, share);
         go(&mut s, 24);
-        let found = tractions(&s, 20);
-        let expected = |x: f64| MU * p0 * (ellipse(x, A) - c / A * ellipse(x, c));
-        let error = off(&found, 2, expected);
-        println!("{share}: {error:e} {found:?}");
-        assert!(error < 0.02 * MU + 0.005, "{share}: {error}");
         closes(&s, 1e-6);
+        let found = tractions(&s, 20);
+        // The bodies have moved along a little.
+        let centre = found.iter().map(|t| t[0] * t[1]).sum::<f64>()
+            / found.iter().map(|t| t[1]).sum::<f64>();
+        let found: Vec<[f64; 3]> = found.iter().map(|t| [t[0] - centre, t[1], t[2]]).collect();
+        let expected = |x: f64| MU * p0 * (ellipse(x, A) - stuck * ellipse(x, stuck * A));
+        let error = off(&found, 2, expected) / (MU * p0);
+        // The second moment of the shear is mu P (a^2 - c^4/a^2)/4.
+        let second = |which: usize| found.iter().map(|t| t[which] * t[0] * t[0]).sum::<f64>();
+        let c = (1.0 - second(2) / (MU * second(1))).powf(0.25);
+        println!("{share}: c/a {c} for {stuck}, q off by {error:e}");
+        near(stuck, c, 0.02);
+        assert!(error < 0.03, "{share}: {error}");
     }
 }

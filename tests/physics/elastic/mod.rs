@@ -7,7 +7,7 @@ mod line_contact;
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
 use fretwork::elastic::generate::{block, even, graded};
-use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support};
+use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support, Touching};
 use fretwork::geometry::space::{Dim2, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
@@ -35,7 +35,7 @@ fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> 
         material,
         damping: Rayleigh::default(),
         supports,
-        touching: None,
+        touching: Touching::Nothing,
         surface_material: 0,
         velocity: S::Vector::zero(),
     }

@@ -18,6 +18,7 @@
 //! Sources: J. J. Moreau, "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999); M. Jean,
 //! "The non-smooth contact dynamics method", same volume.
 
+use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::fmt::Debug;
 
@@ -59,7 +60,7 @@ pub struct Contactor {
     pub radius: f64,
     /// What touches.
     pub shape: ContactorShape,
-    /// Index of the material of a ball or a point.
+    /// Index of the material of a ball, a point or a surface.
     pub material: u16,
 }
 
@@ -70,6 +71,8 @@ pub enum ContactorShape {
     Ball,
     /// The origin itself: a point of a surface, which touches balls, pieces and surfaces but no other point.
     Point,
+    /// A surface that deforms with the system, see [`DynamicalSystem::surface`].
+    Surface,
     /// Shapes that the caller gives to the body.
     Given,
 }
@@ -261,6 +264,16 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// contactor that does not turn.
     fn contact_nodes(&self, contactor: &Contactor, _arm: &S::Vector) -> Nodes {
         contactor.nodes
+    }
+
+    /// The surface of a contactor that is one, in the frame of the contactor, as it is now.
+    fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
+        None
+    }
+
+    /// Vertices of that surface as they are now, in the order of its own, in the frame of the contactor (m).
+    fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {
+        Vec::new()
     }
 
     /// Where a contactor stands and how it moves: as the nodes of its origin, without turning.

@@ -1,7 +1,10 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
-use super::dynamical_system::{Contactor, DynamicalSystem, Nodes, SystemStep, SystemWork};
+use super::dynamical_system::{
+    Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork,
+};
 use super::state::Bodies;
+use crate::geometry::shape::Carried;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
@@ -132,6 +135,21 @@ impl<S: Space> Systems<S> {
                 if let Some(lost) = bodies.lost.get_mut(b) {
                     *lost = S::Vector::zero();
                 }
+            }
+        }
+    }
+
+    /// Gives the surfaces of contactors their vertices as they are now.
+    pub fn deform(&self, bodies: &Bodies<S>, surfaces: &mut [Carried<S>]) {
+        for surface in surfaces {
+            let Some(carrier) = bodies.carrier(surface.body as usize) else {
+                continue;
+            };
+            let entry = &self.entries[carrier.system as usize];
+            let contactor = &entry.contactors[carrier.contactor as usize];
+            if contactor.shape == ContactorShape::Surface {
+                let vertices = entry.system.surface_vertices(contactor);
+                surface.shape.move_vertices(&vertices);
             }
         }
     }

@@ -49,6 +49,16 @@ pub enum MeshError {
 /// Maximum number of triangles that the names of contacts can distinguish.
 pub const MAX_TRIANGLES: usize = 1 << 28;
 
+/// Bounding boxes of the triangles.
+fn boxes(points: &[V], triangles: &[[u32; 3]]) -> RTree<Placed> {
+    let placed = triangles.iter().enumerate().map(|(k, t)| {
+        let corners = t.map(|c| <[f64; 3]>::from(points[c as usize]));
+        let bounds = AABB::from_points(&corners);
+        Placed::new(Rectangle::from_aabb(bounds), k as u32)
+    });
+    RTree::bulk_load(placed.collect())
+}
+
 impl Mesh {
     /// Creates a mesh from points (m) and triangles of point indices.
     ///
@@ -85,12 +95,7 @@ impl Mesh {
                 }
             }
         }
-        let placed = triangles.iter().enumerate().map(|(k, t)| {
-            let corners = t.map(|c| <[f64; 3]>::from(points[c as usize]));
-            let bounds = AABB::from_points(&corners);
-            Placed::new(Rectangle::from_aabb(bounds), k as u32)
-        });
-        let tree = RTree::bulk_load(placed.collect());
+        let tree = boxes(&points, &triangles);
         Ok(Self {
             points,
             triangles,
@@ -127,6 +132,11 @@ impl Surface<Dim3> for Mesh {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
         facets::touches(&near, centre, reach, out);
+    }
+
+    fn move_vertices(&mut self, vertices: &[V]) {
+        self.points.copy_from_slice(vertices);
+        self.tree = boxes(&self.points, &self.triangles);
     }
 
     fn facets(&self, low: &V, high: &V, out: &mut Vec<Facet<V>>) {

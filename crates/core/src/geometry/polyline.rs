@@ -23,6 +23,8 @@ pub struct Polyline {
     tree: RTree<Segment>,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<Worn>,
+    /// Where the points were when the boxes were built, and the margin of these (m); `None` unless the profile deforms.
+    deformed: Option<(Vec<Vector2<f64>>, f64)>,
 }
 
 /// Heights before any wear, and the displacement of vertices since the boxes were built, and the margin (m).
@@ -95,13 +97,14 @@ impl Polyline {
             period,
             tree: RTree::new(),
             worn: None,
+            deformed: None,
         };
-        out.index(0.0);
+        out.index([0.0, 0.0]);
         Ok(out)
     }
 
-    /// Builds the bounding boxes of the segments, with a margin (m).
-    fn index(&mut self, margin: f64) {
+    /// Builds the bounding boxes of the segments, with a margin along each axis (m).
+    fn index(&mut self, margin: [f64; 2]) {
         let images: &[f64] = if self.period.is_some() {
             &[-1.0, 0.0, 1.0]
         } else {
@@ -113,7 +116,10 @@ impl Polyline {
             for k in 0..self.segments() {
                 let [a, b] = self.segment(k, shift);
                 let (low, high) = (a.inf(&b), a.sup(&b));
-                let corners = ([low.x, low.y - margin], [high.x, high.y + margin]);
+                let corners = (
+                    [low.x - margin[0], low.y - margin[1]],
+                    [high.x + margin[0], high.y + margin[1]],
+                );
                 let place = Rectangle::from_corners(corners.0, corners.1);
                 segments.push(Segment::new(place, (k as u32, shift)));
             }
@@ -271,8 +277,22 @@ impl Surface<Dim2> for Polyline {
         vec![self.points.clone()]
     }
 
+    fn move_vertices(&mut self, vertices: &[Vector2<f64>]) {
+        self.points.copy_from_slice(vertices);
+        let far = |(built, margin): &(Vec<Vector2<f64>>, f64)| {
+            let mut moved = built.iter().zip(vertices);
+            moved.any(|(a, b)| (b - a).amax() > *margin)
+        };
+        if self.deformed.as_ref().is_none_or(far) {
+            let mean = (vertices[vertices.len() - 1] - vertices[0]).norm() / self.segments() as f64;
+            let margin = MARGIN * mean;
+            self.deformed = Some((vertices.to_vec(), margin));
+            self.index([margin, margin]);
+        }
+    }
+
     fn receding(&self) -> Option<&dyn Recede<Dim2>> {
-        Some(self)
+        self.deformed.is_none().then_some(self as &dyn Recede<Dim2>)
     }
 
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<Dim2>> {
@@ -358,7 +378,7 @@ impl Recede<Dim2> for Polyline {
         if worn.moved > worn.margin {
             worn.moved = 0.0;
             let margin = worn.margin;
-            self.index(margin);
+            self.index([0.0, margin]);
         }
         step
     }

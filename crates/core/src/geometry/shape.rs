@@ -108,6 +108,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<S>> {
         None
     }
+    /// Takes new places of its vertices (m), all of them in their order, of a surface that deforms; nothing for others.
+    fn move_vertices(&mut self, _vertices: &[S::Vector]) {}
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {

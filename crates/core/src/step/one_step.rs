@@ -131,7 +131,7 @@ impl<S: Space> Simulation<S> {
     fn move_to_end(&mut self) {
         let Scheme { h, theta } = self.options.scheme;
         motion::advance(&mut self.state.bodies, theta * h);
-        self.state.systems.carry(&mut self.state.bodies);
+        self.carry_systems();
         self.end_motion();
     }
 

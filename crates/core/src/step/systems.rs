@@ -5,7 +5,7 @@ use super::{Simulation, StepError};
 use crate::bodies::{ContactorShape, DynamicalSystem, SystemStep};
 use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
-use crate::geometry::shape::Ball;
+use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::{NodalSystem, Side};
 
@@ -28,7 +28,7 @@ impl<S: Space> Default for SystemContacts<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and its ball or point; gives its index. The
+    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and its ball, point or surface; gives its index. The
     /// bodies are [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
     ///
     /// Energy that it holds counts as work done on it before the start.
@@ -36,11 +36,20 @@ impl<S: Space> Simulation<S> {
         let (kinetic, stored) = (system.kinetic_energy(), system.stored_energy());
         let contactors = system.contactors();
         let index = self.state.systems.add(system, &mut self.state.bodies);
+        let system = self.state.systems.get(index);
         for (contactor, body) in contactors.iter().zip(self.state.systems.bodies(index)) {
+            if let Some(shape) = system.and_then(|s| s.surface(contactor)) {
+                self.shapes.surfaces.push(Carried {
+                    body: *body,
+                    offset: S::Vector::zero(),
+                    shape,
+                    material: contactor.material,
+                });
+            }
             let radius = match contactor.shape {
                 ContactorShape::Ball => Some(contactor.radius),
                 ContactorShape::Point => Some(0.0),
-                ContactorShape::Given => None,
+                ContactorShape::Surface | ContactorShape::Given => None,
             };
             if let Some(radius) = radius {
                 self.shapes.balls.push(Ball {
@@ -80,7 +89,15 @@ impl<S: Space> Simulation<S> {
         let step = self.system_step();
         self.state.systems.begin_step(&step);
         self.state.systems.advance(time);
+        self.carry_systems();
+    }
+
+    /// Has the bodies of contactors follow their systems, and surfaces deform with them.
+    pub(super) fn carry_systems(&mut self) {
         self.state.systems.carry(&mut self.state.bodies);
+        self.state
+            .systems
+            .deform(&self.state.bodies, &mut self.shapes.surfaces);
     }
 
     /// The velocities of systems without contacts; those of their bodies into `free`.

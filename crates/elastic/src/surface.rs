@@ -1,0 +1,198 @@
+//! A part of the boundary that touches as a surface: its vertices follow the points of the mesh, and an impulse anywhere on it goes
+//! to the points of the facet there, by its shape functions.
+
+use crate::body::BodyError;
+use crate::mesh::{Mesh, place};
+use fretwork_core::bodies::Nodes;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Points and facets of a part of the boundary.
+#[derive(Clone, Debug)]
+pub struct SurfacePart {
+    /// Points of the mesh, in the order of the vertices of the surface: along the chain in 2D, with the body on its right.
+    pub points: Vec<u32>,
+    /// The D vertices of each facet, by their place in `points`; outside is where they are anticlockwise (3D).
+    pub facets: Vec<[u32; 3]>,
+    /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
+    single_valued: bool,
+    dimension: usize,
+}
+
+impl SurfacePart {
+    /// A part of the boundary of a mesh.
+    ///
+    /// # Errors
+    /// A part that the mesh has not, or one that is no chain of segments with two ends (2D).
+    pub fn new<S: Space>(mesh: &Mesh<S>, part: &str) -> Result<Self, BodyError> {
+        let Some(facets) = mesh.part(part) else {
+            let names: Vec<&str> = mesh.part_names().collect();
+            return Err(BodyError::NoPart(part.to_owned(), names.join(", ")));
+        };
+        let facets: Vec<&[u32]> = facets.iter().map(|f| mesh.facet(*f as usize)).collect();
+        if S::D == 2 {
+            return Self::chain(mesh, part, &facets);
+        }
+        let points: BTreeSet<u32> = facets.iter().flat_map(|f| f.iter().copied()).collect();
+        let points: Vec<u32> = points.into_iter().collect();
+        let local = |p: u32| points.binary_search(&p).map_or(0, |k| k as u32);
+        Ok(Self {
+            facets: facets
+                .iter()
+                .map(|f| [local(f[0]), local(f[1]), local(f[2])])
+                .collect(),
+            points,
+            single_valued: false,
+            dimension: 3,
+        })
+    }
+
+    fn chain<S: Space>(mesh: &Mesh<S>, part: &str, facets: &[&[u32]]) -> Result<Self, BodyError> {
+        // Facets have the body on their left, the chain on its right.
+        let next: BTreeMap<u32, u32> = facets.iter().map(|f| (f[1], f[0])).collect();
+        let ends: BTreeSet<u32> = next.values().copied().collect();
+        let starts: Vec<u32> = next.keys().copied().filter(|p| !ends.contains(p)).collect();
+        let [start] = starts[..] else {
+            let at = starts.first().or(next.keys().next());
+            let at = at.map_or_else(String::new, |p| place(&mesh.points()[*p as usize]));
+            return Err(BodyError::NoChain(part.to_owned(), at));
+        };
+        let mut points = vec![start];
+        while let Some(p) = next.get(&points[points.len() - 1]) {
+            points.push(*p);
+        }
+        if points.len() != facets.len() + 1 {
+            let at = place(&mesh.points()[start as usize]);
+            return Err(BodyError::NoChain(part.to_owned(), at));
+        }
+        let at = |k: usize| mesh.points()[points[k] as usize];
+        let along = at(points.len() - 1) - at(0);
+        let rises = |k: usize| (at(k + 1) - at(k)).dot(&along) > 0.0;
+        Ok(Self {
+            single_valued: (0..facets.len()).all(rises),
+            facets: (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect(),
+            points,
+            dimension: 2,
+        })
+    }
+
+    /// The point of the mesh that carries the frame of the surface: one in its middle.
+    pub fn origin(&self) -> u32 {
+        self.points[self.points.len() / 2]
+    }
+
+    /// The nodes of a place on the surface, by the shape functions of its facet. `position` gives the current place of a point of the
+    /// mesh (m).
+    pub fn nodes<S: Space>(&self, at: &S::Vector, position: impl Fn(u32) -> S::Vector) -> Nodes {
+        let vertex = |k: u32| self.points[k as usize];
+        let corners = |f: usize| self.facets[f].map(|k| position(vertex(k)));
+        let found = if self.dimension == 2 {
+            let off = |f: usize| {
+                let [a, b, _] = corners(f);
+                let (edge, arm) = (b - a, *at - a);
+                let s = (arm.dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0);
+                ((arm - edge * s).norm(), [1.0 - s, s, 0.0])
+            };
+            self.nearest_segment::<S>(at, &position, off)
+        } else {
+            let off = |f: usize| on_triangle(at, &corners(f));
+            (0..self.facets.len())
+                .map(|f| (f, off(f)))
+                .min_by(|a, b| a.1.0.total_cmp(&b.1.0))
+                .map(|(f, (_, weights))| (f, weights))
+        };
+        let (facet, weights) = found.unwrap_or((0, [1.0, 0.0, 0.0]));
+        let corners = self.facets[facet].iter().zip(weights).take(self.dimension);
+        let terms: Vec<(u32, f64)> = corners.map(|(k, w)| (vertex(*k), w)).collect();
+        Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
+    }
+
+    /// The segment of a chain that is nearest to a place, with its weights.
+    fn nearest_segment<S: Space>(
+        &self,
+        at: &S::Vector,
+        position: impl Fn(u32) -> S::Vector,
+        off: impl Fn(usize) -> (f64, [f64; 3]),
+    ) -> Option<(usize, [f64; 3])> {
+        let last = self.facets.len() - 1;
+        if !self.single_valued {
+            let all = (0..=last).map(|f| (f, off(f)));
+            let nearest = all.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+            return Some((nearest.0, nearest.1.1));
+        }
+        let start = position(self.points[0]);
+        let along = position(self.points[last + 1]) - start;
+        let there = (*at - start).dot(&along);
+        let passed = self
+            .points
+            .partition_point(|p| (position(*p) - start).dot(&along) <= there);
+        let mut f = passed.clamp(1, last + 1) - 1;
+        let mut here = off(f);
+        // A steep neighbour may be nearer than the segment above or below the place.
+        loop {
+            let around = [f.checked_sub(1), (f < last).then_some(f + 1)];
+            let better = around.into_iter().flatten().map(|g| (g, off(g)));
+            match better.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) {
+                Some((g, nearer)) if nearer.0 < here.0 => (f, here) = (g, nearer),
+                _ => return Some((f, here.1)),
+            }
+        }
+    }
+}
+
+/// Distance of a place from a triangle (m), and the weights of its corners at the nearest point of its plane, clamped to the
+/// triangle.
+fn on_triangle<V: VectorLike>(at: &V, corners: &[V; 3]) -> (f64, [f64; 3]) {
+    let [a, b, c] = *corners;
+    let (u, v, arm) = (b - a, c - a, *at - a);
+    let (uu, uv, vv) = (u.dot(&u), u.dot(&v), v.dot(&v));
+    let (ru, rv) = (arm.dot(&u), arm.dot(&v));
+    let determinant = uu * vv - uv * uv;
+    let s = ((vv * ru - uv * rv) / determinant).max(0.0);
+    let t = ((uu * rv - uv * ru) / determinant).max(0.0);
+    let over = (s + t).max(1.0);
+    let (s, t) = (s / over, t / over);
+    ((arm - u * s - v * t).norm(), [1.0 - s - t, s, t])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{block, even};
+    use fretwork_core::geometry::space::{Dim2, Dim3};
+    use nalgebra::{Vector2, Vector3};
+
+    #[test]
+    fn a_top_goes_to_the_right() {
+        let mesh = block::<Dim2>(&[even(0.0, 4.0, 4), even(0.0, 1.0, 2)]).unwrap();
+        let part = SurfacePart::new(&mesh, "top").unwrap();
+        let x: Vec<f64> = part
+            .points
+            .iter()
+            .map(|p| mesh.points()[*p as usize].x)
+            .collect();
+        assert_eq!(x, [0.0, 1.0, 2.0, 3.0, 4.0]);
+        let position = |p: u32| mesh.points()[p as usize];
+        let nodes = part.nodes::<Dim2>(&Vector2::new(2.25, 1.01), position);
+        let found: Vec<(u32, f64)> = nodes.terms().collect();
+        assert_eq!(found, [(part.points[2], 0.75), (part.points[3], 0.25)]);
+        let error = SurfacePart::new(&mesh, "side").unwrap_err().to_string();
+        assert!(error.contains("bottom, left, right, top"), "{error}");
+    }
+
+    #[test]
+    fn a_place_on_a_triangle_is_the_sum_of_its_corners() {
+        let sides = [even(0.0, 1.0, 3), even(0.0, 1.0, 3), even(0.0, 1.0, 1)];
+        let mesh = block::<Dim3>(&sides).unwrap();
+        let part = SurfacePart::new(&mesh, "top").unwrap();
+        let position = |p: u32| mesh.points()[p as usize];
+        for at in [[0.4, 0.7, 1.0], [0.01, 0.99, 1.0], [1.0, 1.0, 1.0]] {
+            let at = Vector3::from(at);
+            let terms = part.nodes::<Dim3>(&at, position);
+            let sum = terms
+                .terms()
+                .fold(Vector3::zeros(), |s, (p, w)| s + position(p) * w);
+            assert!((sum - at).norm() < 1e-14, "{at}: {sum}");
+        }
+    }
+}
