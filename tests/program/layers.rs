@@ -35,7 +35,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 7] = [
     ),
     (
         "scene",
-        &["core", "sample"],
+        &["core", "elastic", "sample"],
         &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
     ),
     (

@@ -82,6 +82,8 @@ fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<D
     let mut s = scene::<Dim2>(&Sketch {
         bodies: if rigid { disk } else { floor.to_owned() },
         mu: if rigid { 0.0 } else { MU },
+        // Sweeps need the square of the number of points.
+        solver: "tolerance: 1e-12, norm: Velocity, method: Newton,".to_owned(),
         ..sketch(STEP, 1.0)
     });
     let [x, y] = coordinates(n);

@@ -3,6 +3,7 @@
 mod another_run;
 mod arch;
 mod blocks;
+mod elastic;
 mod first_body;
 mod grains;
 mod load;
@@ -23,7 +24,7 @@ use super::methods::{Demands, Service};
 use super::recorded::RecordReader;
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
-use fretwork_core::bodies::Bodies;
+use fretwork_core::bodies::{Bodies, DynamicalSystem};
 use fretwork_core::contact::detect::{LawTable, centre};
 use fretwork_core::geometry::grid;
 use fretwork_core::geometry::periodic::Periodic;
@@ -138,6 +139,7 @@ impl Loaded {
         builder.grains()?;
         builder.first_bodies()?;
         builder.refuse_idle_wear()?;
+        let systems = builder.elastic_bodies(&properties)?;
         let names = builder
             .bodies
             .driven
@@ -150,7 +152,7 @@ impl Loaded {
         for (k, density) in builder.densities.values() {
             densities[usize::from(*k)] = *density;
         }
-        let simulation = builder.finish(laws.interfaces, laws.table)?;
+        let simulation = builder.finish(laws.interfaces, laws.table, systems)?;
         Ok(Built {
             simulation,
             materials: texts,
@@ -237,6 +239,8 @@ pub enum Origin {
     Grain(usize, Option<usize>),
     /// Index in `bodies`.
     Body(usize),
+    /// Index in `elastic`.
+    Elastic(usize),
 }
 
 impl Origin {
@@ -246,6 +250,7 @@ impl Origin {
             Self::Grain(k, None) => format!("grains.{k}"),
             Self::Grain(k, Some(g)) => format!("grains.{k}.grains.{g}"),
             Self::Body(k) => format!("bodies.{k}"),
+            Self::Elastic(k) => format!("elastic.{k}"),
         }
     }
 }
@@ -306,9 +311,16 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(scene)
     }
 
-    fn finish(self, laws: Vec<Interface>, table: LawTable) -> Result<Simulation<S>, InputError> {
+    fn finish(
+        self,
+        laws: Vec<Interface>,
+        table: LawTable,
+        systems: Vec<Box<dyn DynamicalSystem<S>>>,
+    ) -> Result<Simulation<S>, InputError> {
         let case = self.case;
-        let smallest = self.radii().fold(f64::INFINITY, f64::min);
+        let points = systems.iter().flat_map(|s| s.contactors());
+        let smallest = self.radii().chain(points.map(|c| c.radius));
+        let smallest = smallest.fold(f64::INFINITY, f64::min);
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
         let needed = case.interfaces.iter().filter_map(|i| i.bonds_within);
         let needed = needed.fold(0.05 * smallest, f64::max);
@@ -330,6 +342,9 @@ impl<S: Dimensional> Builder<'_, S> {
             self.source,
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
+        for system in systems {
+            simulation.add_system(system);
+        }
         let service = Demands::of(&simulation).service(case.solver.method);
         if let Service::Refuses(reason) = service {
             return Err(self

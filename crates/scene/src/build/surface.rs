@@ -17,6 +17,7 @@ use fretwork_core::geometry::shape::{HalfSpace, Surface};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_core::laws::SearchPath;
 use fretwork_core::step::Steps;
+use fretwork_elastic::Deformable;
 use nalgebra::Vector2;
 
 /// Limit on the points of a random surface.
@@ -25,7 +26,7 @@ const MAX_POINTS: usize = 1_000_000;
 const MAX_TERMS: f64 = 2e8;
 
 /// Operations that differ between dimensions, and shapes that exist in only one of them.
-pub trait Dimensional: Steps + Deposits {
+pub trait Dimensional: Steps + Deposits + Deformable {
     /// Builds a scene of this dimension, see [`Loaded::build_in`].
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! The case file as the user writes it.
 
 mod accuracy;
+mod elastic;
 mod grains;
 mod interface;
 mod shapes;
@@ -10,6 +11,7 @@ mod uncertainty;
 mod wear;
 
 pub use accuracy::{AccuracySpec, AccurateResult};
+pub use elastic::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
@@ -82,6 +84,9 @@ pub struct Case {
     /// First bodies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<BodySpec>,
+    /// Bodies that deform.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub elastic: Vec<ElasticSpec>,
     /// Grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grains: Vec<GrainSpec>,

@@ -1,0 +1,160 @@
+//! Deformable bodies in a case.
+
+use fretwork_core::bodies::Dof;
+use fretwork_elastic::Rayleigh;
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A body of finite elements in small strain; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
+/// of its material.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticSpec {
+    /// Name.
+    pub name: String,
+    /// Name of its material in this case; its file has the properties `young` and `poisson`.
+    pub material: String,
+    /// Its mesh.
+    pub mesh: MeshSpec,
+    /// Where the origin of the mesh is (m); the origin by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub position: Vec<f64>,
+    /// Velocity at the start (m/s); at rest by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocity: Vec<f64>,
+    /// What holds and drives it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub supports: Vec<SupportSpec>,
+    /// What of it touches: `Surface("top")` or `Points("bottom")`; nothing by default.
+    #[serde(default)]
+    pub touches: TouchSpec,
+    /// Its damping; none by default.
+    #[serde(default)]
+    pub damping: Rayleigh,
+}
+
+/// The mesh of a deformable body.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum MeshSpec {
+    /// A block with its sides along the axes. Its sides are the parts `left`, `right` (x), `bottom`, `top` (y in 2D, z in 3D), `front`,
+    /// `back` (y in 3D).
+    Block {
+        /// Points along x.
+        x: LineSpec,
+        /// Points along y.
+        y: LineSpec,
+        /// Points along z (3D).
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        z: Option<LineSpec>,
+        /// A side that is not flat.
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        round: Option<RoundSpec>,
+    },
+    /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra (3D); its parts are the named
+    /// physical groups of lines or triangles.
+    Gmsh {
+        /// The file, beside the case.
+        file: String,
+        /// Length of its unit (m).
+        #[serde(default = "one")]
+        scale: f64,
+    },
+}
+
+/// The points of a block along an axis (m).
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct LineSpec {
+    /// The lowest.
+    pub from: f64,
+    /// The highest.
+    pub to: f64,
+    /// Size of an element.
+    pub size: f64,
+    /// Where elements have this size: from the first to the second of these; beyond they grow. Everywhere by default.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub fine: Option<(f64, f64)>,
+    /// Ratio of the sizes of neighbours where they grow.
+    #[serde(default = "growth")]
+    pub growth: f64,
+}
+
+/// A side of a block as part of a circle (2D), a sphere or a cylinder (3D), whose middle touches the flat side that it replaces.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct RoundSpec {
+    /// `top` or `bottom`.
+    pub side: String,
+    /// Radius (m).
+    pub radius: f64,
+    /// Whether a side in 3D is that of a cylinder along y, and not of a sphere.
+    #[serde(default)]
+    pub cylinder: bool,
+}
+
+/// A part of the boundary in a holder that does not turn, see [`fretwork_elastic::Support`].
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct SupportSpec {
+    /// Name of the part.
+    pub part: String,
+    /// Along x: `Free` as one, `Fixed`, `Velocity(...)`, `Displacement(...)` or `Force(...)`; left to its points by default.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub x: Option<Dof>,
+    /// Along y.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub y: Option<Dof>,
+    /// Along z (3D).
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub z: Option<Dof>,
+}
+
+/// What of a deformable body touches. Where two such bodies meet, one of them touches by its points.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum TouchSpec {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The points of a part: against balls, pieces and surfaces.
+    Points(String),
+    /// A part as a surface: against grains and points.
+    Surface(String),
+}
+
+/// Takes a value without `Some(...)` around it.
+fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(from).map(Some)
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn growth() -> f64 {
+    1.2
+}
