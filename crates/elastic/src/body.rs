@@ -12,14 +12,15 @@
 
 use crate::compiled::Deformable;
 use crate::element::{Simplex, Symmetric};
-use crate::freedom::Freedoms;
+use crate::freedom::{Freedoms, Held};
 use crate::material::{Elasticity, ElasticityError};
 use crate::matrix::{Factor, Sparse};
 use crate::mesh::{Mesh, MeshError};
 use crate::support::{Rayleigh, Support};
 use crate::surface::SurfacePart;
 use fretwork_core::bodies::{
-    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Nodes, SystemStep, SystemWork,
+    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemStep,
+    SystemWork,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -109,6 +110,8 @@ pub struct ElasticBody<S: Space> {
     jump: f64,
     /// Impulse of contacts on the coordinates in the step (N s).
     contact: Vec<f64>,
+    /// The last step.
+    step: Option<SystemStep<S>>,
 }
 
 /// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
@@ -209,6 +212,7 @@ impl<S: Deformable> ElasticBody<S> {
             start: [vec![0.0; total], vec![0.0; total]],
             jump: 0.0,
             contact: vec![0.0; total],
+            step: None,
         })
     }
 
@@ -444,7 +448,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn begin_step(&mut self, step: &SystemStep<S>) {
         let model = Arc::clone(&self.model);
         self.jump = 0.0;
-        for driven in &model.freedoms.imposed {
+        for driven in model.freedoms.imposed() {
             let c = driven.coordinate as usize;
             let drive = driven.drive.over(step.time, step.h);
             if let Some(speeds) = drive.speeds(step.time, step.h, step.theta) {
@@ -456,6 +460,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.contact.fill(0.0);
+        self.step = Some(*step);
         let of = [step.h, step.theta];
         if self.formed.as_ref().is_none_or(|formed| formed.of != of) {
             self.formed = Some(Arc::new(model.form(step.h, step.theta)));
@@ -473,7 +478,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let SystemStep { time, h, theta, .. } = *step;
         let [q, v] = &self.start;
         let mut end = v.clone();
-        for driven in &model.freedoms.imposed {
+        for driven in model.freedoms.imposed() {
             let drive = driven.drive.over(time, h);
             if let Some(speeds) = drive.speeds(time, h, theta) {
                 end[driven.coordinate as usize] = speeds.end;
@@ -495,7 +500,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 h * (model.mass[c] * gravity - elastic[c] - viscous[c])
             })
             .collect();
-        for driven in &model.freedoms.forces {
+        for driven in model.freedoms.forces() {
             impulse[driven.coordinate as usize] += h * Self::force(&driven.drive, step);
         }
         if let Some(formed) = &self.formed {
@@ -533,11 +538,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             work.potential -= h * m * gravity * average[c];
             work.scheme += (theta - 0.5) * m * change * change;
         }
-        for driven in &model.freedoms.forces {
+        for driven in model.freedoms.forces() {
             let force = Self::force(&driven.drive, step);
             work.external += h * force * average[driven.coordinate as usize];
         }
-        if !model.freedoms.imposed.is_empty() {
+        if model.freedoms.free < model.freedoms.total() {
             let moved = &average[model.freedoms.free..];
             work.external += h * dot(&self.reactions(step), moved);
         }
@@ -570,8 +575,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn is_driven(&self) -> bool {
-        let imposed = &self.model.freedoms.imposed;
-        imposed.iter().any(|d| !matches!(d.drive, Dof::Fixed))
+        let mut imposed = self.model.freedoms.imposed();
+        imposed.any(|d| !matches!(d.drive, Dof::Fixed))
     }
 
     fn node_position(&self, node: u32) -> S::Vector {
@@ -655,6 +660,26 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             }
         }
         out
+    }
+
+    fn holders(&self) -> Vec<Holder> {
+        let freedoms = &self.model.freedoms;
+        let reactions = self.step.as_ref().map(|step| self.reactions(step));
+        let one = |held: &Held| {
+            let c = held.coordinate as usize;
+            let force = match (&self.step, &reactions) {
+                (Some(_), Some(reactions)) if c >= freedoms.free => reactions[c - freedoms.free],
+                (Some(step), _) => Self::force(&held.drive, step),
+                _ => 0.0,
+            };
+            Holder {
+                part: held.part.clone(),
+                axis: usize::from(freedoms.axis[c]),
+                displacement: self.displacement[c],
+                force,
+            }
+        };
+        freedoms.held.iter().map(one).collect()
     }
 
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {

@@ -7,9 +7,11 @@ use fretwork_core::bodies::Dof;
 use fretwork_core::geometry::space::Space;
 use std::marker::PhantomData;
 
-/// A coordinate that is imposed or has a force on it.
+/// A coordinate that is held: the common displacement of a part along an axis.
 #[derive(Clone, Debug)]
-pub struct Driven {
+pub struct Held {
+    /// Name of the part.
+    pub part: String,
     /// Index of the coordinate.
     pub coordinate: u32,
     /// Its drive.
@@ -24,10 +26,11 @@ pub struct Freedoms<S: Space> {
     pub free: usize,
     /// Axis of each coordinate.
     pub axis: Vec<u8>,
-    /// Coordinates with a force.
-    pub forces: Vec<Driven>,
-    /// Imposed coordinates, in order.
-    pub imposed: Vec<Driven>,
+    /// Held coordinates, those that are imposed last and in their order.
+    pub held: Vec<Held>,
+    /// Those with a force, and those that are imposed, by their place in `held`.
+    forces: Vec<usize>,
+    imposed: Vec<usize>,
     space: PhantomData<S>,
 }
 
@@ -77,6 +80,7 @@ impl<S: Space> Freedoms<S> {
             of: vec![u32::MAX; held.len()],
             free: 0,
             axis: Vec::new(),
+            held: Vec::new(),
             forces: Vec::new(),
             imposed: Vec::new(),
             space: PhantomData,
@@ -103,22 +107,35 @@ impl<S: Space> Freedoms<S> {
                     continue;
                 }
                 out.axis.push(axis as u8);
-                let Some(drive) = drive else { continue };
-                let driven = Driven {
-                    coordinate,
-                    drive: drive.clone(),
+                let (Some(s), Some(drive)) = (holder, drive) else {
+                    continue;
                 };
                 if imposed {
-                    out.imposed.push(driven);
+                    out.imposed.push(out.held.len());
                 } else if !matches!(drive, Dof::Free) {
-                    out.forces.push(driven);
+                    out.forces.push(out.held.len());
                 }
+                out.held.push(Held {
+                    part: supports[*s].part.clone(),
+                    coordinate,
+                    drive: drive.clone(),
+                });
             }
             if !imposed {
                 out.free = out.axis.len();
             }
         }
         out
+    }
+
+    /// Coordinates with a force.
+    pub fn forces(&self) -> impl Iterator<Item = &Held> {
+        self.forces.iter().map(|k| &self.held[*k])
+    }
+
+    /// Imposed coordinates, in their order.
+    pub fn imposed(&self) -> impl Iterator<Item = &Held> {
+        self.imposed.iter().map(|k| &self.held[*k])
     }
 
     /// Number of coordinates.

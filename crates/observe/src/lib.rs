@@ -12,6 +12,7 @@ pub mod chart;
 pub mod choice;
 pub mod circuit;
 pub mod coordination;
+pub mod deformable;
 pub mod error_estimate;
 mod figures;
 pub mod first_bodies;

@@ -3,6 +3,7 @@
 use super::accuracy::ChosenSettings;
 use super::biaxial::Biaxial;
 use super::circuit::{BrokenBonds, CircuitAccount};
+use super::deformable::Deformable;
 use super::fracture::Fracture;
 use super::friction::Cycles;
 use super::friction_test::FrictionTest;
@@ -67,6 +68,9 @@ fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> 
     let loops = loops.and(case.friction.as_ref());
     let drawn = loops.map(|t| (t.body.clone(), t.along));
     all.push(Box::new(DrivenBodies::of(s, drawn)));
+    if !s.state.systems.is_empty() {
+        all.push(Box::new(Deformable::of(s)));
+    }
     if case.jump.is_some() {
         all.push(Box::new(CycleJumps));
     }

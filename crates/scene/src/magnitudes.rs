@@ -21,7 +21,8 @@ pub(super) fn check<S: Space>(
 ) -> Result<(), ValidationError> {
     let bodies = &s.state.bodies;
     let h = s.options.scheme.h;
-    for b in 0..bodies.len() {
+    // Contactors of deformable bodies have no mass of their own.
+    for b in (0..bodies.len()).filter(|b| bodies.carrier(*b).is_none()) {
         let refuse = |message: String| {
             let path = origins.get(b).map_or("grains".to_owned(), |o| o.path());
             Err(ValidationError::new(path, message))

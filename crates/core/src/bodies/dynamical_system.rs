@@ -134,6 +134,19 @@ impl Nodes {
     }
 }
 
+/// What holds a part of a system along an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Holder {
+    /// Name of the part.
+    pub part: String,
+    /// Axis, 0 is x.
+    pub axis: usize,
+    /// Displacement of the part since the start (m).
+    pub displacement: f64,
+    /// Force of the holder on the part over the last step (N; N/m in 2D).
+    pub force: f64,
+}
+
 /// A mesh that a system deforms, for results and pictures.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeformedMesh<S: Space> {
@@ -316,6 +329,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
             }
         }
         blocks
+    }
+
+    /// What holds and drives it, always in the same order.
+    fn holders(&self) -> Vec<Holder> {
+        Vec::new()
     }
 
     /// Its mesh as it is now; none of systems that have no mesh.

@@ -13,8 +13,8 @@ pub mod tensor;
 
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{
-    Contactor, ContactorMotion, ContactorShape, DeformedMesh, DynamicalSystem, Nodes, SystemStep,
-    SystemWork,
+    Contactor, ContactorMotion, ContactorShape, DeformedMesh, DynamicalSystem, Holder, Nodes,
+    SystemStep, SystemWork,
 };
 pub use stages::Stage;
 pub use state::Bodies;
