@@ -5,7 +5,7 @@
 //! ```
 //!
 //! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its corners. Contacts act on the points
-//! of a part of the boundary; the dense compliance of these, P A^-1 P^T, is found once too.
+//! of a part of the boundary; columns of the compliance of these, P A^-1 P^T, are found once too, as points are touched.
 //!
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
@@ -24,10 +24,10 @@ use fretwork_core::bodies::{
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-/// Most coordinates of touched points whose compliance is kept whole: 4000^2 numbers are 128 MB.
-const MAX_SURFACE: usize = 4000;
+/// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column has as many numbers, 160 kB.
+const MAX_SURFACE: usize = 20_000;
 
 /// Why a body cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -75,8 +75,8 @@ struct Formed {
     /// h and theta.
     of: [f64; 2],
     factor: Factor,
-    /// Compliance of the surface's coordinates, column by column; empty where there are too many.
-    surface: Vec<f64>,
+    /// Compliance of the surface's coordinates, column by column as they are touched; empty where there are too many.
+    surface: Vec<OnceLock<Vec<f64>>>,
 }
 
 /// What does not change, shared by copies.
@@ -332,25 +332,24 @@ impl<S: Space> Model<S> {
             let a = self.stiffness.leading(free, scale, &raised);
             Factor::new(&a).unwrap_or_default()
         });
-        let count = self.surface.len();
-        let mut surface = Vec::new();
-        if count <= MAX_SURFACE {
-            surface = vec![0.0; count * count];
-            let mut column = vec![0.0; free];
-            for (k, coordinate) in self.surface.iter().enumerate() {
-                column.fill(0.0);
-                column[*coordinate as usize] = 1.0;
-                factor.solve(&mut column, 1);
-                for (j, other) in self.surface.iter().enumerate() {
-                    surface[k * count + j] = column[*other as usize];
-                }
-            }
-        }
+        let kept = self.surface.len() <= MAX_SURFACE;
+        let columns = if kept { self.surface.len() } else { 0 };
         Formed {
             of: [h, theta],
             factor,
-            surface,
+            surface: (0..columns).map(|_| OnceLock::new()).collect(),
         }
+    }
+
+    /// The compliance of the surface's coordinates for an impulse on one of them.
+    fn column<'a>(&self, formed: &'a Formed, k: u32) -> &'a [f64] {
+        formed.surface[k as usize].get_or_init(|| {
+            let mut response = vec![0.0; self.freedoms.free];
+            response[self.surface[k as usize] as usize] = 1.0;
+            formed.factor.solve(&mut response, 1);
+            let at = self.surface.iter().map(|c| response[*c as usize]);
+            at.collect()
+        })
     }
 }
 
@@ -625,7 +624,6 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let count = self.model.surface.len();
         let formed = self.formed.as_ref().filter(|f| !f.surface.is_empty());
         let Some(formed) = formed else {
             return self.solved_compliance(nodes);
@@ -649,7 +647,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             for b in &coordinates {
                 let mut block = S::Matrix::uniform(0.0);
                 for j in (0..S::D).filter(|j| b[*j] != u32::MAX) {
-                    let column = &formed.surface[b[j] as usize * count..][..count];
+                    let column = self.model.column(formed, b[j]);
                     let mut response = S::Vector::zero();
                     for i in (0..S::D).filter(|i| a[*i] != u32::MAX) {
                         response[i] = column[a[i] as usize];
@@ -679,7 +677,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 force,
             }
         };
-        freedoms.held.iter().map(one).collect()
+        let mut held: Vec<&Held> = freedoms.held.iter().collect();
+        held.sort_by_key(|h| (h.support, freedoms.axis[h.coordinate as usize]));
+        held.into_iter().map(one).collect()
     }
 
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {

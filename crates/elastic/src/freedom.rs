@@ -10,6 +10,8 @@ use std::marker::PhantomData;
 /// A coordinate that is held: the common displacement of a part along an axis.
 #[derive(Clone, Debug)]
 pub struct Held {
+    /// Index of the support.
+    pub support: usize,
     /// Name of the part.
     pub part: String,
     /// Index of the coordinate.
@@ -116,6 +118,7 @@ impl<S: Space> Freedoms<S> {
                     out.forces.push(out.held.len());
                 }
                 out.held.push(Held {
+                    support: *s,
                     part: supports[*s].part.clone(),
                     coordinate,
                     drive: drive.clone(),

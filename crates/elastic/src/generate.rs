@@ -14,12 +14,24 @@ const SIDES: [&[[&str; 2]]; 2] = [
 /// A block with the given coordinates of its points along each axis (m), which must rise. Its sides are the parts `left` and
 /// `right` (x), `bottom` and `top` (y in 2D, z in 3D), `front` and `back` (y in 3D).
 ///
-/// Each cell is cut along the paths from one corner to the opposite one (Kuhn's simplices), mirrored from cell to cell so that no
-/// direction of the cuts is preferred.
+/// In 2D each cell is cut in four by its centre, so that all points of a side are alike. In 3D it is cut along the paths from one
+/// corner to the opposite one (Kuhn's simplices), mirrored from cell to cell so that no direction of the cuts is preferred; points
+/// of a side then have more and fewer elements in turn.
 ///
 /// # Errors
 /// Fewer than two coordinates along an axis, or some that do not rise: elements without volume.
 pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
+    mapped_block(coordinates, |x| *x)
+}
+
+/// A [`block`] whose points are moved before its cells are cut.
+///
+/// # Errors
+/// As for a block, and points or elements that the map makes invalid.
+pub fn mapped_block<S: Space>(
+    coordinates: &[Vec<f64>],
+    map: impl Fn(&S::Vector) -> S::Vector,
+) -> Result<Mesh<S>, MeshError> {
     let d = S::D;
     let counts: Vec<usize> = (0..d)
         .map(|k| coordinates.get(k).map_or(0, Vec::len))
@@ -36,7 +48,7 @@ pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
             point[k] = coordinates[k][rest % counts[k]];
             rest /= counts[k];
         }
-        points.push(point);
+        points.push(map(&point));
     }
     let mut elements = Vec::new();
     let mut parts: BTreeMap<String, Vec<u32>> = BTreeMap::new();
@@ -47,7 +59,23 @@ pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
             at[k] = rest % (counts[k] - 1);
             rest /= counts[k] - 1;
         }
-        for element in cell_simplices(d, &at) {
+        if d == 2 {
+            let corner = |i: usize, j: usize| [at[0] + i, at[1] + j];
+            let around = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            let centre = points.len() as u32;
+            let middle = around.iter().fold(S::Vector::zero(), |sum, c| {
+                sum + points[index(c) as usize] * 0.25
+            });
+            points.push(middle);
+            for k in 0..4 {
+                let ends = [around[k], around[(k + 1) % 4]];
+                let edge = ends.map(|c| index(&c));
+                name_sides(2, &counts, &ends.map(Vec::from), &edge, &mut parts);
+                elements.extend([edge[0], edge[1], centre]);
+            }
+            continue;
+        }
+        for element in cell_simplices(&at) {
             let corner = |c: &Vec<usize>| index(c);
             let corners: Vec<u32> = element.iter().map(corner).collect();
             name_sides(d, &counts, &element, &corners, &mut parts);
@@ -57,27 +85,23 @@ pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
     Mesh::new(points, elements, &parts)
 }
 
-/// Simplices of a cell, as the places of their points in the grid.
-fn cell_simplices(d: usize, at: &[usize]) -> Vec<Vec<Vec<usize>>> {
+/// Tetrahedra of a cell, as the places of their points in the grid.
+fn cell_simplices(at: &[usize]) -> Vec<Vec<Vec<usize>>> {
     // Permutations of the axes with their parity.
-    let orders: &[(&[usize], bool)] = if d == 2 {
-        &[(&[0, 1], false), (&[1, 0], true)]
-    } else {
-        &[
-            (&[0, 1, 2], false),
-            (&[1, 2, 0], false),
-            (&[2, 0, 1], false),
-            (&[0, 2, 1], true),
-            (&[2, 1, 0], true),
-            (&[1, 0, 2], true),
-        ]
-    };
+    let orders: [([usize; 3], bool); 6] = [
+        ([0, 1, 2], false),
+        ([1, 2, 0], false),
+        ([2, 0, 1], false),
+        ([0, 2, 1], true),
+        ([2, 1, 0], true),
+        ([1, 0, 2], true),
+    ];
     let mirrored = at.iter().filter(|i| *i % 2 == 1).count() % 2 == 1;
-    let one = |(order, odd): &(&[usize], bool)| {
+    let one = |(order, odd): &([usize; 3], bool)| {
         // The path from a corner to the opposite one, along one axis after the other.
         let mut corner: Vec<usize> = at.iter().map(|i| i + i % 2).collect();
         let mut path = vec![corner.clone()];
-        for axis in *order {
+        for axis in order {
             corner[*axis] = at[*axis] + 1 - at[*axis] % 2;
             path.push(corner.clone());
         }
@@ -89,7 +113,7 @@ fn cell_simplices(d: usize, at: &[usize]) -> Vec<Vec<Vec<usize>>> {
     orders.iter().map(one).collect()
 }
 
-/// Adds the facets of an element that lie in sides of the block.
+/// Adds the facets of an element, given by its points in the grid, that lie in sides of the block.
 fn name_sides(
     d: usize,
     counts: &[usize],
@@ -100,7 +124,7 @@ fn name_sides(
     for (axis, names) in SIDES[d - 2].iter().enumerate() {
         for (end, name) in names.iter().enumerate() {
             let side = end * (counts[axis] - 1);
-            let on: Vec<u32> = (0..=d)
+            let on: Vec<u32> = (0..element.len())
                 .filter(|c| element[*c][axis] == side)
                 .map(|c| corners[c])
                 .collect();
@@ -147,7 +171,7 @@ mod tests {
     fn blocks_fill_their_box() {
         let mesh = block::<Dim2>(&[even(0.0, 3.0, 5), even(-1.0, 1.0, 4)]).unwrap();
         assert!((volume(&mesh) - 6.0).abs() < 1e-12);
-        assert_eq!((mesh.elements().len(), mesh.facets()), (40, 18));
+        assert_eq!((mesh.elements().len(), mesh.facets()), (80, 18));
         assert_eq!(mesh.points_of("top").unwrap().len(), 6);
         let mesh = block::<Dim3>(&[even(0.0, 3.0, 3), even(-1.0, 1.0, 2), even(0.0, 0.5, 4)]);
         let mesh = mesh.unwrap();

@@ -208,23 +208,6 @@ impl<S: Space> Mesh<S> {
         }
         self
     }
-
-    /// The same mesh with its points elsewhere; parts and elements stay.
-    ///
-    /// # Errors
-    /// Elements that are inverted or flat then.
-    pub fn mapped(mut self, map: impl Fn(&S::Vector) -> S::Vector) -> Result<Self, MeshError> {
-        for (k, point) in self.points.iter_mut().enumerate() {
-            *point = map(point);
-            if !point.is_finite() {
-                return Err(MeshError::NotFinite(k));
-            }
-        }
-        for (e, element) in self.elements.chunks_exact(S::D + 1).enumerate() {
-            check_volume::<S>(&self.points, e, element)?;
-        }
-        Ok(self)
-    }
 }
 
 fn sorted(points: &[u32]) -> Vec<u32> {

@@ -1,8 +1,10 @@
 //! Deformable bodies: displacement and force of what holds them, and at the end of a run their mesh with displacements and stresses
 //! and the tractions along what touches.
 
+use super::chart::{Axis, Chart, Series, Style};
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::picture::{Picture, Shows};
 use super::statistics::Column;
 use fretwork_core::bodies::DeformedMesh;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -39,18 +41,34 @@ impl<S: Space> Observer<S> for Deformable {
         "deformable bodies".to_owned()
     }
 
-    fn reads_statistics(&self) -> bool {
-        false
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let newton = if S::D == 2 { "N/m" } else { "N" };
+        let mut charts = Vec::new();
+        for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 2) {
+            charts.push(traction_chart(end.simulation, k, name));
+        }
+        for name in &self.holders {
+            let (displacement, force) = (end.table.column(name), end.table.column(&force(name)));
+            let moves = displacement.iter().any(|x| *x != displacement[0]);
+            if moves {
+                let (x, y) = (Axis::new("displacement", "m"), Axis::new("force", newton));
+                let points = displacement.into_iter().zip(force).collect();
+                let title = format!("Force of the holder against displacement, {name}");
+                charts.push(Chart::new(title, x, y).with(Series::new("", points)));
+            }
+        }
+        charts
+            .iter_mut()
+            .for_each(|c| c.subtitle = Some(end.title.to_owned()));
+        vec![Output::charts("deformable.png".to_owned(), charts, 2)]
     }
 
     fn columns(&self) -> Vec<Column> {
         let newton = if S::D == 2 { "N/m" } else { "N" };
         let of = |name: &String| {
-            let at = name.len() - 1;
-            let force = format!("{}f{}", &name[..at], &name[at..]);
             [
                 Column::new(name.clone(), "m", "displacement of the held part"),
-                Column::new(force, newton, "force of its holder on the part"),
+                Column::new(force(name), newton, "force of its holder on the part"),
             ]
         };
         self.holders.iter().flat_map(of).collect()
@@ -60,6 +78,17 @@ impl<S: Space> Observer<S> for Deformable {
         let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
         let holders = systems.flat_map(|system| system.holders());
         holders.flat_map(|h| [h.displacement, h.force]).collect()
+    }
+
+    fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
+        vec![Picture {
+            name: "stress",
+            shows: Shows::Stress,
+        }]
+    }
+
+    fn picture_names(&self) -> Vec<&'static str> {
+        vec!["stress"]
     }
 
     fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
@@ -75,7 +104,7 @@ impl<S: Space> Observer<S> for Deformable {
                 });
                 out.push(Output::Text {
                     file: format!("{name}_tractions.csv"),
-                    text: tractions(end.simulation, k),
+                    text: traction_table(end.simulation, k),
                 });
             }
         }
@@ -88,8 +117,14 @@ impl<S: Space> Observer<S> for Deformable {
     }
 }
 
+/// Name of the column of the force of a holder, from that of its displacement.
+fn force(name: &str) -> String {
+    let axis = name.len() - 1;
+    format!("{}f{}", &name[..axis], &name[axis..])
+}
+
 /// The von Mises stress of a stress tensor xx, yy, zz, yz, xz, xy (Pa).
-fn von_mises(stress: &[f64; 6]) -> f64 {
+pub fn von_mises(stress: &[f64; 6]) -> f64 {
     let [x, y, z, yz, xz, xy] = *stress;
     let normal = (x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2);
     (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
@@ -144,19 +179,24 @@ fn vtk<S: Space>(name: &str, mesh: &DeformedMesh<S>) -> String {
     out
 }
 
-/// The contacts of a system over the last step: place, impulse over the step along the normal and along the surface, on the system,
-/// and whether they slip. Along a surface that touches by its points also pressure and shear, over what each point stands for.
-fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> String {
-    let axes = &["x", "y", "z"][..S::D];
-    let newton = if S::D == 2 { "N/m" } else { "N" };
-    let mut out: Vec<String> = axes.iter().map(|a| format!("{a} (m)")).collect();
-    out.extend(axes.iter().map(|a| format!("force_{a} ({newton})")));
-    out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} ({newton})")));
-    out.extend(["pressure (Pa)", "shear (Pa)", "slips"].map(str::to_owned));
-    let mut out = out.join(",");
-    out.push('\n');
+/// A contact of a deformable body over the last step.
+#[derive(Clone, Copy, Debug)]
+struct Traction<S: Space> {
+    /// Where it is (m).
+    place: S::Vector,
+    /// Force on the body (N; N/m in 2D).
+    force: S::Vector,
+    /// Its part along the normal, positive in compression, and its size along the surface.
+    parts: [f64; 2],
+    /// Length (2D, m) or area (m^2) that a point of the surface stands for; of other contacts none.
+    area: Option<f64>,
+    slips: bool,
+}
+
+/// The loaded contacts of a system, along x.
+fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     let bodies = &s.state.bodies;
-    let mut rows: Vec<Vec<f64>> = Vec::new();
+    let mut out: Vec<Traction<S>> = Vec::new();
     for contact in &s.state.network.contacts {
         let side = contact.bodies.iter().position(|b| {
             let carrier = bodies.carrier(*b as usize);
@@ -167,29 +207,69 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> String {
         };
         let body = contact.bodies[side] as usize;
         let sign = if side == 0 { 1.0 } else { -1.0 };
-        let force = contact.impulse * (sign / s.options.scheme.h);
-        let place = bodies.position[body] + contact.arms[side];
-        let normal = contact.impulse.dot(&contact.normal) / s.options.scheme.h;
-        let tangential = contact.impulse - contact.normal * contact.impulse.dot(&contact.normal);
-        let tangential = tangential.norm() / s.options.scheme.h;
-        // What a point of the surface stands for; of another contact there is none.
-        let ball = s.shapes.balls.get(contact.key.candidate as usize);
-        let point = ball.filter(|b| b.radius == 0.0).map(|_| match S::D {
-            2 => 2.0 * contact.radius,
-            _ => std::f64::consts::PI * contact.radius.powi(2),
+        let force = contact.impulse * (1.0 / s.options.scheme.h);
+        let normal = force.dot(&contact.normal);
+        let point = contact.key.ball().and_then(|k| s.shapes.balls.get(k));
+        let point = point.filter(|ball| ball.radius == 0.0 && side == 0);
+        out.push(Traction {
+            place: bodies.position[body] + contact.arms[side],
+            force: force * sign,
+            parts: [normal, (force - contact.normal * normal).norm()],
+            area: point.map(|_| match S::D {
+                2 => 2.0 * contact.radius,
+                _ => std::f64::consts::PI * contact.radius.powi(2),
+            }),
+            slips: contact.slides,
         });
-        let mut row: Vec<f64> = (0..S::D).map(|a| place[a]).collect();
-        row.extend((0..S::D).map(|a| force[a]));
-        row.extend([normal, tangential]);
-        row.extend(point.map_or([f64::NAN; 2], |area| [normal / area, tangential / area]));
-        row.push(f64::from(u8::from(contact.slides)));
-        rows.push(row);
     }
-    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    for row in rows {
+    out.sort_by(|a, b| a.place[0].total_cmp(&b.place[0]));
+    out
+}
+
+/// The contacts of a system as a table. Where a surface touches by its points also pressure and shear.
+fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
+    let axes = &["x", "y", "z"][..S::D];
+    let newton = if S::D == 2 { "N/m" } else { "N" };
+    let mut out: Vec<String> = axes.iter().map(|a| format!("{a} [m]")).collect();
+    out.extend(axes.iter().map(|a| format!("force_{a} [{newton}]")));
+    out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} [{newton}]")));
+    out.extend(["pressure [Pa]", "shear [Pa]", "slips"].map(str::to_owned));
+    let mut out = out.join(",");
+    out.push('\n');
+    for traction in tractions(s, system) {
+        let mut row: Vec<f64> = (0..S::D).map(|a| traction.place[a]).collect();
+        row.extend((0..S::D).map(|a| traction.force[a]));
+        row.extend(traction.parts);
+        row.extend(match traction.area {
+            Some(area) => traction.parts.map(|f| f / area),
+            None => [f64::NAN; 2],
+        });
         let row: Vec<String> = row.iter().map(|x| format!("{x:e}")).collect();
-        out.push_str(&row.join(","));
-        out.push('\n');
+        let _ = writeln!(out, "{},{}", row.join(","), u8::from(traction.slips));
     }
     out
+}
+
+/// Pressure and shear along what touches by its points (2D), and where it slips.
+fn traction_chart<S: Space>(s: &Simulation<S>, system: usize, name: &str) -> Chart {
+    let along = Axis::new("position x", "m");
+    let mut chart = Chart::new(
+        format!("Tractions along {name}"),
+        along,
+        Axis::new("traction", "Pa"),
+    );
+    let found = tractions(s, system);
+    let curve = |which: usize, slipping: bool| {
+        let at = |t: &Traction<S>| {
+            let shown = !slipping || t.slips;
+            let value = t.parts[which] / t.area?;
+            shown.then_some((t.place[0], value))
+        };
+        found.iter().filter_map(at).collect()
+    };
+    chart = chart
+        .with(Series::new("pressure", curve(0, false)))
+        .with(Series::new("shear", curve(1, false)))
+        .with(Series::new("shear where it slips", curve(1, true)).style(Style::Markers));
+    chart
 }

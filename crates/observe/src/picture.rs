@@ -36,6 +36,8 @@ pub enum Shows {
     Paints(Vec<Paint>),
     /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first. In the plane only.
     Chains(Vec<[u32; 2]>),
+    /// The von Mises stress of deformable bodies. In the plane only.
+    Stress,
     /// A value of each ball.
     Values {
         /// The values.

@@ -23,6 +23,8 @@ pub struct Outline {
     pub shade: Option<f64>,
     /// Colour of a grain.
     pub paint: Paint,
+    /// Whether it is an element of a mesh, drawn without an edge.
+    pub element: bool,
 }
 
 /// A grain.
@@ -220,6 +222,12 @@ impl Frame<'_> {
                 Some(shade) => (body.paint.colour(shade), GRAIN_EDGE, 1.3 * u),
                 None => (STEEL, STEEL_EDGE, 2.0 * u),
             };
+            if body.element {
+                // As wide as a pixel, so that no seam shows between neighbours.
+                field.polygon(&polygon, fill);
+                field.stroke(&polygon, true, 1.0, fill, None);
+                continue;
+            }
             field.polygon(&polygon, fill);
             field.stroke(&polygon, true, width, edge, None);
         }

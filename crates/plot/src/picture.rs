@@ -1,6 +1,7 @@
 //! Pictures of the state of a simulation.
 
 mod links;
+mod mesh;
 mod quantity;
 mod space;
 
@@ -40,6 +41,8 @@ pub enum Subject<'a> {
     /// The contacts that carry force, with force chains highlighted: sorted pairs of bodies, the lower index
     /// first.
     Chains(&'a [[u32; 2]]),
+    /// The von Mises stress of deformable bodies (2D).
+    Stress,
     /// A value of each ball, from 0 to `top`.
     Values {
         /// The values.
@@ -127,6 +130,11 @@ impl Camera {
                 let c = periodic.wrapped(centre);
                 take([c[0], c[1]], radius);
             }
+            let systems = &simulation.state.systems;
+            let meshes = (0..systems.len()).filter_map(|k| systems.get(k)?.deformed_mesh());
+            for mesh in meshes {
+                mesh.points.iter().for_each(|x| take([x[0], x[1]], 0.0));
+            }
         }
         if !w.iter().all(|x| x.is_finite()) {
             w = [-1.0, 1.0, -1.0, 1.0];
@@ -181,6 +189,7 @@ impl Camera {
             Subject::Scene => (&self.paints[..], None),
             Subject::Bonds | Subject::Chains(_) => (&[][..], None),
             Subject::Painted(paints) => (paints, None),
+            Subject::Stress => (&[][..], mesh::scale(simulation, self.window)),
             Subject::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
                 let scale = Scale {
@@ -199,6 +208,10 @@ impl Camera {
             disks = self::disks(simulation, self.window, paints);
             links = self.lines(simulation, subject);
             bodies = outlines(simulation, self.window);
+            let shown = scale
+                .as_ref()
+                .filter(|_| matches!(subject, Subject::Stress));
+            bodies.extend(mesh::elements(simulation, self.window, shown));
             bodies.extend(pieces(simulation, self.window, paints));
             bodies.extend(named_balls(simulation, self.window));
         }
@@ -259,6 +272,7 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
                 label: String::new(),
                 shade,
                 paint: paint(paints, s.shapes.balls.len() + k),
+                element: false,
             });
         }
     }
@@ -299,6 +313,7 @@ pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline
             label: driven.name.clone(),
             shade: None,
             paint: Paint::Grey,
+            element: false,
         });
     }
     out
@@ -349,7 +364,10 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     let period = s.shapes.periodic.period[0];
     let far = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
     let mut out = Vec::new();
-    let shown = |body: u32| !s.state.bodies.removed[body as usize];
+    // Those of deformable bodies are drawn as their elements.
+    let shown = |body: u32| {
+        !s.state.bodies.removed[body as usize] && s.state.bodies.carrier(body as usize).is_none()
+    };
     for surface in s.shapes.surfaces.iter().filter(|f| shown(f.body)) {
         let b = surface.body as usize;
         let (position, rotation) = (s.state.bodies.position[b], s.state.bodies.rotation[b]);
@@ -380,6 +398,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                     label: String::new(),
                     shade: None,
                     paint: Paint::Grey,
+                    element: false,
                 });
                 continue;
             }
@@ -411,6 +430,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
                 label: name,
                 shade: None,
                 paint: Paint::Grey,
+                element: false,
             });
         }
     }

@@ -65,7 +65,8 @@ fn subject<S: Observed>(picture: &Picture) -> Option<Subject<'_>> {
     Some(match &picture.shows {
         Shows::Paints(paints) => Subject::Painted(paints),
         Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),
-        Shows::Chains(_) => return None,
+        Shows::Stress if S::D == 2 => Subject::Stress,
+        Shows::Chains(_) | Shows::Stress => return None,
         Shows::Values { values, label, top } => Subject::Values {
             values,
             label,

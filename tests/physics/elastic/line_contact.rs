@@ -102,7 +102,7 @@ fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<D
             Vector2::new(p.x, p.y + sagitta * (1.0 - p.y / FAR))
         };
         let [x, y] = coordinates(finer * n / 4);
-        let mesh = block::<Dim2>(&[x, y]).unwrap().mapped(round).unwrap();
+        let mesh = mapped_block::<Dim2>(&[x, y], round).unwrap();
         let driven = [support(
             "top",
             &[Some(Dof::Force(along)), Some(Dof::Force(down))],
@@ -168,9 +168,10 @@ fn hertz(counter: Counter) {
         errors.push(off(&found, 1, |x| p0 * ellipse(x, A)) / p0);
     }
     println!("{counter:?}: a {widths:?} p {errors:?}");
-    assert!(errors[3] < 0.02, "{errors:?}");
-    assert!(errors[3] < 0.5 * errors[0], "{errors:?}");
-    assert!(widths[3].abs() < 0.01, "{widths:?}");
+    // The pressure is of first order at least: its edge lies between two points. The bodies are 40 a high, not half-spaces.
+    assert!(errors[3] < 0.01, "{errors:?}");
+    assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
+    assert!(widths[3].abs() < 0.005, "{widths:?}");
 }
 
 #[test]
@@ -218,6 +219,6 @@ fn cattaneo_and_mindlin() {
         let c = (1.0 - second(2) / (MU * second(1))).powf(0.25);
         println!("{share}: c/a {c} for {stuck}, q off by {error:e}");
         near(stuck, c, 0.02);
-        assert!(error < 0.03, "{share}: {error}");
+        assert!(error < 0.02, "{share}: {error}");
     }
 }

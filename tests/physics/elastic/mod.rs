@@ -3,10 +3,11 @@
 mod bar;
 mod bending;
 mod line_contact;
+mod point_contact;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
-use fretwork::elastic::generate::{block, even, graded};
+use fretwork::elastic::generate::{block, even, graded, mapped_block};
 use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support, Touching};
 use fretwork::geometry::space::{Dim2, Space, VectorLike};
 use fretwork::scene::build::Dimensional;

@@ -7,7 +7,7 @@ use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::bodies::{Dof, DynamicalSystem};
 use fretwork_core::geometry::space::VectorLike;
-use fretwork_elastic::generate::{block, even, graded};
+use fretwork_elastic::generate::{block, even, graded, mapped_block};
 use fretwork_elastic::mesh::MeshError;
 use fretwork_elastic::{BodyError, BodySpec, Elasticity, Mesh, Support, Touching};
 use std::collections::BTreeMap;
@@ -157,10 +157,9 @@ impl<S: Dimensional> Builder<'_, S> {
                     );
                     return Err(self.fail(here, message));
                 }
-                let mesh = block::<S>(&lines).map_err(wrong)?;
                 match round {
-                    None => Ok(mesh),
-                    Some(round) => self.rounded(&format!("{here}.round"), mesh, &lines, round),
+                    None => block::<S>(&lines).map_err(wrong),
+                    Some(round) => self.rounded(&format!("{here}.round"), &lines, round),
                 }
             }
             MeshSpec::Gmsh { file, scale } => {
@@ -182,7 +181,6 @@ impl<S: Dimensional> Builder<'_, S> {
     fn rounded(
         &self,
         here: &str,
-        mesh: Mesh<S>,
         lines: &[Vec<f64>],
         round: &RoundSpec,
     ) -> Result<Mesh<S>, InputError> {
@@ -221,7 +219,7 @@ impl<S: Dimensional> Builder<'_, S> {
             out[up] += into * sagitta * from / (top - bottom);
             out
         };
-        mesh.mapped(map).map_err(|e| self.fail(here, e.to_string()))
+        mapped_block(lines, map).map_err(|e| self.fail(here, e.to_string()))
     }
 }
 

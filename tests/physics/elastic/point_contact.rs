@@ -1,0 +1,58 @@
+//! A rigid sphere pressed on an elastic block: Hertz's point contact (Johnson, "Contact Mechanics", section 4.2),
+//! a^3 = 3 P R/(4 E*), delta = a^2/R, p(r) = p0 sqrt(1 - r^2/a^2) with p0 = 3 P/(2 pi a^2).
+
+use super::*;
+use fretwork::geometry::space::Dim3;
+
+const RADIUS: f64 = 0.05;
+const A: f64 = 1e-3;
+const STEP: f64 = 1e-3;
+
+/// Half-width from the second moment of the pressure, 2 P a^2/5, as a share of a, and the load.
+fn pressed(n: usize) -> (f64, f64) {
+    let (far, size) = (8.0 * A, A / n as f64);
+    let load = 4.0 * STEEL.plane_strain() * A.powi(3) / (3.0 * RADIUS);
+    let mut s = scene::<Dim3>(&Sketch {
+        bodies: format!(
+            "(name: \"ball\", material: \"m0\", shapes: [Balls([([0.0, 0.0, 0.0], {RADIUS:?})])], position: [0.0, 0.0, {RADIUS:?}], \
+             dofs: (z: Force(Ramp(from: 0.0, to: {:?}, start: 0.0, end: {:?})))),",
+            -load,
+            3.0 * STEP
+        ),
+        mu: 0.0,
+        ..sketch(STEP, 1.0)
+    });
+    let outside = graded(1.25 * A, far, size, 1.5);
+    let left = outside.iter().skip(1).map(|x| -x).rev();
+    let middle = even(-1.25 * A, 1.25 * A, 5 * n / 2);
+    let right = outside.iter().skip(1).copied();
+    let across: Vec<f64> = left.chain(middle).chain(right).collect();
+    let mut down = graded(0.0, -far, size, 1.4);
+    down.reverse();
+    let held = [support(
+        "bottom",
+        &[Some(Dof::Fixed), Some(Dof::Fixed), Some(Dof::Fixed)],
+    )];
+    let mesh = block::<Dim3>(&[across.clone(), across, down]).unwrap();
+    let mut flat = body(mesh, STEEL, &held);
+    flat.touching = Touching::Points("top");
+    add(&mut s, flat);
+    go(&mut s, 5);
+    closes(&s, 1e-9);
+    let (mut total, mut moment) = (0.0, 0.0);
+    for c in &s.state.network.contacts {
+        let at = s.state.bodies.position[c.bodies[0] as usize] + c.arms[0];
+        let p = c.impulse.norm() / STEP;
+        total += p;
+        moment += p * (at.x * at.x + at.y * at.y);
+    }
+    near(load, total, 1e-3);
+    ((2.5 * moment / total).sqrt() / A, load)
+}
+
+#[test]
+fn hertz_under_a_sphere() {
+    let widths = [2, 4].map(|n| pressed(n).0);
+    println!("a {widths:?}");
+    assert!((widths[1] - 1.0).abs() < 0.02, "{widths:?}");
+}
