@@ -128,7 +128,9 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
         let start = (0, f64::INFINITY, 0.0f64);
         radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
     };
-    let (balls, low, high) = range(&mut s.shapes.balls.iter().map(|b| b.radius));
+    // Points of deformable bodies are balls without a radius.
+    let radii = s.shapes.balls.iter().map(|b| b.radius);
+    let (balls, low, high) = range(&mut radii.filter(|r| *r > 0.0));
     if balls > 0 {
         let text = format!("{balls}, radius {low:.3e} to {high:.3e} m");
         line("balls", text);
@@ -150,6 +152,22 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
             s.shapes.surfaces.len()
         ),
     );
+    for system in (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k)) {
+        let Some(mesh) = system.deformed_mesh() else {
+            continue;
+        };
+        line(
+            "deformable body",
+            format!(
+                "{}: {} points, {} elements, {} coordinates; {} contactors",
+                system.name(),
+                mesh.points.len(),
+                mesh.elements.len() / (S::D + 1),
+                system.freedoms(),
+                system.contactors().len()
+            ),
+        );
+    }
     let contacts = s.state.network.contacts.len();
     line("contacts at start", contacts.to_string());
     high.max(most)

@@ -3,6 +3,7 @@
 
 mod circuit;
 mod command_line;
+mod deformable;
 mod files;
 mod geometry;
 mod hostile_laws;

@@ -163,3 +163,19 @@ fn a_biaxial_test() {
     };
     resumes("biaxial", job, &[3]);
 }
+
+/// Deformable bodies: displacements, velocities, and the factor that is formed anew.
+#[test]
+fn deformable_bodies() {
+    let sets = [
+        "time.end=0.024",
+        "output.checkpoint=Steps(4)",
+        "output.frames=2",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "cylinder_on_flat_fretting",
+        sets: &sets,
+    };
+    resumes("deformable", job, &[3]);
+}

@@ -1,0 +1,119 @@
+//! Deformable bodies that cannot be: their meshes, supports and materials.
+
+use super::trial::{MARK, PLANE, Trial, refused, with};
+
+/// The plane case without its period and with a deformable block of the given mesh and further fields.
+fn block(mesh: &str, more: &str) -> String {
+    let body = format!(
+        "elastic: [(name: \"block\", material: \"grain\", mesh: {mesh}, {more})],\n    friction:"
+    );
+    let open = with(PLANE, "periodic: (x: 0.4),", "");
+    with(&open, "friction:", &body)
+}
+
+const MESH: &str =
+    "Block(x: (from: 0.0, to: 0.2, size: 0.05), y: (from: -0.3, to: -0.1, size: 0.05))";
+const HELD: &str = "supports: [(part: \"bottom\", x: Fixed, y: Fixed)]";
+
+/// The stone of the trials has no modulus.
+const STIFF: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"), properties: {
+    "young": (value: 7e10, unit: "Pa", source: "chosen"), "poisson": (value: 0.2, unit: "", source: "chosen")})"#;
+
+/// The case is refused at its mark with these words, with a stone that has a modulus.
+#[track_caller]
+fn stiff_refused(marked: &str, words: &[&str]) {
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let (case, place) = trial.write_marked("case.ron", marked);
+    let said = trial.refuses(&case, &[], words);
+    let place = place.expect("a mark in the case");
+    assert!(said.starts_with(&place), "not at {place}\n{said}");
+}
+
+#[test]
+fn the_block_without_a_mistake_runs() {
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    trial.write(
+        "case.ron",
+        block(MESH, &format!("{HELD}, touches: Surface(\"top\")")),
+    );
+    let output = trial.call(&["run", "case.ron"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+}
+
+#[test]
+fn a_material_without_a_modulus() {
+    let marked = block(MESH, HELD).replace(
+        "material: \"grain\", mesh",
+        &format!("material: {MARK}\"grain\", mesh"),
+    );
+    refused(&marked, &["needs the property `young`"]);
+}
+
+#[test]
+fn supports_that_do_not_hold() {
+    stiff_refused(
+        &block(MESH, "supports: ‸[(part: \"sides\", x: Fixed)]"),
+        &["no part `sides`", "bottom, left, right, top"],
+    );
+    stiff_refused(
+        &block(MESH, "supports: ‸[(part: \"bottom\", x: Fixed)]"),
+        &["nothing keeps the body `block` from turning"],
+    );
+    stiff_refused(
+        &block(
+            MESH,
+            "supports: ‸[(part: \"bottom\", y: Fixed), (part: \"left\", y: Force(Constant(1.0)))]",
+        ),
+        &["`bottom` and `left` share points"],
+    );
+    stiff_refused(
+        &block(MESH, "supports: [(part: \"bottom\", x: Fixed, z: ‸Fixed)]"),
+        &["no z"],
+    );
+    stiff_refused(
+        &block(MESH, &format!("{HELD}, touches: ‸Points(\"up\")")),
+        &["no part `up`"],
+    );
+}
+
+#[test]
+fn blocks_that_are_none() {
+    let wrong = |old: &str, new: &str, words: &[&str]| {
+        stiff_refused(&block(&MESH.replacen(old, new, 1), HELD), words);
+    };
+    wrong("to: 0.2", "to: ‸-0.2", &["`to` must be above `from`"]);
+    wrong("size: 0.05", "size: ‸0.0", &["must be positive"]);
+    wrong("size: 0.05", "size: ‸1e-9", &["in a line"]);
+    wrong(
+        "size: 0.05)",
+        "size: 0.05, fine: ‸(0.1, 0.3))",
+        &["`fine` must lie within"],
+    );
+    wrong(
+        "size: 0.05))",
+        "size: 0.05), round: (side: \"top\", radius: ‸0.09))",
+        &["does not fit"],
+    );
+}
+
+#[test]
+fn files_of_gmsh() {
+    let trial = |text: &str, words: &[&str]| {
+        let trial = Trial::new();
+        trial.write("materials/stone.ron", STIFF);
+        trial.write("block.msh", text);
+        let (case, place) =
+            trial.write_marked("case.ron", &block("Gmsh(file: ‸\"block.msh\")", HELD));
+        let said = trial.refuses(&case, &[], words);
+        assert!(said.starts_with(&place.unwrap()), "{said}");
+    };
+    trial("$MeshFormat\n4.1 1 8\n", &["line 2", "binary"]);
+    trial(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0\n",
+        &["line 6", "4 numbers"],
+    );
+    trial("solid\n", &["no file of Gmsh"]);
+}
