@@ -74,9 +74,19 @@ pub enum BodyError {
 struct Formed {
     /// h and theta.
     of: [f64; 2],
-    factor: Factor,
+    /// None where A is not positive definite in double precision: velocities are then not finite, and the step ends with an error.
+    factor: Option<Factor>,
     /// Compliance of the surface's coordinates, column by column as they are touched; empty where there are too many.
     surface: Vec<OnceLock<Vec<f64>>>,
+}
+
+impl Formed {
+    fn solve(&self, x: &mut [f64]) {
+        match &self.factor {
+            Some(factor) => factor.solve(x, 1),
+            None => x.fill(f64::NAN),
+        }
+    }
 }
 
 /// What does not change, shared by copies.
@@ -302,13 +312,28 @@ impl<S: Space> Model<S> {
         out
     }
 
+    /// Displacements less their mean along each axis, which strains nothing and would leave its rounding in K q.
+    fn strained(&self, q: &[f64]) -> Vec<f64> {
+        let (mut sum, mut count) = ([0.0; 3], [0.0; 3]);
+        for (q, axis) in q.iter().zip(&self.freedoms.axis) {
+            sum[usize::from(*axis)] += q;
+            count[usize::from(*axis)] += 1.0;
+        }
+        let mean = |axis: u8| sum[usize::from(axis)] / count[usize::from(axis)];
+        let axes = self.freedoms.axis.iter();
+        q.iter()
+            .zip(axes)
+            .map(|(q, axis)| q - mean(*axis))
+            .collect()
+    }
+
     /// K q and C v.
     fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
-        let elastic = self.stiffness.times(q);
+        let elastic = self.stiffness.times(&self.strained(q));
         let mut viscous = vec![0.0; v.len()];
         let Rayleigh { mass, stiffness } = self.damping;
         if stiffness > 0.0 {
-            viscous = self.stiffness.times(v);
+            viscous = self.stiffness.times(&self.strained(v));
             viscous.iter_mut().for_each(|f| *f *= stiffness);
         }
         for (c, f) in viscous.iter_mut().enumerate() {
@@ -324,14 +349,7 @@ impl<S: Space> Model<S> {
         let diagonal: Vec<f64> = self.mass[..free].iter().map(|m| m * inertia).collect();
         let scale = step * self.damping.stiffness + step * step;
         let a = self.stiffness.leading(free, scale, &diagonal);
-        // The mass is positive and the stiffness not negative.
-        let factor = Factor::new(&a).unwrap_or_else(|| {
-            // Rounding of a stiffness that is far above the inertia: the inertia is raised to what can be told from it.
-            let most = (0..free).map(|r| a.at(r, r)).fold(0.0, f64::max);
-            let raised: Vec<f64> = diagonal.iter().map(|m| m + 1e-14 * most).collect();
-            let a = self.stiffness.leading(free, scale, &raised);
-            Factor::new(&a).unwrap_or_default()
-        });
+        let factor = Factor::new(&a);
         let kept = self.surface.len() <= MAX_SURFACE;
         let columns = if kept { self.surface.len() } else { 0 };
         Formed {
@@ -346,7 +364,7 @@ impl<S: Space> Model<S> {
         formed.surface[k as usize].get_or_init(|| {
             let mut response = vec![0.0; self.freedoms.free];
             response[self.surface[k as usize] as usize] = 1.0;
-            formed.factor.solve(&mut response, 1);
+            formed.solve(&mut response);
             let at = self.surface.iter().map(|c| response[*c as usize]);
             at.collect()
         })
@@ -359,7 +377,11 @@ fn contactors<S: Deformable>(
     touching: Touching,
     material: u16,
 ) -> Result<(Option<SurfacePart>, Vec<Contactor>), BodyError> {
-    let tributary = mesh.tributary();
+    let name = match touching {
+        Touching::Nothing => return Ok((None, Vec::new())),
+        Touching::Points(name) | Touching::Surface(name) => name,
+    };
+    let tributary = mesh.tributary(name);
     let size = |p: u32| match S::D {
         2 => 0.5 * tributary[p as usize],
         _ => (tributary[p as usize] / std::f64::consts::PI).sqrt(),
@@ -370,17 +392,16 @@ fn contactors<S: Deformable>(
         shape,
         material,
     };
+    let part = SurfacePart::new(mesh, name)?;
     match touching {
         Touching::Nothing => Ok((None, Vec::new())),
-        Touching::Points(name) => {
-            let part = SurfacePart::new(mesh, name)?;
+        Touching::Points(_) => {
             let points = part.points.iter();
             let all = points.map(|p| contactor(*p, ContactorShape::Point));
             let all = all.collect();
             Ok((Some(part), all))
         }
-        Touching::Surface(name) => {
-            let part = SurfacePart::new(mesh, name)?;
+        Touching::Surface(_) => {
             let vertices = mesh.corners(&part.points);
             if let Err(why) = S::surface(vertices, &part) {
                 return Err(BodyError::NoSurface(name.to_owned(), why));
@@ -503,7 +524,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             impulse[driven.coordinate as usize] += h * Self::force(&driven.drive, step);
         }
         if let Some(formed) = &self.formed {
-            formed.factor.solve(&mut impulse, 1);
+            formed.solve(&mut impulse);
         }
         for (v, dv) in end.iter_mut().zip(&impulse) {
             *v += dv;
@@ -514,7 +535,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn solve(&self, impulse: &mut [f64]) {
         let (free, imposed) = impulse.split_at_mut(self.model.freedoms.free);
         if let Some(formed) = &self.formed {
-            formed.factor.solve(free, 1);
+            formed.solve(free);
         }
         imposed.fill(0.0);
     }
@@ -554,7 +575,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn stored_energy(&self) -> f64 {
-        0.5 * self.model.stiffness.form(&self.displacement)
+        let strained = self.model.strained(&self.displacement);
+        0.5 * self.model.stiffness.form(&strained)
     }
 
     fn mass(&self) -> f64 {
@@ -663,6 +685,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn holders(&self) -> Vec<Holder> {
         let freedoms = &self.model.freedoms;
         let reactions = self.step.as_ref().map(|step| self.reactions(step));
+        let theta_point = self.step.as_ref().map(|step| self.average(step).1);
         let one = |held: &Held| {
             let c = held.coordinate as usize;
             let force = match (&self.step, &reactions) {
@@ -673,7 +696,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             Holder {
                 part: held.part.clone(),
                 axis: usize::from(freedoms.axis[c]),
-                displacement: self.displacement[c],
+                displacement: theta_point.as_ref().map_or(0.0, |at| at[c]),
                 force,
             }
         };

@@ -42,13 +42,6 @@ impl Sparse {
         columns.zip(self.values[range].iter().copied())
     }
 
-    /// The entry of a row and a column.
-    pub fn at(&self, row: usize, column: usize) -> f64 {
-        self.row(row)
-            .find(|(c, _)| *c == column)
-            .map_or(0.0, |(_, a)| a)
-    }
-
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
         self.values.len()

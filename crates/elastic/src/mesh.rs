@@ -188,12 +188,12 @@ impl<S: Space> Mesh<S> {
         0.5 * product.max(0.0).sqrt()
     }
 
-    /// Length or area of the boundary that belongs to each point: a D-th of its facets (m; m^2).
-    pub fn tributary(&self) -> Vec<f64> {
+    /// Length or area of a part of the boundary that belongs to each point of the mesh: a D-th of its facets there (m; m^2).
+    pub fn tributary(&self, part: &str) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
-        for f in 0..self.facets() {
-            let share = self.facet_area(f) / S::D as f64;
-            for point in self.facet(f) {
+        for f in self.part(part).unwrap_or_default() {
+            let share = self.facet_area(*f as usize) / S::D as f64;
+            for point in self.facet(*f as usize) {
                 out[*point as usize] += share;
             }
         }
@@ -334,7 +334,7 @@ mod tests {
         // Green: twice the area where it is on the left.
         assert_eq!(turn, 2.0);
         assert_eq!(mesh.points_of("top").unwrap(), [2, 3]);
-        assert_eq!(mesh.tributary(), [1.0; 4]);
+        assert_eq!(mesh.tributary("top"), [0.0, 0.0, 0.5, 0.5]);
     }
 
     /// The volume by Gauss, from facets that are seen from outside.

@@ -186,10 +186,10 @@ struct Traction<S: Space> {
     place: S::Vector,
     /// Force on the body (N; N/m in 2D).
     force: S::Vector,
-    /// Its part along the normal, positive in compression, and its size along the surface.
+    /// Its part along the normal, positive in compression, and along the surface: in the plane positive along +x.
     parts: [f64; 2],
-    /// Length (2D, m) or area (m^2) that a point of the surface stands for; of other contacts none.
-    area: Option<f64>,
+    /// Length that a point of the surface stands for in the plane (m); of other contacts none.
+    length: Option<f64>,
     slips: bool,
 }
 
@@ -209,16 +209,19 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let force = contact.impulse * (1.0 / s.options.scheme.h);
         let normal = force.dot(&contact.normal);
+        let along = force - contact.normal * normal;
+        // In the plane with its sign: positive along +x on the body.
+        let size = match S::D {
+            2 if along[0] * sign < 0.0 => -along.norm(),
+            _ => along.norm(),
+        };
         let point = contact.key.ball().and_then(|k| s.shapes.balls.get(k));
         let point = point.filter(|ball| ball.radius == 0.0 && side == 0);
         out.push(Traction {
             place: bodies.position[body] + contact.arms[side],
             force: force * sign,
-            parts: [normal, (force - contact.normal * normal).norm()],
-            area: point.map(|_| match S::D {
-                2 => 2.0 * contact.radius,
-                _ => std::f64::consts::PI * contact.radius.powi(2),
-            }),
+            parts: [normal, size],
+            length: point.filter(|_| S::D == 2).map(|_| 2.0 * contact.radius),
             slips: contact.slides,
         });
     }
@@ -226,24 +229,30 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     out
 }
 
-/// The contacts of a system as a table. Where a surface touches by its points also pressure and shear.
+/// The contacts of a system as a table. Where a surface touches by its points in the plane also pressure and shear. (In space the
+/// points of a block have more and fewer elements in turn, and forces over their areas are no pressure.)
 fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
     let axes = &["x", "y", "z"][..S::D];
     let newton = if S::D == 2 { "N/m" } else { "N" };
     let mut out: Vec<String> = axes.iter().map(|a| format!("{a} [m]")).collect();
     out.extend(axes.iter().map(|a| format!("force_{a} [{newton}]")));
     out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} [{newton}]")));
-    out.extend(["pressure [Pa]", "shear [Pa]", "slips"].map(str::to_owned));
+    if S::D == 2 {
+        out.extend(["pressure [Pa]", "shear [Pa]"].map(str::to_owned));
+    }
+    out.push("slips".to_owned());
     let mut out = out.join(",");
     out.push('\n');
     for traction in tractions(s, system) {
         let mut row: Vec<f64> = (0..S::D).map(|a| traction.place[a]).collect();
         row.extend((0..S::D).map(|a| traction.force[a]));
         row.extend(traction.parts);
-        row.extend(match traction.area {
-            Some(area) => traction.parts.map(|f| f / area),
-            None => [f64::NAN; 2],
-        });
+        if S::D == 2 {
+            row.extend(match traction.length {
+                Some(length) => traction.parts.map(|f| f / length),
+                None => [f64::NAN; 2],
+            });
+        }
         let row: Vec<String> = row.iter().map(|x| format!("{x:e}")).collect();
         let _ = writeln!(out, "{},{}", row.join(","), u8::from(traction.slips));
     }
@@ -262,7 +271,7 @@ fn traction_chart<S: Space>(s: &Simulation<S>, system: usize, name: &str) -> Cha
     let curve = |which: usize, slipping: bool| {
         let at = |t: &Traction<S>| {
             let shown = !slipping || t.slips;
-            let value = t.parts[which] / t.area?;
+            let value = t.parts[which] / t.length?;
             shown.then_some((t.place[0], value))
         };
         found.iter().filter_map(at).collect()

@@ -391,6 +391,11 @@ pub(super) fn overlaps<S: Steps>(
         let at = s.state.bodies.position[body as usize];
         match driven {
             Some(d) => format!("the body `{}`", d.name),
+            None if s.state.bodies.carrier(body as usize).is_some() => {
+                let carrier = s.state.bodies.carrier(body as usize);
+                let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
+                format!("the body `{}`", system.map_or("", |s| s.name()))
+            }
             None => format!(
                 "the grain at {:?} m",
                 (0..S::D)

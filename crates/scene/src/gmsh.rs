@@ -9,7 +9,9 @@ use std::path::Path;
 /// Limit on the size of a file, in bytes.
 const MAX_BYTES: u64 = 1 << 30;
 /// Gmsh's numbers of lines, triangles and tetrahedra, by their dimension.
-const SIMPLEX: [usize; 3] = [1, 2, 4];
+const SIMPLEX: [i64; 3] = [1, 2, 4];
+/// That of a single point.
+const POINT: i64 = 15;
 
 /// What a file holds, in its own unit.
 #[derive(Debug, Default, PartialEq)]
@@ -74,17 +76,16 @@ fn shorter(line: &str) -> String {
     line.chars().take(40).collect()
 }
 
-/// Groups of elements of one kind with their physical group, by the file's numbers of points.
-type Elements = Vec<(usize, Option<i64>, Vec<u64>)>;
+/// Dimension, physical groups and points of elements, by the file's numbers.
+type Elements = Vec<(usize, Vec<i64>, Vec<u64>)>;
 
 #[derive(Default)]
 struct Read {
     version: f64,
     names: HashMap<(usize, i64), String>,
-    /// Physical group of each entity.
-    groups: HashMap<(usize, i64), i64>,
+    /// Physical groups of each entity.
+    groups: HashMap<(usize, i64), Vec<i64>>,
     places: HashMap<u64, [f64; 3]>,
-    /// Dimension, physical group, points.
     elements: Elements,
 }
 
@@ -148,7 +149,7 @@ impl Read {
         Ok(())
     }
 
-    /// The physical group of each curve, surface and volume: the first where there are several.
+    /// The physical groups of each curve, surface and volume.
     fn entities(&mut self, lines: &mut Lines) -> Result<(), Fault> {
         let counts = lines.numbers::<usize>(4)?;
         for (of, count) in counts.iter().enumerate().take(4) {
@@ -156,13 +157,13 @@ impl Read {
             let before = if of == 0 { 4 } else { 7 };
             for _ in 0..*count {
                 let entity = lines.numbers::<f64>(before + 1)?;
-                if entity[before] > 0.0 {
-                    let Some(group) = entity.get(before + 1) else {
-                        return lines.fault("the entity has fewer groups than it announces");
-                    };
-                    let tag = entity[0] as i64;
-                    self.groups.insert((of, tag), group.abs() as i64);
+                let count = entity[before].max(0.0) as usize;
+                let groups = entity[before + 1..].iter().take(count);
+                let groups: Vec<i64> = groups.map(|g| g.abs() as i64).collect();
+                if groups.len() < count {
+                    return lines.fault("the entity has fewer groups than it announces");
                 }
+                self.groups.insert((of, entity[0] as i64), groups);
             }
         }
         Ok(())
@@ -194,28 +195,23 @@ impl Read {
 
     fn elements(&mut self, lines: &mut Lines) -> Result<(), Fault> {
         let header = lines.numbers::<u64>(1)?;
-        let dimension = |kind: usize| SIMPLEX.iter().position(|k| *k == kind).map(|k| k + 1);
         if self.version < 3.0 {
             for _ in 0..header[0] {
                 let element = lines.numbers::<i64>(3)?;
                 let tags = element[2].max(0) as usize;
-                let group = (tags > 0).then(|| element[3.min(element.len() - 1)]);
-                if let Some(of) = dimension(element[1] as usize) {
-                    let points = element.iter().skip(3 + tags).map(|p| *p as u64).collect();
-                    self.push(lines, of, group, points)?;
-                }
+                let groups = element.iter().skip(3).take(tags.min(1)).copied().collect();
+                let points = element.iter().skip(3 + tags).map(|p| *p as u64).collect();
+                self.push(lines, element[1], groups, points)?;
             }
             return Ok(());
         }
         for _ in 0..header[0] {
             let block = lines.numbers::<i64>(4)?;
-            let of = dimension(block[2] as usize);
             for _ in 0..block[3] {
                 let element = lines.numbers::<u64>(1)?;
-                if let Some(of) = of {
-                    let group = self.groups.get(&(of, block[1])).copied();
-                    self.push(lines, of, group, element[1..].to_vec())?;
-                }
+                let groups = self.groups.get(&(block[0].max(0) as usize, block[1]));
+                let groups = groups.cloned().unwrap_or_default();
+                self.push(lines, block[2], groups, element[1..].to_vec())?;
             }
         }
         Ok(())
@@ -224,10 +220,19 @@ impl Read {
     fn push(
         &mut self,
         lines: &Lines,
-        of: usize,
-        group: Option<i64>,
+        kind: i64,
+        groups: Vec<i64>,
         points: Vec<u64>,
     ) -> Result<(), Fault> {
+        if kind == POINT {
+            return Ok(());
+        }
+        let Some(of) = SIMPLEX.iter().position(|k| *k == kind).map(|k| k + 1) else {
+            return lines.fault(format!(
+                "an element of Gmsh's type {kind}; only straight lines, triangles and tetrahedra are read: mesh with \
+                 `Mesh.ElementOrder = 1` and without recombining"
+            ));
+        };
         if points.len() != of + 1 {
             return lines.fault(format!(
                 "the element has {} points, not {}",
@@ -240,7 +245,7 @@ impl Read {
                 "the element has node {unknown}, which the file does not give"
             ));
         }
-        self.elements.push((of, group, points));
+        self.elements.push((of, groups, points));
         Ok(())
     }
 
@@ -258,18 +263,41 @@ impl Read {
                 out.elements.push(at);
             }
         }
-        for (of, group, points) in &self.elements {
-            let name = group.and_then(|g| self.names.get(&(*of, g)));
-            let (true, Some(name)) = (*of + 1 == dimension, name) else {
-                continue;
-            };
-            // Sides of nothing belong to other bodies of the file.
-            let points: Option<Vec<u32>> = points.iter().map(|p| known.get(p).copied()).collect();
-            if let Some(points) = points {
+        for (of, groups, points) in self.elements.iter().filter(|e| e.0 + 1 == dimension) {
+            for name in groups.iter().filter_map(|g| self.names.get(&(*of, *g))) {
+                let points: Option<Vec<u32>> =
+                    points.iter().map(|p| known.get(p).copied()).collect();
+                let Some(points) = points else {
+                    let why =
+                        format!("a side of the physical group `{name}` belongs to no element");
+                    return Err((1, why));
+                };
                 out.parts.entry(name.clone()).or_default().extend(points);
             }
         }
+        if dimension == 2 {
+            if let Some(at) = out.points.iter().find(|p| p[2] != 0.0) {
+                let why = format!("a point of the mesh at {at:?} is not in the plane z = 0");
+                return Err((1, why));
+            }
+            out.turn();
+        }
         Ok(out)
+    }
+}
+
+impl GmshMesh {
+    /// Turns the triangles of a plane surface that was drawn clockwise throughout.
+    fn turn(&mut self) {
+        let area = |t: &[u32]| {
+            let [a, b, c] = [t[0], t[1], t[2]].map(|k| self.points[k as usize]);
+            (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+        };
+        if self.elements.chunks_exact(3).all(|t| area(t) < 0.0) {
+            for t in self.elements.chunks_exact_mut(3) {
+                t.swap(1, 2);
+            }
+        }
     }
 }
 
@@ -293,6 +321,35 @@ mod tests {
         assert_eq!(new.parts["top side"], [2, 3]);
         assert_eq!(parse(OLD, 2).unwrap(), new);
         assert!(parse(NEW, 3).unwrap().elements.is_empty());
+    }
+
+    #[test]
+    fn a_curve_may_be_in_two_groups() {
+        let two = NEW
+            .replace(
+                "\n1\n1 7 \"top side\"\n",
+                "\n2\n1 7 \"top side\"\n1 8 \"all\"\n",
+            )
+            .replace("3 0 1 0 1 1 0 1 7 0", "3 0 1 0 1 1 0 2 7 8 0");
+        let mesh = parse(&two, 2).unwrap();
+        assert_eq!(mesh.parts["all"], mesh.parts["top side"]);
+    }
+
+    #[test]
+    fn clockwise_triangles_are_turned_and_others_refused() {
+        let clockwise = OLD
+            .replace("1 1 2 3", "1 1 3 2")
+            .replace("1 1 3 9", "1 1 9 3");
+        assert_eq!(parse(&clockwise, 2).unwrap().elements, [0, 2, 1, 0, 1, 3]);
+        let high = OLD.replace("9 0 1 0", "9 0 1 0.5");
+        assert!(parse(&high, 2).unwrap_err().1.contains("z = 0"));
+        let quad = OLD.replace("3 2 2 0 1 1 3 9", "3 3 2 0 1 1 2 3 9");
+        assert!(
+            parse(&quad, 2)
+                .unwrap_err()
+                .1
+                .contains("without recombining")
+        );
     }
 
     #[test]

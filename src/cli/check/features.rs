@@ -86,6 +86,16 @@ impl Features {
                     }
                 }
             }
+            for body in &case.elastic {
+                for support in &body.supports {
+                    let axes = [("x", &support.x), ("y", &support.y), ("z", &support.z)];
+                    for (axis, dof) in axes {
+                        if dof.iter().flat_map(Dof::drives).any(which) {
+                            found.push(format!("{} {} {axis}", body.name, support.part));
+                        }
+                    }
+                }
+            }
             found.into_iter()
         };
         let imposed = |d: &Dof| matches!(d, Dof::Velocity(_) | Dof::Displacement(_));

@@ -2,6 +2,7 @@
 
 mod bar;
 mod bending;
+mod forces;
 mod line_contact;
 mod point_contact;
 

@@ -80,6 +80,37 @@ fn supports_that_do_not_hold() {
 }
 
 #[test]
+fn names_that_are_none_and_bodies_that_would_pass_through_each_other() {
+    let named =
+        |name: &str| block(MESH, HELD).replace("(name: \"block\"", &format!("(name: ‸\"{name}\""));
+    for name in ["", "a/b", "lid"] {
+        stiff_refused(&named(name), &["must be unique and made of letters"]);
+    }
+    stiff_refused(
+        &block(
+            MESH,
+            "supports: [(part: \"bottom\", x: Fixed, y: Fixed), (part: ‸\"bottom\", y: Free)]",
+        ),
+        &["held twice along y"],
+    );
+    let touches = format!("{HELD}, touches: Points(\"top\")");
+    let other = MESH.replace("-0.1,", "-0.2,");
+    let second = format!(
+        "{touches}), (name: \"second\", material: \"grain\", mesh: {other}, {}",
+        touches.replace("touches: ", "touches: ‸")
+    );
+    stiff_refused(
+        &block(MESH, &second),
+        &["pass through each other", "`Surface`"],
+    );
+    // Grains of 1 cm between points 5 cm apart.
+    stiff_refused(
+        &block(MESH, &format!("{HELD}, touches: ‸Points(\"top\")")),
+        &["fit between the points of `block`"],
+    );
+}
+
+#[test]
 fn blocks_that_are_none() {
     let wrong = |old: &str, new: &str, words: &[&str]| {
         stiff_refused(&block(&MESH.replacen(old, new, 1), HELD), words);

@@ -17,6 +17,8 @@ pub struct Mesh {
     points: Vec<V>,
     triangles: Vec<[u32; 3]>,
     tree: RTree<Placed>,
+    /// Whether its points move.
+    deforms: bool,
 }
 
 /// Reason why triangles do not form a surface.
@@ -100,6 +102,7 @@ impl Mesh {
             points,
             triangles,
             tree,
+            deforms: false,
         })
     }
 
@@ -136,7 +139,12 @@ impl Surface<Dim3> for Mesh {
 
     fn move_vertices(&mut self, vertices: &[V]) {
         self.points.copy_from_slice(vertices);
+        self.deforms = true;
         self.tree = boxes(&self.points, &self.triangles);
+    }
+
+    fn moving_vertices(&self) -> &[V] {
+        if self.deforms { &self.points } else { &[] }
     }
 
     fn facets(&self, low: &V, high: &V, out: &mut Vec<Facet<V>>) {

@@ -291,6 +291,14 @@ impl Surface<Dim2> for Polyline {
         }
     }
 
+    fn moving_vertices(&self) -> &[Vector2<f64>] {
+        if self.deformed.is_some() {
+            &self.points
+        } else {
+            &[]
+        }
+    }
+
     fn receding(&self) -> Option<&dyn Recede<Dim2>> {
         self.deformed.is_none().then_some(self as &dyn Recede<Dim2>)
     }

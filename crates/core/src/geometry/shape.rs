@@ -110,6 +110,10 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     }
     /// Takes new places of its vertices (m), all of them in their order, of a surface that deforms; nothing for others.
     fn move_vertices(&mut self, _vertices: &[S::Vector]) {}
+    /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows each of them.
+    fn moving_vertices(&self) -> &[S::Vector] {
+        &[]
+    }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {

@@ -5,7 +5,7 @@ use crate::case::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, Touch
 use crate::gmsh;
 use crate::material::Sourced;
 use crate::source::InputError;
-use fretwork_core::bodies::{Dof, DynamicalSystem};
+use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
 use fretwork_core::geometry::space::VectorLike;
 use fretwork_elastic::generate::{block, even, graded, mapped_block};
 use fretwork_elastic::mesh::MeshError;
@@ -22,6 +22,8 @@ impl<S: Dimensional> Builder<'_, S> {
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
     ) -> Result<Vec<Box<dyn DynamicalSystem<S>>>, InputError> {
+        self.check_elastic_names()?;
+        self.check_elastic_pairs()?;
         let mut out = Vec::new();
         for (k, spec) in self.case.elastic.iter().enumerate() {
             let system = self.elastic_body(&format!("elastic.{k}"), spec, properties)?;
@@ -31,6 +33,100 @@ impl<S: Dimensional> Builder<'_, S> {
             out.push(system);
         }
         Ok(out)
+    }
+
+    /// Names of bodies and of their held parts name columns and files.
+    fn check_elastic_names(&self) -> Result<(), InputError> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let good = |name: &str| !name.is_empty() && name.chars().all(plain);
+        let rigid = self.case.bodies.iter().map(|b| b.name.as_str());
+        let mut known: Vec<&str> = rigid.collect();
+        for (k, spec) in self.case.elastic.iter().enumerate() {
+            let here = format!("elastic.{k}");
+            if !good(&spec.name) || known.contains(&spec.name.as_str()) {
+                let message = format!(
+                    "the name `{}` of a deformable body names columns and files: it must be unique and made of letters, digits, `-` and `_`",
+                    spec.name
+                );
+                return Err(self.fail(format!("{here}.name"), message));
+            }
+            known.push(&spec.name);
+            let mut held: Vec<(&str, usize)> = Vec::new();
+            for (j, support) in spec.supports.iter().enumerate() {
+                let at = format!("{here}.supports.{j}.part");
+                if !good(&support.part) {
+                    let message = format!(
+                        "the part `{}` names columns: rename it in the mesh with letters, digits, `-` and `_`",
+                        support.part
+                    );
+                    return Err(self.fail(at, message));
+                }
+                let axes = [&support.x, &support.y, &support.z];
+                for axis in (0..3).filter(|a| axes[*a].is_some()) {
+                    if held.contains(&(&support.part, axis)) {
+                        let message = format!(
+                            "the part `{}` is held twice along {}; leave one out",
+                            support.part,
+                            ["x", "y", "z"][axis]
+                        );
+                        return Err(self.fail(at, message));
+                    }
+                    held.push((&support.part, axis));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Bodies that have an interface must be able to touch.
+    fn check_elastic_pairs(&self) -> Result<(), InputError> {
+        let bodies = &self.case.elastic;
+        let meet = |a: &str, b: &str| {
+            let between = self.case.interfaces.iter().map(|i| &i.between);
+            between
+                .into_iter()
+                .any(|(c, d)| (c == a && d == b) || (c == b && d == a))
+        };
+        for (k, one) in bodies.iter().enumerate() {
+            for other in &bodies[..k] {
+                let (same, remedy) = match (&one.touches, &other.touches) {
+                    (TouchSpec::Points(_), TouchSpec::Points(_)) => ("points", "Surface"),
+                    (TouchSpec::Surface(_), TouchSpec::Surface(_)) => ("a surface", "Points"),
+                    _ => continue,
+                };
+                if meet(&one.material, &other.material) {
+                    let message = format!(
+                        "`{}` and `{}` both touch by {same} and would pass through each other; let one of them touch as `{remedy}`, or                          leave out the interface between their materials if they never meet",
+                        other.name, one.name
+                    );
+                    return Err(self.fail(format!("elastic.{k}.touches"), message));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Grains that fit between the points of a body would fall into it.
+    pub(super) fn check_elastic_points(
+        &self,
+        systems: &[Box<dyn DynamicalSystem<S>>],
+    ) -> Result<(), InputError> {
+        let smallest = self.radii().fold(f64::INFINITY, f64::min);
+        for (k, system) in systems.iter().enumerate() {
+            let points = system.contactors().into_iter();
+            let points = points.filter(|c| c.shape == ContactorShape::Point);
+            let widest = points.fold(0.0, |most: f64, c| most.max(c.radius));
+            // The size of a point is half of the distance to the next.
+            if widest > 0.0 && smallest < widest && !self.case.grains.is_empty() {
+                let message = format!(
+                    "grains down to a radius of {smallest:.3e} m fit between the points of `{}`, {:.3e} m apart; let it touch as `Surface`, or                      make its elements smaller",
+                    system.name(),
+                    2.0 * widest
+                );
+                return Err(self.fail(format!("elastic.{k}.touches"), message));
+            }
+        }
+        Ok(())
     }
 
     fn elastic_body(
@@ -61,7 +157,7 @@ impl<S: Dimensional> Builder<'_, S> {
             poisson: property("poisson", "")?,
             density,
         };
-        let mesh = self.mesh(&format!("{here}.mesh"), &spec.mesh)?;
+        let mesh = self.mesh(&format!("{here}.mesh"), spec)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let velocity = self.vector(&format!("{here}.velocity"), &spec.velocity)?;
         let supports = self.supports(here, &spec.supports)?;
@@ -126,7 +222,8 @@ impl<S: Dimensional> Builder<'_, S> {
         specs.iter().enumerate().map(one).collect()
     }
 
-    fn mesh(&self, here: &str, spec: &MeshSpec) -> Result<Mesh<S>, InputError> {
+    fn mesh(&self, here: &str, owner: &ElasticSpec) -> Result<Mesh<S>, InputError> {
+        let spec = &owner.mesh;
         let wrong = |error: MeshError| self.fail(here, error.to_string());
         match spec {
             MeshSpec::Block { x, y, z, round } => {
@@ -168,8 +265,17 @@ impl<S: Dimensional> Builder<'_, S> {
                     return Err(self.fail(format!("{here}.scale"), message));
                 }
                 let path = self.folder.join(file);
-                let read = gmsh::read(&path, S::D)
+                let mut read = gmsh::read(&path, S::D)
                     .map_err(|why| self.fail(format!("{here}.file"), why))?;
+                let named = |part: &str| {
+                    let touches = match &owner.touches {
+                        TouchSpec::Points(name) | TouchSpec::Surface(name) => name == part,
+                        TouchSpec::Nothing => false,
+                    };
+                    touches || owner.supports.iter().any(|s| s.part == part)
+                };
+                // Other groups may lie inside the body.
+                read.parts.retain(|part, _| named(part));
                 let points = read.points.iter();
                 let points = points.map(|p| S::Vector::from_slice(p) * *scale).collect();
                 Mesh::new(points, read.elements, &read.parts).map_err(wrong)
@@ -250,14 +356,20 @@ fn coordinates(line: &LineSpec) -> Result<Vec<f64>, (&'static str, String)> {
             format!("`fine` must lie within {from} and {to} and rise, got ({low}, {high})");
         return Err(("fine", message));
     }
-    if !(growth >= 1.0 && growth <= 10.0) {
+    if !(1.0..=10.0).contains(&growth) {
         return Err((
             "growth",
             format!("a growth must be from 1 to 10, got {growth}"),
         ));
     }
-    let most = if growth > 1.0 { high - low } else { to - from };
-    if most / size > MAX_LINE {
+    let grown = |length: f64| {
+        if growth > 1.0 + 1e-9 {
+            (1.0 + length * (growth - 1.0) / size).ln() / growth.ln()
+        } else {
+            length / size
+        }
+    };
+    if (high - low) / size + grown(low - from) + grown(to - high) > MAX_LINE {
         return Err((
             "size",
             format!("elements of {size} m are more than {MAX_LINE} in a line"),

@@ -140,6 +140,7 @@ impl Loaded {
         builder.first_bodies()?;
         builder.refuse_idle_wear()?;
         let systems = builder.elastic_bodies(&properties)?;
+        builder.check_elastic_points(&systems)?;
         let names = builder
             .bodies
             .driven

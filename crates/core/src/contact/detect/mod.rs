@@ -124,8 +124,8 @@ fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<S::Vector> {
     centres
 }
 
-/// Returns the points that the neighbour list tracks: the centres of balls and pieces, then the frames of
-/// the surfaces.
+/// Returns the points that the neighbour list tracks: the centres of balls and pieces, the frames of the
+/// surfaces, and the vertices of surfaces that deform.
 fn watched<'a, S: Space>(
     shapes: &'a Shapes<S>,
     bodies: &'a Bodies<S>,
@@ -135,7 +135,12 @@ fn watched<'a, S: Space>(
         .surfaces
         .iter()
         .map(|s| bodies.position[s.body as usize]);
-    centres.iter().copied().chain(frames)
+    let vertices = shapes.surfaces.iter().flat_map(move |s| {
+        let (origin, rotation) = frame(s.body, &s.offset, bodies);
+        let vertices = s.shape.moving_vertices().iter();
+        vertices.map(move |x| origin + S::rotate(&rotation, x))
+    });
+    centres.iter().copied().chain(frames).chain(vertices)
 }
 
 fn must_rebuild<S: Space>(
@@ -144,7 +149,9 @@ fn must_rebuild<S: Space>(
     bodies: &Bodies<S>,
     centres: &[S::Vector],
 ) -> bool {
-    if network.seen_at.len() != centres.len() + shapes.surfaces.len() {
+    let surfaces = shapes.surfaces.iter();
+    let vertices: usize = surfaces.map(|s| s.shape.moving_vertices().len()).sum();
+    if network.seen_at.len() != centres.len() + shapes.surfaces.len() + vertices {
         return true;
     }
     // A rotating surface moves more than its frame does.
