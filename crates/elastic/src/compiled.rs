@@ -1,6 +1,7 @@
 //! The bodies, compiled once for each dimension, so that dependent crates do not compile them again.
 
-use crate::body::{BodyError, BodySpec, ElasticBody};
+use crate::body::{BodySpec, ElasticBody};
+use crate::error::BodyError;
 use crate::surface::SurfacePart;
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::mesh::Mesh;

@@ -1,6 +1,6 @@
 //! Degrees of freedom of a mesh with supports: which displacement of which point is which generalised coordinate.
 
-use crate::body::BodyError;
+use crate::error::BodyError;
 use crate::mesh::Mesh;
 use crate::support::Support;
 use fretwork_core::bodies::Dof;

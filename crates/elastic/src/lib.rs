@@ -3,17 +3,20 @@
 pub mod body;
 pub mod compiled;
 pub mod element;
+pub mod error;
 pub mod freedom;
 pub mod generate;
 pub mod material;
 pub mod matrix;
 pub mod mesh;
+mod model;
 pub mod rigid;
 pub mod support;
 pub mod surface;
 
-pub use body::{BodyError, BodySpec, ElasticBody, Touching};
+pub use body::{BodySpec, ElasticBody, Touching};
 pub use compiled::Deformable;
+pub use error::BodyError;
 pub use material::Elasticity;
 pub use mesh::Mesh;
 pub use support::{Rayleigh, Support};

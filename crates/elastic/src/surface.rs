@@ -1,7 +1,7 @@
 //! A part of the boundary that touches as a surface: its vertices follow the points of the mesh, and an impulse anywhere on it goes
 //! to the points of the facet there, by its shape functions.
 
-use crate::body::BodyError;
+use crate::error::BodyError;
 use crate::mesh::{Mesh, place};
 use fretwork_core::bodies::Nodes;
 use fretwork_core::geometry::space::{Space, VectorLike};

@@ -1,0 +1,198 @@
+//! What of a body does not change: its mesh and what is assembled and factorised from it.
+
+use crate::body::Touching;
+use crate::compiled::Deformable;
+use crate::element::Simplex;
+use crate::error::BodyError;
+use crate::freedom::Freedoms;
+use crate::material::Elasticity;
+use crate::matrix::{Factor, Sparse};
+use crate::mesh::Mesh;
+use crate::support::Rayleigh;
+use crate::surface::SurfacePart;
+use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use std::sync::OnceLock;
+
+/// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column has as many numbers, 160 kB.
+const MAX_SURFACE: usize = 20_000;
+
+/// What is formed for the length of a step.
+#[derive(Clone, Debug)]
+pub struct Formed {
+    /// h and theta.
+    pub of: [f64; 2],
+    /// None where A is not positive definite in double precision: velocities are then not finite, and the step ends with an error.
+    pub factor: Option<Factor>,
+    /// Compliance of the surface's coordinates, column by column as they are touched; empty where there are too many.
+    pub surface: Vec<OnceLock<Vec<f64>>>,
+}
+
+impl Formed {
+    pub fn solve(&self, x: &mut [f64]) {
+        match &self.factor {
+            Some(factor) => factor.solve(x, 1),
+            None => x.fill(f64::NAN),
+        }
+    }
+}
+
+/// What does not change, shared by copies.
+#[derive(Debug)]
+pub struct Model<S: Space> {
+    pub name: String,
+    pub mesh: Mesh<S>,
+    pub material: Elasticity,
+    pub damping: Rayleigh,
+    pub freedoms: Freedoms<S>,
+    pub mass: Vec<f64>,
+    pub stiffness: Sparse,
+    pub contactors: Vec<Contactor>,
+    /// The part that touches.
+    pub part: Option<SurfacePart>,
+    /// Freely moving coordinates of touched points, and where each coordinate is among them.
+    pub surface: Vec<u32>,
+    pub place: Vec<u32>,
+}
+
+impl<S: Space> Model<S> {
+    /// The entries of a vector of coordinates at a point.
+    pub fn of(&self, values: &[f64], point: u32) -> S::Vector {
+        let mut out = S::Vector::zero();
+        for axis in 0..S::D {
+            out[axis] = values[self.freedoms.of(point, axis)];
+        }
+        out
+    }
+
+    /// Displacements less their mean along each axis, which strains nothing and would leave its rounding in K q.
+    pub fn strained(&self, q: &[f64]) -> Vec<f64> {
+        let (mut sum, mut count) = ([0.0; 3], [0.0; 3]);
+        for (q, axis) in q.iter().zip(&self.freedoms.axis) {
+            sum[usize::from(*axis)] += q;
+            count[usize::from(*axis)] += 1.0;
+        }
+        let mean = |axis: u8| sum[usize::from(axis)] / count[usize::from(axis)];
+        let axes = self.freedoms.axis.iter();
+        q.iter()
+            .zip(axes)
+            .map(|(q, axis)| q - mean(*axis))
+            .collect()
+    }
+
+    /// K q and C v.
+    pub fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
+        let elastic = self.stiffness.times(&self.strained(q));
+        let mut viscous = vec![0.0; v.len()];
+        let Rayleigh { mass, stiffness } = self.damping;
+        if stiffness > 0.0 {
+            viscous = self.stiffness.times(&self.strained(v));
+            viscous.iter_mut().for_each(|f| *f *= stiffness);
+        }
+        for (c, f) in viscous.iter_mut().enumerate() {
+            *f += mass * self.mass[c] * v[c];
+        }
+        [elastic, viscous]
+    }
+
+    pub fn form(&self, h: f64, theta: f64) -> Formed {
+        let step = h * theta;
+        let free = self.freedoms.free;
+        let inertia = 1.0 + step * self.damping.mass;
+        let diagonal: Vec<f64> = self.mass[..free].iter().map(|m| m * inertia).collect();
+        let scale = step * self.damping.stiffness + step * step;
+        let a = self.stiffness.leading(free, scale, &diagonal);
+        let factor = Factor::new(&a);
+        let kept = self.surface.len() <= MAX_SURFACE;
+        let columns = if kept { self.surface.len() } else { 0 };
+        Formed {
+            of: [h, theta],
+            factor,
+            surface: (0..columns).map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// The compliance of the surface's coordinates for an impulse on one of them.
+    pub fn column<'a>(&self, formed: &'a Formed, k: u32) -> &'a [f64] {
+        formed.surface[k as usize].get_or_init(|| {
+            let mut response = vec![0.0; self.freedoms.free];
+            response[self.surface[k as usize] as usize] = 1.0;
+            formed.solve(&mut response);
+            let at = self.surface.iter().map(|c| response[*c as usize]);
+            at.collect()
+        })
+    }
+}
+
+/// The part of a mesh that touches, and its contactors.
+pub fn contactors<S: Deformable>(
+    mesh: &Mesh<S>,
+    touching: Touching,
+    material: u16,
+) -> Result<(Option<SurfacePart>, Vec<Contactor>), BodyError> {
+    let name = match touching {
+        Touching::Nothing => return Ok((None, Vec::new())),
+        Touching::Points(name) | Touching::Surface(name) => name,
+    };
+    let tributary = mesh.tributary(name);
+    let size = |p: u32| match S::D {
+        2 => 0.5 * tributary[p as usize],
+        _ => (tributary[p as usize] / std::f64::consts::PI).sqrt(),
+    };
+    let contactor = |p: u32, shape| Contactor {
+        nodes: Nodes::one(p),
+        radius: size(p),
+        shape,
+        material,
+    };
+    let part = SurfacePart::new(mesh, name)?;
+    match touching {
+        Touching::Nothing => Ok((None, Vec::new())),
+        Touching::Points(_) => {
+            let points = part.points.iter();
+            let all = points.map(|p| contactor(*p, ContactorShape::Point));
+            let all = all.collect();
+            Ok((Some(part), all))
+        }
+        Touching::Surface(_) => {
+            let vertices = mesh.corners(&part.points);
+            if let Err(why) = S::surface(vertices, &part) {
+                return Err(BodyError::NoSurface(name.to_owned(), why));
+            }
+            let one = contactor(part.origin(), ContactorShape::Surface);
+            Ok((Some(part), vec![one]))
+        }
+    }
+}
+
+/// The lumped mass of each coordinate (kg), and the stiffness.
+pub fn assemble<S: Space>(
+    mesh: &Mesh<S>,
+    material: &Elasticity,
+    freedoms: &Freedoms<S>,
+) -> (Vec<f64>, Sparse) {
+    let mut mass = vec![0.0; freedoms.total()];
+    let mut entries = Vec::new();
+    for points in mesh.elements() {
+        let Some(simplex) = Simplex::<S>::new(&mesh.corners(points)) else {
+            continue;
+        };
+        let share = material.density * simplex.volume / (S::D + 1) as f64;
+        for (a, p) in points.iter().enumerate() {
+            for axis in 0..S::D {
+                mass[freedoms.of(*p, axis)] += share;
+            }
+            for (b, q) in points.iter().enumerate() {
+                let block = simplex.stiffness(material, a, b);
+                for i in 0..S::D {
+                    for j in 0..S::D {
+                        let at = (freedoms.of(*p, i), freedoms.of(*q, j));
+                        entries.push((at.0, at.1, block.entry(i, j)));
+                    }
+                }
+            }
+        }
+    }
+    let stiffness = Sparse::from_entries(freedoms.total(), entries.into_iter());
+    (mass, stiffness)
+}
