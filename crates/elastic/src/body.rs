@@ -20,7 +20,7 @@ use crate::model::{Formed, Model, assemble, contactors};
 use crate::support::{Rayleigh, Support};
 use fretwork_core::bodies::{
     Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemStep,
-    SystemWork,
+    SystemWork, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -177,27 +177,6 @@ impl<S: Deformable> ElasticBody<S> {
                 inertia + elastic[c] + viscous[c] - self.contact[c] / step.h
             })
             .collect()
-    }
-
-    /// Blocks of the compliance by solving for each node.
-    fn solved_compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let count = nodes.len();
-        let mut out = vec![S::Matrix::uniform(0.0); count * count];
-        let mut response = vec![0.0; self.model.freedoms.total()];
-        for (b, node) in nodes.iter().enumerate() {
-            for k in 0..S::D {
-                let mut unit = S::Vector::zero();
-                unit[k] = 1.0;
-                response.fill(0.0);
-                self.add_impulse(*node, &unit, &mut response);
-                self.solve(&mut response);
-                for (a, seen) in nodes.iter().enumerate() {
-                    let block = &mut out[a * count + b];
-                    *block = *block + S::Matrix::dyad(&self.model.of(&response, *seen), &unit);
-                }
-            }
-        }
-        out
     }
 
     /// v_theta, and q + h theta v_theta.
@@ -425,7 +404,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
         let formed = self.formed.as_ref().filter(|f| !f.surface.is_empty());
         let Some(formed) = formed else {
-            return self.solved_compliance(nodes);
+            return compliance_by_solving(self, nodes);
         };
         let coordinates: Vec<[u32; 3]> = nodes
             .iter()

@@ -82,16 +82,10 @@ impl<S: Space> Simplex<S> {
     }
 }
 
-/// The von Mises stress of a stress tensor.
-pub fn von_mises(stress: &Symmetric) -> f64 {
-    let [x, y, z, yz, xz, xy] = *stress;
-    let normal = (x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2);
-    (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_core::bodies::von_mises;
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 

@@ -64,11 +64,6 @@ impl Elasticity {
     pub fn plane_strain(&self) -> f64 {
         self.young / (1.0 - self.poisson * self.poisson)
     }
-
-    /// Speed of pressure waves, sqrt((lambda + 2 G)/rho) (m/s).
-    pub fn pressure_wave(&self) -> f64 {
-        ((self.lambda() + 2.0 * self.shear()) / self.density).sqrt()
-    }
 }
 
 #[cfg(test)]

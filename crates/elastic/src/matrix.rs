@@ -42,11 +42,6 @@ impl Sparse {
         columns.zip(self.values[range].iter().copied())
     }
 
-    /// Number of stored entries.
-    pub fn entries(&self) -> usize {
-        self.values.len()
-    }
-
     /// The product with a vector.
     pub fn times(&self, x: &[f64]) -> Vec<f64> {
         let row = |r: usize| self.row(r).map(|(c, a)| a * x[c]).sum();

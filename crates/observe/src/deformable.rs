@@ -6,7 +6,7 @@ use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
-use fretwork_core::bodies::DeformedMesh;
+use fretwork_core::bodies::{DeformedMesh, von_mises};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use std::fmt::Write as _;
@@ -121,13 +121,6 @@ impl<S: Space> Observer<S> for Deformable {
 fn force(name: &str) -> String {
     let axis = name.len() - 1;
     format!("{}f{}", &name[..axis], &name[axis..])
-}
-
-/// The von Mises stress of a stress tensor xx, yy, zz, yz, xz, xy (Pa).
-pub fn von_mises(stress: &[f64; 6]) -> f64 {
-    let [x, y, z, yz, xz, xy] = *stress;
-    let normal = (x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2);
-    (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
 }
 
 /// A mesh as an unstructured grid in VTK's legacy text format, points where they are now.

@@ -162,6 +162,13 @@ pub struct DeformedMesh<S: Space> {
     pub stress: Vec<[f64; 6]>,
 }
 
+/// The von Mises stress of a stress tensor xx, yy, zz, yz, xz, xy (Pa).
+pub fn von_mises(stress: &[f64; 6]) -> f64 {
+    let [x, y, z, yz, xz, xy] = *stress;
+    let normal = (x - y).powi(2) + (y - z).powi(2) + (z - x).powi(2);
+    (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
+}
+
 /// A body with generalised coordinates of its own.
 ///
 /// In each step it is called in this order:
@@ -312,23 +319,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// The blocks P_a A^-1 P_b^T of some nodes (1/kg), row by row: a square of them. Here by solving for each node; systems
     /// of which A stays as it is keep the blocks of their surface instead.
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let zero = S::Matrix::diagonal(&S::Vector::zero());
-        let mut blocks = vec![zero; nodes.len() * nodes.len()];
-        let mut response = vec![0.0; self.freedoms()];
-        for (b, node) in nodes.iter().enumerate() {
-            for k in 0..S::D {
-                let mut unit = S::Vector::zero();
-                unit[k] = 1.0;
-                response.fill(0.0);
-                self.add_impulse(*node, &unit, &mut response);
-                self.solve(&mut response);
-                for (a, seen) in nodes.iter().enumerate() {
-                    let block = &mut blocks[a * nodes.len() + b];
-                    *block = *block + S::Matrix::dyad(&self.node_velocity(*seen, &response), &unit);
-                }
-            }
-        }
-        blocks
+        compliance_by_solving(self, nodes)
     }
 
     /// What holds and drives it, always in the same order.
@@ -351,6 +342,30 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// A copy.
     fn clone_box(&self) -> Box<dyn DynamicalSystem<S>>;
+}
+
+/// The blocks P_a A^-1 P_b^T of some nodes of a system (1/kg), row by row, by solving for each node.
+pub fn compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
+    system: &T,
+    nodes: &[u32],
+) -> Vec<S::Matrix> {
+    let zero = S::Matrix::diagonal(&S::Vector::zero());
+    let mut blocks = vec![zero; nodes.len() * nodes.len()];
+    let mut response = vec![0.0; system.freedoms()];
+    for (b, node) in nodes.iter().enumerate() {
+        for k in 0..S::D {
+            let mut unit = S::Vector::zero();
+            unit[k] = 1.0;
+            response.fill(0.0);
+            system.add_impulse(*node, &unit, &mut response);
+            system.solve(&mut response);
+            for (a, seen) in nodes.iter().enumerate() {
+                let block = &mut blocks[a * nodes.len() + b];
+                *block = *block + S::Matrix::dyad(&system.node_velocity(*seen, &response), &unit);
+            }
+        }
+    }
+    blocks
 }
 
 impl<S: Space> Clone for Box<dyn DynamicalSystem<S>> {

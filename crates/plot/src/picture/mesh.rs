@@ -1,9 +1,9 @@
 //! Deformable bodies in the plane: their elements, in grey or by their von Mises stress.
 
 use crate::{Outline, Paint, Scale, round_top};
+use fretwork_core::bodies::von_mises;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_observe::deformable::von_mises;
 
 /// Elements in a window with their corners and stress (Pa).
 fn seen<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<(Vec<[f64; 2]>, f64)> {
