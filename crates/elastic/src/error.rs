@@ -17,9 +17,9 @@ pub enum BodyError {
     NoPart(String, String),
     /// Two different drives of one displacement.
     #[error(
-        "parts `{0}` and `{1}` share points that both drive along axis {2} (0 is x): leave that axis out of one of them"
+        "parts `{0}` and `{1}` share points that both drive along {2}: leave that axis out of one of them"
     )]
-    Twice(String, String, usize),
+    Twice(String, String, &'static str),
     /// Motion imposed at one time and a force at another.
     #[error(
         "the drive of part `{0}` imposes motion at one time and a force at another; a deformable body cannot change that within a run"

@@ -65,7 +65,7 @@ impl<S: Space> Freedoms<S> {
                             let same = other.axes[axis].as_ref() == Some(drive) && drive.imposes();
                             if !same {
                                 let [one, two] = [&other.part, &support.part].map(Clone::clone);
-                                return Err(BodyError::Twice(one, two, axis));
+                                return Err(BodyError::Twice(one, two, ["x", "y", "z"][axis]));
                             }
                         }
                         None => *slot = Some(s),

@@ -67,7 +67,7 @@ fn supports_that_do_not_hold() {
             MESH,
             "supports: ‸[(part: \"bottom\", y: Fixed), (part: \"left\", y: Force(Constant(1.0)))]",
         ),
-        &["`bottom` and `left` share points"],
+        &["`bottom` and `left` share points that both drive along y"],
     );
     stiff_refused(
         &block(MESH, "supports: [(part: \"bottom\", x: Fixed, z: ‸Fixed)]"),
