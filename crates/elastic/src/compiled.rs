@@ -2,7 +2,7 @@
 
 use crate::body::{BodySpec, ElasticBody};
 use crate::error::BodyError;
-use crate::surface::SurfacePart;
+use crate::half_space::{HalfSpace, HalfSpaceError, HalfSpaceSpec};
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::Polyline;
@@ -11,13 +11,13 @@ use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 
 /// A dimension for which this crate compiles its bodies.
 pub trait Deformable: Space {
-    /// The surface of facets, of vertices (m) that are those of a [`SurfacePart`].
+    /// The surface of vertices (m) and, in space, of triangles between them.
     ///
     /// # Errors
     /// Why they form no surface.
     fn surface(
         vertices: Vec<Self::Vector>,
-        part: &SurfacePart,
+        facets: &[[u32; 3]],
     ) -> Result<Box<dyn Surface<Self>>, String>;
 
     /// A body of finite elements, see [`ElasticBody::new`].
@@ -25,12 +25,20 @@ pub trait Deformable: Space {
     /// # Errors
     /// See [`BodyError`].
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError>;
+
+    /// An elastic half-space, see [`HalfSpace::new`].
+    ///
+    /// # Errors
+    /// See [`HalfSpaceError`].
+    fn half_space(
+        spec: HalfSpaceSpec<'_, Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, HalfSpaceError>;
 }
 
 impl Deformable for Dim2 {
     fn surface(
         vertices: Vec<Self::Vector>,
-        _part: &SurfacePart,
+        _facets: &[[u32; 3]],
     ) -> Result<Box<dyn Surface<Self>>, String> {
         let profile = Polyline::new(vertices, None).map_err(|e| e.to_string())?;
         Ok(Box::new(profile))
@@ -39,18 +47,30 @@ impl Deformable for Dim2 {
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {
         Ok(Box::new(ElasticBody::new(spec)?))
     }
+
+    fn half_space(
+        spec: HalfSpaceSpec<'_, Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, HalfSpaceError> {
+        Ok(Box::new(HalfSpace::new(spec)?))
+    }
 }
 
 impl Deformable for Dim3 {
     fn surface(
         vertices: Vec<Self::Vector>,
-        part: &SurfacePart,
+        facets: &[[u32; 3]],
     ) -> Result<Box<dyn Surface<Self>>, String> {
-        let mesh = Mesh::new(vertices, part.facets.clone()).map_err(|e| e.to_string())?;
+        let mesh = Mesh::new(vertices, facets.to_vec()).map_err(|e| e.to_string())?;
         Ok(Box::new(mesh))
     }
 
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {
         Ok(Box::new(ElasticBody::new(spec)?))
+    }
+
+    fn half_space(
+        spec: HalfSpaceSpec<'_, Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, HalfSpaceError> {
+        Ok(Box::new(HalfSpace::new(spec)?))
     }
 }

@@ -1,4 +1,4 @@
-//! Bodies that deform, as dynamical systems of the core: finite elements of linear elasticity.
+//! Bodies that deform, as dynamical systems of the core: finite elements of linear elasticity, and elastic half-spaces.
 
 pub mod body;
 pub mod compiled;
@@ -6,6 +6,7 @@ pub mod element;
 pub mod error;
 pub mod freedom;
 pub mod generate;
+pub mod half_space;
 pub mod material;
 pub mod matrix;
 pub mod mesh;
@@ -17,6 +18,7 @@ pub mod surface;
 pub use body::{BodySpec, ElasticBody, Touching};
 pub use compiled::Deformable;
 pub use error::BodyError;
+pub use half_space::{HalfSpace, HalfSpaceSpec};
 pub use material::Elasticity;
 pub use mesh::Mesh;
 pub use support::{Rayleigh, Support};

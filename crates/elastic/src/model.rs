@@ -156,7 +156,7 @@ pub fn contactors<S: Deformable>(
         }
         Touching::Surface(_) => {
             let vertices = mesh.corners(&part.points);
-            if let Err(why) = S::surface(vertices, &part) {
+            if let Err(why) = S::surface(vertices, &part.facets) {
                 return Err(BodyError::NoSurface(name.to_owned(), why));
             }
             let one = contactor(part.origin(), ContactorShape::Surface);

@@ -3,6 +3,7 @@
 mod bar;
 mod bending;
 mod forces;
+mod half_space;
 mod line_contact;
 mod point_contact;
 
@@ -10,7 +11,7 @@ use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
 use fretwork::elastic::generate::{block, even, graded, mapped_block};
 use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support, Touching};
-use fretwork::geometry::space::{Dim2, Space, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
 

@@ -1,0 +1,318 @@
+//! A half-space as a dynamical system.
+
+use super::{Cells, HalfSpace};
+use crate::compiled::Deformable;
+use fretwork_core::bodies::{
+    Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemStep, SystemWork,
+};
+use fretwork_core::geometry::shape::Surface;
+use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+
+impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
+    fn name(&self) -> &str {
+        &self.fixed.name
+    }
+
+    fn freedoms(&self) -> usize {
+        self.velocity.len()
+    }
+
+    fn velocity(&self) -> &[f64] {
+        &self.velocity
+    }
+
+    fn set_contact_impulse(&mut self, impulse: &[f64]) {
+        let h = self.step.map_or(1.0, |s| s.h);
+        for (force, impulse) in self.force.iter_mut().zip(impulse) {
+            *force = impulse / h;
+        }
+    }
+
+    fn set_velocity(&mut self, velocity: &[f64]) {
+        self.velocity.copy_from_slice(velocity);
+    }
+
+    fn begin_step(&mut self, step: &SystemStep<S>) {
+        self.stored = self.stored_energy();
+        self.jump = 0.0;
+        for (c, [start, _]) in self.imposed(step) {
+            let before = self.velocity[c];
+            if c != self.rolled() {
+                self.jump += 0.5 * self.fixed.mass * (start.powi(2) - before.powi(2));
+            }
+            self.velocity[c] = start;
+        }
+        if self.fixed.rolling.is_some() {
+            self.roll(step.h * self.velocity[self.rolled()]);
+        }
+        self.start[0].copy_from_slice(&self.displacement);
+        self.start[1].copy_from_slice(&self.velocity);
+        self.force.fill(0.0);
+        self.step = Some(*step);
+    }
+
+    fn advance(&mut self, time: f64) {
+        for (q, v) in self.displacement.iter_mut().zip(&self.velocity) {
+            *q += v * time;
+        }
+    }
+
+    fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64> {
+        let SystemStep { time, h, theta, .. } = *step;
+        let held = self.held();
+        let back = 1.0 / (h * theta);
+        let mut end: Vec<f64> = self.displacement[..held]
+            .iter()
+            .map(|q| -q * back)
+            .collect();
+        for (axis, dof) in self.fixed.axes.iter().enumerate() {
+            let mut v = self.start[1][held + axis];
+            if self.yields(axis) {
+                let force = dof.over(time, h).force(time + theta * h);
+                v += h * (force / self.fixed.mass + step.gravity[axis]);
+            }
+            end.push(v);
+        }
+        end.push(0.0);
+        for (c, [_, last]) in self.imposed(step) {
+            end[c] = last;
+        }
+        end
+    }
+
+    fn solve(&self, impulse: &mut [f64]) {
+        let Some(SystemStep { h, theta, .. }) = self.step else {
+            return;
+        };
+        let held = self.held();
+        let scale = 1.0 / (h * h * theta);
+        let moved = self.displacements(&self.fixed.kernel, &impulse[..held]);
+        for (v, u) in impulse.iter_mut().zip(&moved) {
+            *v = u * scale;
+        }
+        for axis in 0..S::D {
+            let v = &mut impulse[held + axis];
+            *v = if self.yields(axis) {
+                *v / self.fixed.mass
+            } else {
+                0.0
+            };
+        }
+        impulse[held + S::D] = 0.0;
+    }
+
+    fn work(&self, step: &SystemStep<S>) -> SystemWork {
+        let SystemStep { h, theta, .. } = *step;
+        let (held, mass) = (self.held(), self.fixed.mass);
+        let mut work = SystemWork {
+            external: self.jump,
+            ..SystemWork::default()
+        };
+        let done = |before: &[f64]| -> f64 {
+            let pairs = self.displacement.iter().zip(before).take(held);
+            let forces = self.force.iter().zip(pairs);
+            forces
+                .map(|(f, (after, before))| f * (after - before))
+                .sum()
+        };
+        let by_contacts = done(&self.start[0]);
+        let on_material = match self.fixed.rolling {
+            Some(_) => done(&self.passing),
+            None => by_contacts,
+        };
+        work.external += on_material - by_contacts;
+        work.scheme += on_material - (self.stored_energy() - self.stored);
+        for axis in 0..S::D {
+            let c = held + axis;
+            let average = self.average(c, theta);
+            let change = self.velocity[c] - self.start[1][c];
+            work.potential -= h * mass * step.gravity[axis] * average;
+            work.scheme += (theta - 0.5) * mass * change * change;
+            work.external += h * self.reaction(axis, step) * average;
+        }
+        // What makes the surface roll holds it against the contacts along x.
+        let rolled = self.rolled();
+        work.external -= h * self.force[rolled] * self.average(rolled, theta);
+        work
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        let held = self.held();
+        let squared = self.velocity[held..held + S::D].iter().map(|v| v * v);
+        0.5 * self.fixed.mass * squared.sum::<f64>()
+    }
+
+    fn stored_energy(&self) -> f64 {
+        let pairs = self.force.iter().zip(&self.displacement).take(self.held());
+        0.5 * pairs.map(|(f, u)| f * u).sum::<f64>()
+    }
+
+    fn mass(&self) -> f64 {
+        self.fixed.mass
+    }
+
+    fn length(&self) -> f64 {
+        let extent = self.fixed.grid.extent();
+        0.5 * extent[..S::D - 1].iter().fold(0.0, |a: f64, b| a.max(*b))
+    }
+
+    fn is_driven(&self) -> bool {
+        let moves = |dof: &Dof| dof.imposes() && !matches!(dof, Dof::Fixed);
+        self.fixed.rolling.is_some() || self.fixed.axes.iter().any(moves)
+    }
+
+    fn node_position(&self, node: u32) -> S::Vector {
+        let cell = node as usize;
+        let cells = self.fixed.grid.len();
+        self.fixed.places[cell] + self.elastic(node) + self.entries(&self.displacement, cells)
+    }
+
+    fn node_velocity(&self, node: u32, velocity: &[f64]) -> S::Vector {
+        let cells = self.fixed.grid.len();
+        let mut out = self.entries(velocity, node as usize) + self.entries(velocity, cells);
+        out[0] += velocity[self.rolled()];
+        out
+    }
+
+    fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]) {
+        for axis in 0..S::D {
+            generalised[node as usize * S::D + axis] += impulse[axis];
+            generalised[self.held() + axis] += impulse[axis];
+        }
+        generalised[self.rolled()] += impulse[0];
+    }
+
+    fn contactors(&self) -> Vec<Contactor> {
+        if self.fixed.touching == Cells::Surface {
+            return vec![self.whole()];
+        }
+        let area = self.fixed.grid.area(S::D);
+        let radius = match S::D {
+            2 => 0.5 * area,
+            _ => (area / std::f64::consts::PI).sqrt(),
+        };
+        let point = |cell: u32| Contactor {
+            nodes: Nodes::one(cell),
+            radius,
+            shape: ContactorShape::Point,
+            material: self.fixed.surface_material,
+        };
+        (0..self.fixed.grid.len() as u32).map(point).collect()
+    }
+
+    fn contact_nodes(&self, contactor: &Contactor, arm: &S::Vector) -> Nodes {
+        if contactor.shape != ContactorShape::Surface {
+            return contactor.nodes;
+        }
+        let origin = self.origin();
+        let cells = self.fixed.grid.len();
+        let base = self.fixed.places[origin as usize];
+        let middle = self.fixed.grid.middle(origin as usize);
+        // The place without load of what is there now: displacements are small against cells, so that twice is enough.
+        let mut at = self.node_position(origin) + *arm - self.entries(&self.displacement, cells);
+        for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
+            at[axis] += x - base[axis];
+        }
+        let mut weights = self.fixed.grid.weights::<S>(&at);
+        for _ in 0..2 {
+            let moved = weights
+                .iter()
+                .fold(S::Vector::zero(), |sum, (cell, weight)| {
+                    sum + self.elastic(*cell) * *weight
+                });
+            weights = self.fixed.grid.weights::<S>(&(at - moved));
+        }
+        Nodes::sum(&weights).unwrap_or(contactor.nodes)
+    }
+
+    fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
+        if contactor.shape != ContactorShape::Surface {
+            return None;
+        }
+        S::surface(self.surface_vertices(contactor), &self.fixed.facets).ok()
+    }
+
+    fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {
+        let origin = self.node_position(self.origin());
+        let vertices = self.fixed.vertices.iter();
+        vertices
+            .map(|cell| self.node_position(*cell) - origin)
+            .collect()
+    }
+
+    fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
+        let Some(SystemStep { h, theta, .. }) = self.step else {
+            return vec![S::Matrix::uniform(0.0); nodes.len() * nodes.len()];
+        };
+        let scale = 1.0 / (h * h * theta);
+        let mut inertia = S::Vector::zero();
+        for axis in (0..S::D).filter(|a| self.yields(*a)) {
+            inertia[axis] = 1.0 / self.fixed.mass;
+        }
+        let inertia = S::Matrix::diagonal(&inertia);
+        let mut units = [S::Vector::zero(); 3];
+        for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
+            unit[axis] = 1.0;
+        }
+        let mut out = Vec::with_capacity(nodes.len() * nodes.len());
+        for a in nodes {
+            for b in nodes {
+                let influence = self.fixed.kernel.between(*a as usize, *b as usize);
+                let mut block = inertia;
+                for j in 0..S::D {
+                    let mut column = S::Vector::zero();
+                    for i in 0..S::D {
+                        column[i] = scale * self.sign(i) * self.sign(j) * influence[i][j];
+                    }
+                    block = block + S::Matrix::dyad(&column, &units[j]);
+                }
+                out.push(block);
+            }
+        }
+        out
+    }
+
+    fn holders(&self) -> Vec<Holder> {
+        let held = self.held();
+        let one = |axis: usize| {
+            let c = held + axis;
+            let (displacement, force) = match &self.step {
+                Some(step) => {
+                    let moved = step.h * step.theta * self.average(c, step.theta);
+                    (self.start[0][c] + moved, self.reaction(axis, step))
+                }
+                None => (0.0, 0.0),
+            };
+            Holder {
+                part: "holder".to_owned(),
+                axis,
+                displacement,
+                force,
+            }
+        };
+        (0..S::D).map(one).collect()
+    }
+
+    fn save(&self) -> Vec<u8> {
+        let state = (&self.displacement, &self.velocity, &self.force);
+        postcard::to_stdvec(&state).unwrap_or_default()
+    }
+
+    fn restore(&mut self, saved: &[u8]) -> bool {
+        type State = (Vec<f64>, Vec<f64>, Vec<f64>);
+        let read: Result<State, _> = postcard::from_bytes(saved);
+        let total = self.velocity.len();
+        match read {
+            Ok((q, v, f)) if [&q, &v, &f].iter().all(|x| x.len() == total) => {
+                self.start = [q.clone(), v.clone()];
+                (self.displacement, self.velocity, self.force) = (q, v, f);
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn clone_box(&self) -> Box<dyn DynamicalSystem<S>> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,384 @@
+//! The influence of loads on a regular grid of cells: it depends on the distance of two cells alone, so that one number a distance is
+//! kept, and the displacement by many loads is a convolution.
+
+use super::grid::Grid;
+use super::influence::{Influence, rectangle, strip, uniform, wave};
+use crate::material::Elasticity;
+use rustfft::num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+use std::sync::{Arc, OnceLock};
+
+/// How far a half-space reaches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// To infinity, free of load outside its cells. In the plane displacements are relative to this depth (m); in space to infinity.
+    Infinite(f64),
+    /// The cells repeat with their extent; displacements are relative to this depth (m).
+    Periodic(f64),
+}
+
+/// Influences by distance in cells.
+#[derive(Debug)]
+pub struct Kernel {
+    dimension: usize,
+    cells: [usize; 2],
+    periodic: bool,
+    /// Cells of the table along x and y: twice those of the grid, or those of a period.
+    table: [usize; 2],
+    influence: Vec<Influence>,
+    spectrum: OnceLock<Vec<[[Complex64; 3]; 3]>>,
+    transforms: Transforms,
+}
+
+impl Kernel {
+    /// The kernel of a grid, with the displacement at places that lie `shift` (m) along x from the middles of cells.
+    pub fn new(
+        grid: &Grid,
+        material: &Elasticity,
+        reach: Reach,
+        dimension: usize,
+        shift: f64,
+    ) -> Self {
+        let periodic = matches!(reach, Reach::Periodic(_));
+        let table = grid.cells.map(|n| match n {
+            n if periodic || n == 1 => n,
+            n => smooth(2 * n - 1),
+        });
+        let transforms = Transforms::new(table);
+        let influence = match reach {
+            Reach::Infinite(depth) => closed_forms(grid, material, dimension, depth, table, shift),
+            Reach::Periodic(depth) => waves(grid, material, dimension, depth, &transforms, shift),
+        };
+        Self {
+            dimension,
+            cells: grid.cells,
+            periodic,
+            table,
+            influence,
+            spectrum: OnceLock::new(),
+            transforms,
+        }
+    }
+
+    /// The displacement in a cell by a force on another (m/N; m per N/m in the plane), with the inward normal as last axis.
+    pub fn between(&self, at: usize, load: usize) -> &Influence {
+        let columns = self.cells[0];
+        let place = |cell: usize| [cell % columns, cell / columns];
+        let [a, b] = [place(at), place(load)];
+        let [i, j] = [0, 1].map(|k| (a[k] + self.table[k] - b[k]) % self.table[k]);
+        &self.influence[j * self.table[0] + i]
+    }
+
+    /// The displacements by forces on all cells: `[a][cell]` along each axis.
+    pub fn displacements(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let loaded: Vec<usize> = (0..forces[0].len())
+            .filter(|c| forces.iter().any(|f| f[*c] != 0.0))
+            .collect();
+        // A pair of cells costs some D^2 multiplications, a transform some 10 for each bit of the size of the table, of 2 D.
+        let size = self.table[0] * self.table[1];
+        let bits = usize::BITS - size.leading_zeros();
+        if loaded.len() * forces[0].len() * self.dimension < 20 * size * bits as usize {
+            self.sum(forces, &loaded)
+        } else {
+            self.convolve(forces)
+        }
+    }
+
+    fn sum(&self, forces: &[Vec<f64>], loaded: &[usize]) -> Vec<Vec<f64>> {
+        let d = self.dimension;
+        let mut out = vec![vec![0.0; forces[0].len()]; d];
+        for cell in 0..forces[0].len() {
+            let mut sum = [0.0; 3];
+            for load in loaded {
+                let influence = self.between(cell, *load);
+                for (a, sum) in sum.iter_mut().enumerate().take(d) {
+                    for (b, force) in forces.iter().enumerate() {
+                        *sum += influence[a][b] * force[*load];
+                    }
+                }
+            }
+            for (a, out) in out.iter_mut().enumerate() {
+                out[cell] = sum[a];
+            }
+        }
+        out
+    }
+
+    fn convolve(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let d = self.dimension;
+        let [columns, rows] = self.cells;
+        let size = self.table[0] * self.table[1];
+        let transformed: Vec<Vec<Complex64>> = forces
+            .iter()
+            .map(|force| {
+                let mut values = vec![Complex64::ZERO; size];
+                for j in 0..rows {
+                    for i in 0..columns {
+                        values[j * self.table[0] + i].re = force[j * columns + i];
+                    }
+                }
+                self.transforms.forward(&mut values);
+                values
+            })
+            .collect();
+        let spectrum = self.spectrum.get_or_init(|| self.transformed());
+        (0..d)
+            .map(|a| {
+                let mut values: Vec<Complex64> = spectrum
+                    .iter()
+                    .enumerate()
+                    .map(|(k, s)| {
+                        transformed
+                            .iter()
+                            .zip(s[a])
+                            .fold(Complex64::ZERO, |sum, (force, s)| sum + s * force[k])
+                    })
+                    .collect();
+                self.transforms.backward(&mut values);
+                let cells = (0..columns * rows).map(|c| (c % columns, c / columns));
+                cells
+                    .map(|(i, j)| values[j * self.table[0] + i].re / size as f64)
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// The table in wave numbers.
+    fn transformed(&self) -> Vec<[[Complex64; 3]; 3]> {
+        let mut out = vec![[[Complex64::ZERO; 3]; 3]; self.influence.len()];
+        for a in 0..self.dimension {
+            for b in 0..self.dimension {
+                let entries = self.influence.iter().map(|i| Complex64::from(i[a][b]));
+                let mut values: Vec<Complex64> = entries.collect();
+                self.transforms.forward(&mut values);
+                for (out, value) in out.iter_mut().zip(values) {
+                    out[a][b] = value;
+                }
+            }
+        }
+        out
+    }
+
+    /// Whether cells repeat.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic
+    }
+}
+
+/// The table of a half-space without end.
+fn closed_forms(
+    grid: &Grid,
+    material: &Elasticity,
+    dimension: usize,
+    depth: f64,
+    table: [usize; 2],
+    shift: f64,
+) -> Vec<Influence> {
+    // Distances beyond the middle of the table stand for negative ones; those between the two are met by no pair of cells.
+    let distance = |k: usize, of: usize| match k {
+        k if k < grid.cells[of] => k as f64 * grid.size[of],
+        k => (k as f64 - table[of] as f64) * grid.size[of],
+    };
+    let places = (0..table[0] * table[1]).map(|k| (k % table[0], k / table[0]));
+    places
+        .map(|(i, j)| {
+            let x = distance(i, 0) + shift;
+            match dimension {
+                2 => strip(material, grid.size[0], depth, x),
+                _ => rectangle(material, grid.size, x, distance(j, 1)),
+            }
+        })
+        .collect()
+}
+
+/// The table of a half-space with a period, from the waves that fit in it and are longer than two cells.
+fn waves(
+    grid: &Grid,
+    material: &Elasticity,
+    dimension: usize,
+    depth: f64,
+    transforms: &Transforms,
+    shift: f64,
+) -> Vec<Influence> {
+    let [columns, rows] = grid.cells;
+    let extent = grid.extent();
+    let signed = |k: usize, n: usize| match k {
+        k if 2 * k > n => k as f64 - n as f64,
+        k => k as f64,
+    };
+    let number =
+        |k: usize, of: usize| 2.0 * std::f64::consts::PI * signed(k, grid.cells[of]) / extent[of];
+    // The sign of the shortest wave is not known: its odd terms are left out.
+    let shortest = |k: usize, of: usize| 2 * k == grid.cells[of];
+    let spectrum: Vec<[Influence; 2]> = (0..columns * rows)
+        .map(|c| {
+            let (i, j) = (c % columns, c / columns);
+            if c == 0 {
+                return [uniform(material, depth, dimension), Influence::default()];
+            }
+            let k = [number(i, 0), if rows > 1 { number(j, 1) } else { 0.0 }];
+            let [mut real, mut imaginary] = wave(material, k, dimension);
+            if shortest(i, 0) || (rows > 1 && shortest(j, 1)) {
+                imaginary = Influence::default();
+                if dimension == 3 {
+                    (real[0][1], real[1][0]) = (0.0, 0.0);
+                }
+            }
+            // A wave at x + shift is exp(i k shift) times that at x.
+            let phase = Complex64::from_polar(1.0, k[0] * shift);
+            let mut turned = [Influence::default(); 2];
+            for a in 0..dimension {
+                for b in 0..dimension {
+                    let value = Complex64::new(real[a][b], imaginary[a][b]) * phase;
+                    (turned[0][a][b], turned[1][a][b]) = (value.re, value.im);
+                }
+            }
+            turned
+        })
+        .collect();
+    // A force on a cell is a pressure of one over its area there.
+    let scale = 1.0 / (grid.area(dimension) * (columns * rows) as f64);
+    let mut out = vec![Influence::default(); columns * rows];
+    for a in 0..dimension {
+        for b in 0..dimension {
+            let entries = spectrum
+                .iter()
+                .map(|s| Complex64::new(s[0][a][b], s[1][a][b]));
+            let mut values: Vec<Complex64> = entries.collect();
+            transforms.backward(&mut values);
+            for (out, value) in out.iter_mut().zip(values) {
+                out[a][b] = value.re * scale;
+            }
+        }
+    }
+    out
+}
+
+/// The next number without prime factors above 5, of which transforms are fast.
+fn smooth(from: usize) -> usize {
+    let simple = |mut n: usize| {
+        for p in [2, 3, 5] {
+            while n.is_multiple_of(p) {
+                n /= p;
+            }
+        }
+        n == 1
+    };
+    (from..).find(|n| simple(*n)).unwrap_or(from)
+}
+
+/// Fourier transforms over a table.
+struct Transforms {
+    table: [usize; 2],
+    forward: [Arc<dyn Fft<f64>>; 2],
+    backward: [Arc<dyn Fft<f64>>; 2],
+}
+
+impl std::fmt::Debug for Transforms {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Transforms")
+            .field("table", &self.table)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Transforms {
+    fn new(table: [usize; 2]) -> Self {
+        let mut planner = FftPlanner::new();
+        Self {
+            table,
+            forward: table.map(|n| planner.plan_fft_forward(n)),
+            backward: table.map(|n| planner.plan_fft_inverse(n)),
+        }
+    }
+
+    fn forward(&self, values: &mut [Complex64]) {
+        self.both(&self.forward, values);
+    }
+
+    fn backward(&self, values: &mut [Complex64]) {
+        self.both(&self.backward, values);
+    }
+
+    /// Along the rows, then along the columns.
+    fn both(&self, transforms: &[Arc<dyn Fft<f64>>; 2], values: &mut [Complex64]) {
+        let [columns, rows] = self.table;
+        transforms[0].process(values);
+        if rows == 1 {
+            return;
+        }
+        let mut column = vec![Complex64::ZERO; rows];
+        for i in 0..columns {
+            for (j, value) in column.iter_mut().enumerate() {
+                *value = values[j * columns + i];
+            }
+            transforms[1].process(&mut column);
+            for (j, value) in column.iter().enumerate() {
+                values[j * columns + i] = *value;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEEL: Elasticity = Elasticity {
+        young: 210e9,
+        poisson: 0.3,
+        density: 7800.0,
+    };
+
+    fn grid(cells: [usize; 2]) -> Grid {
+        Grid {
+            from: [0.0; 2],
+            size: [1e-3, 2e-3],
+            cells,
+        }
+    }
+
+    /// Sums over pairs of cells and convolutions are the same, of any grid.
+    #[test]
+    fn convolution_is_the_sum() {
+        let reaches = [Reach::Infinite(1.0), Reach::Periodic(0.1)];
+        for (cells, dimension) in [([13, 1], 2), ([8, 1], 2), ([6, 5], 3), ([4, 8], 3)] {
+            for reach in reaches {
+                let grid = grid(cells);
+                let kernel = Kernel::new(&grid, &STEEL, reach, dimension, 0.0);
+                let forces: Vec<Vec<f64>> = (0..dimension)
+                    .map(|a| {
+                        let one = |c: usize| ((c * (a + 3)) as f64).sin();
+                        (0..grid.len()).map(one).collect()
+                    })
+                    .collect();
+                let all: Vec<usize> = (0..grid.len()).collect();
+                let (one, other) = (kernel.sum(&forces, &all), kernel.convolve(&forces));
+                for (one, other) in one.iter().flatten().zip(other.iter().flatten()) {
+                    assert!(
+                        (one - other).abs() < 1e-13 * one.abs().max(1e-11),
+                        "{cells:?} {reach:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Forces and displacements are reciprocal in the table too.
+    #[test]
+    fn tables_are_reciprocal() {
+        for reach in [Reach::Infinite(1.0), Reach::Periodic(0.1)] {
+            let grid = grid([6, 5]);
+            let kernel = Kernel::new(&grid, &STEEL, reach, 3, 0.0);
+            for (one, other) in [(0, 29), (3, 11), (7, 7)] {
+                let (there, back) = (kernel.between(one, other), kernel.between(other, one));
+                for a in 0..3 {
+                    for b in 0..3 {
+                        let off = (there[a][b] - back[b][a]).abs();
+                        assert!(off < 1e-13 * there[2][2].abs(), "{reach:?}: {off:e}");
+                    }
+                }
+            }
+        }
+    }
+}

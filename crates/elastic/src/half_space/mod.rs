@@ -1,0 +1,370 @@
+//! A body that is large against what touches it, as an elastic half-space: its surface gives way to loads by the closed forms of
+//! Boussinesq, Cerruti and Flamant, at once and without inertia.
+//!
+//! The displacement of its cells is u = F f, f the forces of contacts on them over the step, so that with q = u at the point of the
+//! step where contacts are found
+//!
+//! ```text
+//! v_free = -q/(h theta)        v+ = v_free + F p/(h^2 theta)        q + h theta v+ = F p/h
+//! ```
+//!
+//! On top of that the half-space moves with its holder far away, with a mass where it moves under forces. Where the surface rolls
+//! through the contact, the cells stay and material passes them: along the surface a step begins with u(x - V h), the displacement
+//! of what has come there, from the forces of the step before. Along the normal it begins with u(x): a gap is that of the place. The
+//! work of normal forces on what passes, f_n (u_n(x) - u_n(x - V h)), is that of what makes the surface roll.
+//!
+//! Sources: K. L. Johnson, "Contact Mechanics" (1985), chapters 2, 3 and 8; J. J. Kalker, "Three-dimensional elastic bodies in
+//! rolling contact" (1990), chapter 4.
+
+mod dynamics;
+mod error;
+mod grid;
+mod influence;
+mod kernel;
+mod profile;
+
+pub use error::HalfSpaceError;
+pub use grid::Grid;
+pub use kernel::{Kernel, Reach};
+pub use profile::Profile;
+
+use crate::compiled::Deformable;
+use crate::material::Elasticity;
+use fretwork_core::bodies::{Contactor, ContactorShape, Dof, Nodes, SystemStep, TimeFunction};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use std::sync::Arc;
+
+/// Most cells: each that touches by its point is a body of its own.
+const MAX_CELLS: usize = 1_000_000;
+
+/// Which side of its surface a half-space fills.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fills {
+    /// What is below: its surface faces up, along the last axis.
+    Below,
+    /// What is above.
+    Above,
+}
+
+/// How the cells of a half-space touch. Where two meet one touches by its points and the other by its surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cells {
+    /// The middle of each cell touches balls, pieces and surfaces.
+    Points,
+    /// The surface between the middles of cells touches grains, points, and corners and edges of pieces.
+    Surface,
+}
+
+/// What a half-space is made of.
+#[derive(Clone, Debug)]
+pub struct HalfSpaceSpec<'a, S: Space> {
+    /// What a user calls it.
+    pub name: &'a str,
+    /// Its material; the density has no effect.
+    pub material: Elasticity,
+    /// Where it is.
+    pub fills: Fills,
+    /// Where the origin of its plane and of the grid is (m).
+    pub position: S::Vector,
+    /// The cells that may be loaded.
+    pub grid: Grid,
+    /// How far it reaches.
+    pub reach: Reach,
+    /// Shape of its surface.
+    pub profile: Profile,
+    /// Mass that moves with it (kg; kg/m in 2D), zero for none.
+    pub mass: f64,
+    /// Its drive along each axis; a force (N; N/m in 2D) is that on the whole.
+    pub axes: &'a [Dof],
+    /// Velocity of its material along x through the cells (m/s).
+    pub rolling: Option<TimeFunction>,
+    /// How it touches.
+    pub touching: Cells,
+    /// Index of the material for interface laws.
+    pub surface_material: u16,
+}
+
+/// What does not change, shared by copies.
+#[derive(Debug)]
+struct Fixed<S: Space> {
+    name: String,
+    material: Elasticity,
+    grid: Grid,
+    reach: Reach,
+    kernel: Kernel,
+    /// Places of the cells without load (m).
+    places: Vec<S::Vector>,
+    /// Sign of the outward normal along the last axis.
+    outward: f64,
+    mass: f64,
+    axes: Vec<Dof>,
+    rolling: Option<TimeFunction>,
+    touching: Cells,
+    surface_material: u16,
+    /// Cells in the order of the vertices of the surface, and its facets.
+    vertices: Vec<u32>,
+    facets: Vec<[u32; 3]>,
+}
+
+/// An elastic half-space.
+///
+/// Its coordinates are the displacements of its cells along each axis, those of its holder, and the distance rolled.
+#[derive(Clone, Debug)]
+pub struct HalfSpace<S: Space> {
+    fixed: Arc<Fixed<S>>,
+    displacement: Vec<f64>,
+    velocity: Vec<f64>,
+    /// Forces on the cells and on the whole, by coordinate (N; N/m in 2D), in the last step.
+    force: Vec<f64>,
+    /// Displacements and velocities at the start of the step.
+    start: [Vec<f64>; 2],
+    /// Strain energy at the start of the step, and kinetic energy that a jump of imposed velocities brought there (J).
+    stored: f64,
+    jump: f64,
+    step: Option<SystemStep<S>>,
+    /// The kernel of material that has come from a distance behind, and that distance (m).
+    behind: Option<Arc<(f64, Kernel)>>,
+    /// Displacements of the material that has come to each cell of a surface that rolls (m).
+    passing: Vec<f64>,
+}
+
+impl<S: Deformable> HalfSpace<S> {
+    /// A half-space at rest and without load.
+    ///
+    /// # Errors
+    /// See [`HalfSpaceError`].
+    pub fn new(spec: HalfSpaceSpec<S>) -> Result<Self, HalfSpaceError> {
+        check(&spec)?;
+        let HalfSpaceSpec { grid, material, .. } = spec;
+        let up = S::D - 1;
+        let outward = match spec.fills {
+            Fills::Below => 1.0,
+            Fills::Above => -1.0,
+        };
+        let place = |cell: usize| {
+            let middle = grid.middle(cell);
+            let mut at = spec.position;
+            for (axis, x) in middle.iter().enumerate().take(up) {
+                at[axis] += x;
+            }
+            at[up] += outward * spec.profile.height(cell, middle);
+            at
+        };
+        let places: Vec<S::Vector> = (0..grid.len()).map(place).collect();
+        if let Some(bad) = places.iter().find(|p| (0..S::D).any(|k| !p[k].is_finite())) {
+            return Err(HalfSpaceError::Height(bad[0]));
+        }
+        let mut vertices: Vec<u32> = (0..grid.len() as u32).collect();
+        let mut facets = grid.facets(S::D);
+        if spec.fills == Fills::Above {
+            match S::D {
+                2 => vertices.reverse(),
+                _ => facets.iter_mut().for_each(|f| f.swap(1, 2)),
+            }
+        }
+        let kernel = Kernel::new(&grid, &material, spec.reach, S::D, 0.0);
+        let fixed = Fixed {
+            name: spec.name.to_owned(),
+            material,
+            grid,
+            reach: spec.reach,
+            kernel,
+            places,
+            outward,
+            mass: spec.mass,
+            axes: spec.axes.to_vec(),
+            rolling: spec.rolling,
+            touching: spec.touching,
+            surface_material: spec.surface_material,
+            vertices,
+            facets,
+        };
+        let total = (grid.len() + 1) * S::D + 1;
+        let zeros = || vec![0.0; total];
+        let body = Self {
+            fixed: Arc::new(fixed),
+            displacement: zeros(),
+            velocity: zeros(),
+            force: zeros(),
+            start: [zeros(), zeros()],
+            stored: 0.0,
+            jump: 0.0,
+            step: None,
+            behind: None,
+            passing: Vec::new(),
+        };
+        if spec.touching == Cells::Surface {
+            let vertices =
+                fretwork_core::bodies::DynamicalSystem::surface_vertices(&body, &body.whole());
+            S::surface(vertices, &body.fixed.facets).map_err(HalfSpaceError::NoSurface)?;
+        }
+        Ok(body)
+    }
+
+    /// The contactor of a surface.
+    fn whole(&self) -> Contactor {
+        let grid = &self.fixed.grid;
+        Contactor {
+            nodes: Nodes::one(self.origin()),
+            radius: 0.5 * grid.size[0],
+            shape: ContactorShape::Surface,
+            material: self.fixed.surface_material,
+        }
+    }
+
+    /// The cell that carries the frame of the surface.
+    fn origin(&self) -> u32 {
+        (self.fixed.grid.len() / 2) as u32
+    }
+
+    /// Index of the first coordinate of the holder.
+    fn held(&self) -> usize {
+        self.fixed.grid.len() * S::D
+    }
+
+    /// Index of the distance rolled.
+    fn rolled(&self) -> usize {
+        self.held() + S::D
+    }
+
+    /// Whether the holder moves under forces along an axis.
+    fn yields(&self, axis: usize) -> bool {
+        self.fixed.axes[axis].yields()
+    }
+
+    /// Sign of a local axis in the world: the last is the inward normal.
+    fn sign(&self, axis: usize) -> f64 {
+        if axis + 1 == S::D {
+            -self.fixed.outward
+        } else {
+            1.0
+        }
+    }
+
+    /// Displacements of all cells by forces on them, both by coordinate.
+    fn displacements(&self, kernel: &Kernel, forces: &[f64]) -> Vec<f64> {
+        let d = S::D;
+        let cells = self.fixed.grid.len();
+        let along = |axis: usize| -> Vec<f64> {
+            let sign = self.sign(axis);
+            (0..cells).map(|c| sign * forces[c * d + axis]).collect()
+        };
+        let local: Vec<Vec<f64>> = (0..d).map(along).collect();
+        let found = kernel.displacements(&local);
+        (0..cells * d)
+            .map(|k| self.sign(k % d) * found[k % d][k / d])
+            .collect()
+    }
+
+    /// Elastic displacement of a cell (m).
+    fn elastic(&self, cell: u32) -> S::Vector {
+        self.entries(&self.displacement, cell as usize)
+    }
+
+    /// The entries of a vector of coordinates at a cell; at the holder where the cell is one past the last.
+    fn entries(&self, values: &[f64], cell: usize) -> S::Vector {
+        let mut out = S::Vector::zero();
+        for axis in 0..S::D {
+            out[axis] = values[cell * S::D + axis];
+        }
+        out
+    }
+
+    /// Force of the holder along an axis over the last step (N; N/m in 2D).
+    fn reaction(&self, axis: usize, step: &SystemStep<S>) -> f64 {
+        let c = self.held() + axis;
+        let drive = self.fixed.axes[axis].over(step.time, step.h);
+        if self.yields(axis) {
+            return drive.force(step.time + step.theta * step.h);
+        }
+        let change = self.velocity[c] - self.start[1][c];
+        self.fixed.mass * (change / step.h - step.gravity[axis]) - self.force[c]
+    }
+
+    /// v_theta of a coordinate (m/s).
+    fn average(&self, coordinate: usize, theta: f64) -> f64 {
+        let (v, w) = (self.start[1][coordinate], self.velocity[coordinate]);
+        v + theta * (w - v)
+    }
+
+    /// Velocities that are imposed along the holder's axes and by rolling, at the start and the end of a step.
+    fn imposed(&self, step: &SystemStep<S>) -> Vec<(usize, [f64; 2])> {
+        let SystemStep { time, h, theta, .. } = *step;
+        let held = self.held();
+        let of = |(axis, dof): (usize, &Dof)| {
+            let speeds = dof.over(time, h).speeds(time, h, theta)?;
+            Some((held + axis, [speeds.start, speeds.end]))
+        };
+        let axes = self.fixed.axes.iter().enumerate().filter_map(of);
+        let rolling = self.fixed.rolling.as_ref().map(|f| {
+            let mean = f.mean(time, h);
+            (self.rolled(), [mean, mean])
+        });
+        axes.chain(rolling).collect()
+    }
+
+    /// Has the displacement along the surface of the material that is in each cell now, where the surface rolls: what lay a distance (m)
+    /// behind has come.
+    fn roll(&mut self, distance: f64) {
+        if self.behind.as_ref().is_none_or(|b| b.0 != distance) {
+            let Fixed {
+                grid,
+                material,
+                reach,
+                ..
+            } = &*self.fixed;
+            let kernel = Kernel::new(grid, material, *reach, S::D, -distance);
+            self.behind = Some(Arc::new((distance, kernel)));
+        }
+        if let Some(behind) = &self.behind {
+            self.passing = self.displacements(&behind.1, &self.force);
+        }
+        for (k, u) in self.passing.iter().enumerate() {
+            if k % S::D + 1 < S::D {
+                self.displacement[k] = *u;
+            }
+        }
+    }
+}
+
+fn check<S: Space>(spec: &HalfSpaceSpec<S>) -> Result<(), HalfSpaceError> {
+    spec.material.check()?;
+    let grid = &spec.grid;
+    let sides = S::D - 1;
+    for k in 0..sides {
+        if !(grid.size[k] > 0.0 && grid.size[k].is_finite()) {
+            return Err(HalfSpaceError::Size(grid.size[k]));
+        }
+        if grid.cells[k] < 2 {
+            return Err(HalfSpaceError::Few(["x", "y"][k], grid.cells[k]));
+        }
+    }
+    if grid.cells[..sides].iter().fold(1.0, |n, c| n * *c as f64) > MAX_CELLS as f64 {
+        return Err(HalfSpaceError::Many(MAX_CELLS));
+    }
+    let widest = grid.extent()[..sides]
+        .iter()
+        .fold(0.0, |a: f64, b| a.max(*b));
+    match spec.reach {
+        // Beyond that the compliance of a plane half-space is not positive.
+        Reach::Infinite(depth) if S::D == 2 && !(depth >= widest && depth.is_finite()) => {
+            return Err(HalfSpaceError::Depth(depth, widest));
+        }
+        Reach::Periodic(depth) if !(depth > 0.0 && depth.is_finite()) => {
+            return Err(HalfSpaceError::Depth(depth, 0.0));
+        }
+        _ => {}
+    }
+    if !(spec.mass >= 0.0 && spec.mass.is_finite()) {
+        return Err(HalfSpaceError::Mass(spec.mass));
+    }
+    for (axis, dof) in spec.axes.iter().enumerate() {
+        if dof.yields() && dof.imposes() {
+            return Err(HalfSpaceError::Changes(["x", "y", "z"][axis]));
+        }
+        if dof.yields() && spec.mass == 0.0 {
+            return Err(HalfSpaceError::NoMass(["x", "y", "z"][axis]));
+        }
+    }
+    Ok(())
+}

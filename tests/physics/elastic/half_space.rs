@@ -1,0 +1,332 @@
+//! Elastic half-spaces against the closed forms of contact mechanics: Hertz, Westergaard, Cattaneo and Mindlin, Carter, and the creep
+//! curve of an elliptic contact.
+
+use super::*;
+use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// A rail and a wheel: G 82 GPa, nu 0.28, where a line contact of R 500 mm has a = 1 mm under 178.9 N/mm.
+const RAIL: Elasticity = Elasticity {
+    young: 2.0 * 82e9 * 1.28,
+    poisson: 0.28,
+    density: 7800.0,
+};
+
+const STEP: f64 = 1e-3;
+
+/// At rest, undriven, flat, filling what is below.
+fn half_space<S: Space>(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
+    HalfSpaceSpec {
+        name: "lower",
+        material,
+        fills: Fills::Below,
+        position: S::Vector::zero(),
+        grid,
+        reach: Reach::Infinite(1.0),
+        profile: Profile::Flat,
+        mass: 0.0,
+        axes,
+        rolling: None,
+        touching: Cells::Surface,
+        surface_material: 0,
+    }
+}
+
+/// Cells of a size within a half-extent on both sides of the origin (m).
+fn grid(size: [f64; 2], half: [f64; 2]) -> Grid {
+    let cells = [0, 1].map(|k| (2.0 * half[k] / size[k]).round() as usize);
+    Grid {
+        from: [0, 1].map(|k| -0.5 * cells[k] as f64 * size[k]),
+        size,
+        cells,
+    }
+}
+
+fn put<S: Deformable>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
+    let system = S::half_space(spec).unwrap_or_else(|e| panic!("{e}"));
+    s.add_system(system)
+}
+
+fn empty<S: Dimensional>(mu: f64, plane: &str) -> Simulation<S> {
+    let bodies = format!(
+        "(name: \"plane\", material: \"m0\", shapes: [HalfSpace(normal: {plane})], position: [{}-1.0]),",
+        "0.0, ".repeat(S::D - 1)
+    );
+    scene::<S>(&Sketch {
+        bodies,
+        mu,
+        solver: format!(
+            "tolerance: 1e-12, norm: Velocity, {}",
+            std::env::var("FW").unwrap_or_default()
+        ),
+        ..sketch(STEP, 1.0)
+    })
+}
+
+fn ramp(to: f64, from: usize, steps: usize) -> TimeFunction {
+    TimeFunction::Ramp {
+        from: 0.0,
+        to,
+        start: from as f64 * STEP,
+        end: (from + steps) as f64 * STEP,
+    }
+}
+
+/// A loaded contact: place (m) and traction on the lower body along each axis (Pa), pressure positive.
+struct Traction<V> {
+    at: V,
+    on: V,
+}
+
+fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
+    let contacts = s.state.network.contacts.iter();
+    let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
+    loaded
+        .map(|c| Traction {
+            at: s.state.bodies.position[c.bodies[0] as usize],
+            // The impulse is that on the body of the points, above.
+            on: c.impulse * (-1.0 / (area * s.options.scheme.h)),
+        })
+        .collect()
+}
+
+/// Whether friction is below its limit.
+fn sticks<V: VectorLike>(t: &Traction<V>, mu: f64) -> bool {
+    let normal = t.on[V::N - 1];
+    let along = (t.on.norm().powi(2) - normal * normal).max(0.0).sqrt();
+    along < -mu * normal * (1.0 - 1e-6)
+}
+
+/// Sum of a part of the tractions times a weight of the place, over the pressure's sum.
+fn mean<V: VectorLike>(found: &[Traction<V>], axis: usize, weight: impl Fn(&V) -> f64) -> f64 {
+    let sum: f64 = found.iter().map(|t| t.on[axis] * weight(&t.at)).sum();
+    let total: f64 = found.iter().map(|t| -t.on[V::N - 1]).sum();
+    sum / total
+}
+
+/// Two like bodies in line contact, `n` cells over a, under 178.9 N/mm and a share of friction's limit.
+fn line(n: usize, mu: f64, share: f64) -> Simulation<Dim2> {
+    let (a, load) = (1e-3, 178.9e3);
+    let size = a / n as f64;
+    let cells = grid([size, 1.0], [1.3 * a, 0.5]);
+    let mut s = empty::<Dim2>(mu, "[0.0, 1.0]");
+    put(&mut s, half_space(RAIL, cells, &[Dof::Fixed, Dof::Fixed]));
+    let axes = [
+        Dof::Force(ramp(share * mu * load, 12, 10)),
+        Dof::Force(ramp(-load, 0, 10)),
+    ];
+    let cylinder = HalfSpaceSpec {
+        name: "upper",
+        fills: Fills::Above,
+        profile: Profile::Paraboloid([0.5, f64::INFINITY]),
+        mass: 10.0,
+        touching: Cells::Points,
+        ..half_space(RAIL, cells, &axes)
+    };
+    put(&mut s, cylinder);
+    s
+}
+
+#[test]
+fn hertz_and_cattaneo_of_a_line() {
+    let (a, load, mu) = (1e-3, 178.9e3, 0.3);
+    let p0 = 2.0 * load / (PI * a);
+    let mut errors = Vec::new();
+    for n in [10, 20, 40] {
+        let mut s = line(n, mu, 0.75);
+        go(&mut s, 12);
+        let size = a / n as f64;
+        let found = tractions(&s, size);
+        let total: f64 = -found.iter().map(|t| t.on.y * size).sum::<f64>();
+        near(load, total, 1e-6);
+        // The second moment of an ellipse of pressure is P a^2/4.
+        let width = 2.0 * (-mean(&found, 1, |x| x.x * x.x)).sqrt();
+        go(&mut s, 16);
+        closes(&s, 1e-9);
+        let found = tractions(&s, size);
+        let centre = -mean(&found, 1, |x| x.x);
+        let ellipse = |x: f64, half: f64| (1.0 - (x / half).powi(2)).max(0.0).sqrt();
+        let off = found.iter().map(|t| {
+            let x = t.at.x - centre;
+            let expected = mu * p0 * (ellipse(x, a) - 0.5 * ellipse(x, 0.5 * a));
+            (t.on.x - expected).powi(2)
+        });
+        let off = (off.sum::<f64>() / found.len() as f64).sqrt() / (mu * p0);
+        let square = |x: &nalgebra::Vector2<f64>| (x.x - centre).powi(2);
+        let stuck = (1.0 + mean(&found, 0, square) / (mu * mean(&found, 1, square))).powf(0.25);
+        println!("{n}: a {:e} c/a {stuck} q {off:e}", width / a - 1.0);
+        near(a, width, 0.01);
+        errors.push(off);
+    }
+    assert!(errors[2] < 0.01, "{errors:?}");
+    assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
+}
+
+/// K. L. Johnson, "Contact Mechanics", section 13.2, after Westergaard (1939): a wave of amplitude D and length L under a mean pressure
+/// p touches over 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and sin(pi x/L) is distributed as an ellipse.
+#[test]
+fn westergaards_wave() {
+    let (length, amplitude) = (1e-3, 1e-6);
+    let whole = PI * RAIL.plane_strain() * amplitude / length;
+    for share in [0.1, 0.5, 0.9] {
+        let n = 128;
+        let mut s = empty::<Dim2>(0.0, "[0.0, 1.0]");
+        let axes = [Dof::Fixed, Dof::Force(ramp(-share * whole * length, 0, 4))];
+        let wave = HalfSpaceSpec {
+            name: "upper",
+            fills: Fills::Above,
+            position: nalgebra::Vector2::new(0.0, -1.0 + amplitude),
+            profile: Profile::Wave(amplitude, [length, f64::INFINITY]),
+            reach: Reach::Periodic(length),
+            mass: 10.0,
+            touching: Cells::Points,
+            ..half_space(
+                RAIL,
+                grid([length / f64::from(n), 1.0], [0.5 * length, 0.5]),
+                &axes,
+            )
+        };
+        put(&mut s, wave);
+        go(&mut s, 10);
+        let found = tractions(&s, length / f64::from(n));
+        let squared = -4.0 * mean(&found, 1, |x| (PI * x.x / length).sin().powi(2));
+        println!(
+            "p/p* {share}: sin^2(pi a/L) {squared}, {} cells of {n}",
+            found.len()
+        );
+        near(share, squared, 0.01);
+        closes(&s, 1e-9);
+    }
+}
+
+/// The material of the tangential loop: R 50 mm, G 200 MPa, nu 0.42.
+const SOFT: Elasticity = Elasticity {
+    young: 2.0 * 200e6 * 1.42,
+    poisson: 0.42,
+    density: 1000.0,
+};
+
+/// Two like bodies whose surfaces have a relative radius, `n` cells over a, pressed to a depth and moved by `along` (m).
+fn spheres(n: usize, mu: f64, depth: f64, along: TimeFunction) -> Simulation<Dim3> {
+    let a = 1e-3;
+    let cells = grid([a / n as f64; 2], [1.15 * a; 2]);
+    let mut s = empty::<Dim3>(mu, "[0.0, 0.0, 1.0]");
+    put(
+        &mut s,
+        half_space(SOFT, cells, &[Dof::Fixed, Dof::Fixed, Dof::Fixed]),
+    );
+    let axes = [
+        Dof::Displacement(along),
+        Dof::Fixed,
+        Dof::Displacement(ramp(-depth, 0, 1)),
+    ];
+    let sphere = HalfSpaceSpec {
+        name: "upper",
+        fills: Fills::Above,
+        profile: Profile::Paraboloid([0.05; 2]),
+        touching: Cells::Points,
+        ..half_space(SOFT, cells, &axes)
+    };
+    put(&mut s, sphere);
+    s
+}
+
+/// Hertz, and the tangential loop of Mindlin and Deresiewicz.
+#[test]
+fn sphere() {
+    let (a, mu, depth, shift) = (1e-3, 0.4, 2e-5, 8.172e-6);
+    let load = 9.1954;
+    for n in [6, 8] {
+        let time = std::time::Instant::now();
+        let along = TimeFunction::Table(
+            [
+                (0.0, 0.0),
+                (2.0, 0.0),
+                (12.0, 1.0),
+                (32.0, -1.0),
+                (52.0, 1.0),
+            ]
+            .map(|(k, x): (f64, f64)| (k * STEP, x * shift))
+            .to_vec(),
+        );
+        let mut s = spheres(n, mu, depth, along);
+        let area = (a / n as f64).powi(2);
+        go(&mut s, 2);
+        let found = tractions(&s, area);
+        let total = -found.iter().map(|t| t.on.z * area).sum::<f64>();
+        let width = (-2.5 * mean(&found, 2, |x: &Vector3<f64>| x.x * x.x + x.y * x.y)).sqrt();
+        let highest = found.iter().map(|t| -t.on.z).fold(0.0, f64::max);
+        println!(
+            "{n}: P {} a {} p0 {} {:?}",
+            total / load - 1.0,
+            width / a - 1.0,
+            highest / 4.393e6 - 1.0,
+            time.elapsed()
+        );
+        go(&mut s, 10);
+        let found = tractions(&s, area);
+        let q = found.iter().map(|t| t.on.x * area).sum::<f64>();
+        let square = |x: &Vector3<f64>| x.x * x.x + x.y * x.y;
+        let stuck = (1.0 + mean(&found, 0, square) / (mu * mean(&found, 2, square))).powf(0.2);
+        println!(
+            "Q/(mu P) {} c/a {} {:?}",
+            q / (mu * total),
+            stuck,
+            time.elapsed()
+        );
+        let before = s.state.energy.friction;
+        go(&mut s, 40);
+        println!(
+            "loop {} {:?}",
+            (s.state.energy.friction - before) / 1.102e-5 - 1.0,
+            time.elapsed()
+        );
+        closes(&s, 1e-9);
+    }
+}
+
+/// Carter (1926): Q/(mu P) = 1 - (1 - s)^2, s = xi R/(mu a); adhesion over a' = a (1 - s) behind the leading edge.
+#[test]
+fn carter() {
+    let (a, load, mu, radius, speed) = (1e-3, 178.9e3, 0.3, 0.5, 1.0);
+    for n in [10, 20, 40] {
+        let size = a / n as f64;
+        let creepage = 2.4e-4;
+        let cells = grid([size, 1.0], [1.3 * a, 0.5]);
+        let h = size / speed;
+        let mut s = empty::<Dim2>(mu, "[0.0, 1.0]");
+        s.options.scheme.h = h;
+        let fixed = [Dof::Fixed, Dof::Fixed];
+        let rail = HalfSpaceSpec {
+            rolling: Some(TimeFunction::Constant(speed)),
+            reach: Reach::Infinite(3e-3),
+            ..half_space(RAIL, cells, &fixed)
+        };
+        put(&mut s, rail);
+        let force = TimeFunction::Ramp {
+            from: 0.0,
+            to: -load,
+            start: 0.0,
+            end: 10.0 * h,
+        };
+        let axes = [Dof::Fixed, Dof::Force(force)];
+        let wheel = HalfSpaceSpec {
+            name: "upper",
+            fills: Fills::Above,
+            profile: Profile::Paraboloid([radius, f64::INFINITY]),
+            mass: 1.0,
+            rolling: Some(TimeFunction::Constant(speed * (1.0 + creepage))),
+            reach: Reach::Infinite(3e-3),
+            touching: Cells::Points,
+            ..half_space(RAIL, cells, &axes)
+        };
+        put(&mut s, wheel);
+        go(&mut s, 20 * n);
+        let found = tractions(&s, size);
+        let q = mean(&found, 0, |_| 1.0);
+        let stuck = found.iter().filter(|t| sticks(t, mu)).count() as f64 * size / (2.0 * a);
+        println!("{n}: Q/(mu P) {} a'/a {stuck} {:?}", q / mu, s.state.energy);
+        closes(&s, 1e-9);
+    }
+}
