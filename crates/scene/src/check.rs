@@ -415,7 +415,7 @@ pub(super) fn overlaps<S: Steps>(
         let driven = s.state.bodies.driven.iter().any(|d| d.body == **b);
         let place = match origins.get(**b as usize) {
             Some(Origin::Grain(k, g)) => (*k, g.unwrap_or(0)),
-            Some(Origin::Body(k) | Origin::Elastic(k)) => (*k, 0),
+            Some(Origin::Body(k) | Origin::Elastic(k) | Origin::HalfSpace(k)) => (*k, 0),
             None => (0, 0),
         };
         (!driven, place)

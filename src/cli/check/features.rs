@@ -86,6 +86,14 @@ impl Features {
                     }
                 }
             }
+            let half_spaces = case.half_spaces.iter();
+            for (name, axes) in half_spaces.map(|b| (&b.name, &b.dofs)) {
+                for (axis, dof) in [("x", &axes.x), ("y", &axes.y), ("z", &axes.z)] {
+                    if dof.iter().flat_map(Dof::drives).any(which) {
+                        found.push(format!("{name} {axis}"));
+                    }
+                }
+            }
             for body in &case.elastic {
                 for support in &body.supports {
                     let axes = [("x", &support.x), ("y", &support.y), ("z", &support.z)];

@@ -1,7 +1,7 @@
 //! Deformable bodies: their meshes, supports and material.
 
 use super::{Builder, Dimensional, Origin};
-use crate::case::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
+use crate::case::{CellTouch, ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
 use crate::material::Sourced;
 use crate::source::InputError;
@@ -22,8 +22,6 @@ impl<S: Dimensional> Builder<'_, S> {
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
     ) -> Result<Vec<Box<dyn DynamicalSystem<S>>>, InputError> {
-        self.check_elastic_names()?;
-        self.check_elastic_pairs()?;
         let mut out = Vec::new();
         for (k, spec) in self.case.elastic.iter().enumerate() {
             let system = self.elastic_body(&format!("elastic.{k}"), spec, properties)?;
@@ -36,21 +34,26 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     /// Names of bodies and of their held parts name columns and files.
-    fn check_elastic_names(&self) -> Result<(), InputError> {
+    pub(super) fn check_elastic_names(&self) -> Result<(), InputError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         let good = |name: &str| !name.is_empty() && name.chars().all(plain);
         let rigid = self.case.bodies.iter().map(|b| b.name.as_str());
         let mut known: Vec<&str> = rigid.collect();
-        for (k, spec) in self.case.elastic.iter().enumerate() {
-            let here = format!("elastic.{k}");
-            if !good(&spec.name) || known.contains(&spec.name.as_str()) {
+        let elastic = self.case.elastic.iter().enumerate();
+        let elastic = elastic.map(|(k, spec)| (format!("elastic.{k}"), &spec.name));
+        let half_spaces = self.case.half_spaces.iter().enumerate();
+        let half_spaces = half_spaces.map(|(k, spec)| (format!("half_spaces.{k}"), &spec.name));
+        for (here, name) in elastic.chain(half_spaces) {
+            if !good(name) || known.contains(&name.as_str()) {
                 let message = format!(
-                    "the name `{}` of a deformable body names columns and files: it must be unique and made of letters, digits, `-` and `_`",
-                    spec.name
+                    "the name `{name}` of a deformable body names columns and files: it must be unique and made of letters, digits, `-` and `_`"
                 );
                 return Err(self.fail(format!("{here}.name"), message));
             }
-            known.push(&spec.name);
+            known.push(name);
+        }
+        for (k, spec) in self.case.elastic.iter().enumerate() {
+            let here = format!("elastic.{k}");
             let mut held: Vec<(&str, usize)> = Vec::new();
             for (j, support) in spec.supports.iter().enumerate() {
                 let at = format!("{here}.supports.{j}.part");
@@ -79,28 +82,49 @@ impl<S: Dimensional> Builder<'_, S> {
     }
 
     /// Bodies that have an interface must be able to touch.
-    fn check_elastic_pairs(&self) -> Result<(), InputError> {
-        let bodies = &self.case.elastic;
+    pub(super) fn check_elastic_pairs(&self) -> Result<(), InputError> {
+        let elastic = self.case.elastic.iter().enumerate().map(|(k, spec)| {
+            let points = match spec.touches {
+                TouchSpec::Nothing => None,
+                TouchSpec::Points(_) => Some(true),
+                TouchSpec::Surface(_) => Some(false),
+            };
+            (format!("elastic.{k}"), &spec.name, &spec.material, points)
+        });
+        let half_spaces = self.case.half_spaces.iter().enumerate();
+        let half_spaces = half_spaces.map(|(k, spec)| {
+            let points = Some(spec.touches == CellTouch::Points);
+            (
+                format!("half_spaces.{k}"),
+                &spec.name,
+                &spec.material,
+                points,
+            )
+        });
+        let bodies: Vec<_> = elastic.chain(half_spaces).collect();
         let meet = |a: &str, b: &str| {
             let between = self.case.interfaces.iter().map(|i| &i.between);
             between
                 .into_iter()
                 .any(|(c, d)| (c == a && d == b) || (c == b && d == a))
         };
-        for (k, one) in bodies.iter().enumerate() {
-            for other in &bodies[..k] {
-                let (same, remedy) = match (&one.touches, &other.touches) {
-                    (TouchSpec::Points(_), TouchSpec::Points(_)) => ("points", "Surface"),
-                    (TouchSpec::Surface(_), TouchSpec::Surface(_)) => ("a surface", "Points"),
-                    _ => continue,
+        for (k, (here, name, material, points)) in bodies.iter().enumerate() {
+            for (_, other, counter, others) in &bodies[..k] {
+                let (Some(points), true) = (points, points == others) else {
+                    continue;
                 };
-                if meet(&one.material, &other.material) {
-                    let message = format!(
-                        "`{}` and `{}` both touch by {same} and would pass through each other; let one of them touch as `{remedy}`, or                          leave out the interface between their materials if they never meet",
-                        other.name, one.name
-                    );
-                    return Err(self.fail(format!("elastic.{k}.touches"), message));
+                if !meet(material, counter) {
+                    continue;
                 }
+                let (same, remedy) = match points {
+                    true => ("points", "Surface"),
+                    false => ("a surface", "Points"),
+                };
+                let message = format!(
+                    "`{other}` and `{name}` both touch by {same} and would pass through each other; let one of them touch as `{remedy}`, or \
+                     leave out the interface between their materials if they never meet"
+                );
+                return Err(self.fail(format!("{here}.touches"), message));
             }
         }
         Ok(())
@@ -112,7 +136,7 @@ impl<S: Dimensional> Builder<'_, S> {
         systems: &[Box<dyn DynamicalSystem<S>>],
     ) -> Result<(), InputError> {
         let smallest = self.radii().fold(f64::INFINITY, f64::min);
-        for (k, system) in systems.iter().enumerate() {
+        for system in systems {
             let points = system.contactors().into_iter();
             let points = points.filter(|c| c.shape == ContactorShape::Point);
             let widest = points.fold(0.0, |most: f64, c| most.max(c.radius));
@@ -123,10 +147,47 @@ impl<S: Dimensional> Builder<'_, S> {
                     system.name(),
                     2.0 * widest
                 );
-                return Err(self.fail(format!("elastic.{k}.touches"), message));
+                return Err(self.fail(self.deformable_place(system.name(), "touches"), message));
             }
         }
         Ok(())
+    }
+
+    /// Where in the case a field of a deformable body is.
+    fn deformable_place(&self, name: &str, field: &str) -> String {
+        let elastic = self.case.elastic.iter().position(|e| e.name == name);
+        let half_space = self.case.half_spaces.iter().position(|e| e.name == name);
+        match (elastic, half_space) {
+            (Some(k), _) => format!("elastic.{k}.{field}"),
+            (None, k) => format!("half_spaces.{}.{field}", k.unwrap_or(0)),
+        }
+    }
+
+    /// The elasticity of a material of the case, and its index.
+    pub(super) fn elasticity(
+        &self,
+        here: &str,
+        name: &str,
+        properties: &[BTreeMap<String, Sourced>],
+    ) -> Result<(Elasticity, u16), InputError> {
+        let at = format!("{here}.material");
+        let (material, density) = self.material(&at, name)?;
+        let property = |property: &str, unit: &str| {
+            let known = properties[usize::from(material)].get(property).ok_or_else(|| {
+                format!(
+                    "a deformable body needs the property `{property}` of its material, and the file of `{name}` has none; add it there, \
+                     with its source"
+                )
+            });
+            let value = known.and_then(|p| p.in_unit(unit).map_err(|e| e.message));
+            value.map_err(|why| self.fail(at.as_str(), why))
+        };
+        let elasticity = Elasticity {
+            young: property("young", "Pa")?,
+            poisson: property("poisson", "")?,
+            density,
+        };
+        Ok((elasticity, material))
     }
 
     fn elastic_body(
@@ -139,24 +200,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let message = "deformable bodies do not repeat with a period; take `periodic` away";
             return Err(self.fail(here, message));
         }
-        let at = format!("{here}.material");
-        let (material, density) = self.material(&at, &spec.material)?;
-        let property = |name: &str, unit: &str| {
-            let known = properties[usize::from(material)].get(name).ok_or_else(|| {
-                format!(
-                    "a deformable body needs the property `{name}` of its material, and the file of `{}` has none; add it there, \
-                     with its source",
-                    spec.material
-                )
-            });
-            let value = known.and_then(|p| p.in_unit(unit).map_err(|e| e.message));
-            value.map_err(|why| self.fail(at.as_str(), why))
-        };
-        let elasticity = Elasticity {
-            young: property("young", "Pa")?,
-            poisson: property("poisson", "")?,
-            density,
-        };
+        let (elasticity, material) = self.elasticity(here, &spec.material, properties)?;
         let mesh = self.mesh(&format!("{here}.mesh"), spec)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let velocity = self.vector(&format!("{here}.velocity"), &spec.velocity)?;
@@ -202,17 +246,7 @@ impl<S: Dimensional> Builder<'_, S> {
             for (axis, dof) in ["x", "y", "z"].iter().zip(axes) {
                 let at = format!("{here}.supports.{j}.{axis}");
                 let Some(dof) = dof else { continue };
-                if *axis == "z" && S::D == 2 {
-                    return Err(self.fail(at, "a case in two dimensions has no z; leave it out"));
-                }
-                if dof.drives().any(|d| matches!(d, Dof::Pressure { .. })) {
-                    let message = "a servo of pressure needs rigid walls; give a force";
-                    return Err(self.fail(at, message));
-                }
-                if let Some((below, why)) = dof.fault() {
-                    let dot = if below.is_empty() { "" } else { "." };
-                    return Err(self.fail(format!("{at}{dot}{below}"), why));
-                }
+                self.check_holder(&at, axis, dof)?;
             }
             Ok(Support {
                 part: spec.part.clone(),
@@ -220,6 +254,22 @@ impl<S: Dimensional> Builder<'_, S> {
             })
         };
         specs.iter().enumerate().map(one).collect()
+    }
+
+    /// Checks the drive of a holder along an axis.
+    pub(super) fn check_holder(&self, at: &str, axis: &str, dof: &Dof) -> Result<(), InputError> {
+        if axis == "z" && S::D == 2 {
+            return Err(self.fail(at, "a case in two dimensions has no z; leave it out"));
+        }
+        if dof.drives().any(|d| matches!(d, Dof::Pressure { .. })) {
+            let message = "a servo of pressure needs rigid walls; give a force";
+            return Err(self.fail(at, message));
+        }
+        if let Some((below, why)) = dof.fault() {
+            let dot = if below.is_empty() { "" } else { "." };
+            return Err(self.fail(format!("{at}{dot}{below}"), why));
+        }
+        Ok(())
     }
 
     fn mesh(&self, here: &str, owner: &ElasticSpec) -> Result<Mesh<S>, InputError> {

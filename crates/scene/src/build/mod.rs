@@ -6,6 +6,7 @@ mod blocks;
 mod elastic;
 mod first_body;
 mod grains;
+mod half_space;
 mod load;
 mod polygons;
 mod polyhedra;
@@ -139,7 +140,10 @@ impl Loaded {
         builder.grains()?;
         builder.first_bodies()?;
         builder.refuse_idle_wear()?;
-        let systems = builder.elastic_bodies(&properties)?;
+        builder.check_elastic_names()?;
+        builder.check_elastic_pairs()?;
+        let mut systems = builder.elastic_bodies(&properties)?;
+        systems.extend(builder.half_spaces(&properties)?);
         builder.check_elastic_points(&systems)?;
         let names = builder
             .bodies
@@ -242,6 +246,8 @@ pub enum Origin {
     Body(usize),
     /// Index in `elastic`.
     Elastic(usize),
+    /// Index in `half_spaces`.
+    HalfSpace(usize),
 }
 
 impl Origin {
@@ -252,6 +258,7 @@ impl Origin {
             Self::Grain(k, Some(g)) => format!("grains.{k}.grains.{g}"),
             Self::Body(k) => format!("bodies.{k}"),
             Self::Elastic(k) => format!("elastic.{k}"),
+            Self::HalfSpace(k) => format!("half_spaces.{k}"),
         }
     }
 }

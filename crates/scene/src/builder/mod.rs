@@ -69,6 +69,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 gravity: Vec::new(),
                 gravity_drive: None,
                 elastic: Vec::new(),
+                half_spaces: Vec::new(),
                 phases: Vec::new(),
                 inertia_scaling: 1.0,
                 coupling: Default::default(),

@@ -3,6 +3,7 @@
 mod accuracy;
 mod elastic;
 mod grains;
+mod half_space;
 mod interface;
 mod shapes;
 pub(crate) mod slots;
@@ -13,6 +14,7 @@ mod wear;
 pub use accuracy::{AccuracySpec, AccurateResult};
 pub use elastic::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
+pub use half_space::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, HolderSpec};
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
 pub use slots::BySlot;
@@ -87,6 +89,9 @@ pub struct Case {
     /// Bodies that deform.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub elastic: Vec<ElasticSpec>,
+    /// Elastic half-spaces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub half_spaces: Vec<HalfSpaceSpec>,
     /// Grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grains: Vec<GrainSpec>,

@@ -18,6 +18,8 @@ pub struct Rows {
 
 /// Maximum number of unknowns for which a dense factorisation is faster.
 const DENSE: usize = 120;
+/// Share of entries from which it is faster at any size: the factors would be full.
+const FULL: f64 = 0.3;
 
 /// A factorised matrix.
 pub enum Factor {
@@ -36,7 +38,7 @@ impl Factor {
             return None;
         }
         let share = a.values.len() as f64 / (n as f64 * n as f64);
-        if n <= DENSE || (n <= 4 * DENSE && share > 0.3) {
+        if n <= DENSE || share > FULL {
             let mut m = Mat::<f64>::zeros(n, n);
             for r in 0..n {
                 for k in a.starts[r]..a.starts[r + 1] {

@@ -1,0 +1,234 @@
+//! Elastic half-spaces: their cells, profiles and drives.
+
+use super::{Builder, Dimensional, Origin};
+use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
+use crate::material::Sourced;
+use crate::source::InputError;
+use fretwork_core::bodies::{Dof, DynamicalSystem};
+use fretwork_elastic::half_space::{
+    Cells, Fills, Grid, HalfSpaceError, HalfSpaceSpec as Parts, Profile, Reach,
+};
+use std::collections::BTreeMap;
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// The half-spaces of the case, in its order.
+    pub(super) fn half_spaces(
+        &mut self,
+        properties: &[BTreeMap<String, Sourced>],
+    ) -> Result<Vec<Box<dyn DynamicalSystem<S>>>, InputError> {
+        let mut out = Vec::new();
+        for (k, spec) in self.case.half_spaces.iter().enumerate() {
+            let system = self.elastic_half_space(&format!("half_spaces.{k}"), spec, properties)?;
+            let contactors = system.contactors().len();
+            self.origins
+                .extend((0..contactors).map(|_| Origin::HalfSpace(k)));
+            out.push(system);
+        }
+        Ok(out)
+    }
+
+    fn elastic_half_space(
+        &self,
+        here: &str,
+        spec: &HalfSpaceSpec,
+        properties: &[BTreeMap<String, Sourced>],
+    ) -> Result<Box<dyn DynamicalSystem<S>>, InputError> {
+        if self.shapes.periodic.period.iter().any(Option::is_some) {
+            let message =
+                "elastic half-spaces do not repeat with the period of a case; take `periodic` away";
+            return Err(self.fail(here, message));
+        }
+        let (elasticity, material) = self.elasticity(here, &spec.material, properties)?;
+        let grid = self.cells(here, spec)?;
+        let axes = self.holder(&format!("{here}.dofs"), spec)?;
+        if let Some(rolling) = &spec.rolling {
+            self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
+        }
+        let built = S::half_space(Parts {
+            name: &spec.name,
+            material: elasticity,
+            fills: match spec.side {
+                Side::Below => Fills::Below,
+                Side::Above => Fills::Above,
+            },
+            position: self.vector(&format!("{here}.position"), &spec.position)?,
+            reach: self.reach(&format!("{here}.depth"), spec)?,
+            profile: self.height_profile(&format!("{here}.profile"), spec, &grid)?,
+            grid,
+            mass: spec.mass,
+            axes: &axes,
+            rolling: spec.rolling.clone(),
+            touching: match spec.touches {
+                CellTouch::Points => Cells::Points,
+                CellTouch::Surface => Cells::Surface,
+            },
+            surface_material: material,
+        });
+        built.map_err(|error| {
+            let below = match &error {
+                HalfSpaceError::Material(_) => "material",
+                HalfSpaceError::Depth(..) => "depth",
+                HalfSpaceError::Mass(_) | HalfSpaceError::NoMass(_) => "mass",
+                HalfSpaceError::Changes(_) => "dofs",
+                HalfSpaceError::Few("y", _) => "y",
+                HalfSpaceError::Size(_) | HalfSpaceError::Few(..) | HalfSpaceError::Many(_) => "x",
+                HalfSpaceError::Height(_) => "profile",
+                HalfSpaceError::NoSurface(_) => "touches",
+            };
+            self.fail(format!("{here}.{below}"), error.to_string())
+        })
+    }
+
+    fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Grid, InputError> {
+        let line = |name: &str, line: &CellSpec| {
+            let CellSpec { from, to, size } = *line;
+            if !(from.is_finite() && to.is_finite() && to > from) {
+                let message = format!("`to` must be above `from`, got {from} and {to}");
+                return Err(self.fail(format!("{here}.{name}.to"), message));
+            }
+            if !(size > 0.0 && size.is_finite()) {
+                let message = format!("the size of a cell must be positive, got {size}");
+                return Err(self.fail(format!("{here}.{name}.size"), message));
+            }
+            let cells = ((to - from) / size).round();
+            if cells > 1e6 {
+                let message = format!(
+                    "cells of {size} m are more than a million in a line; make them larger"
+                );
+                return Err(self.fail(format!("{here}.{name}.size"), message));
+            }
+            let cells = cells.max(1.0) as usize;
+            Ok((from, (to - from) / cells as f64, cells))
+        };
+        let x = line("x", &spec.x)?;
+        let y = match (S::D, &spec.y) {
+            (2, None) => (-0.5, 1.0, 1),
+            (3, Some(y)) => line("y", y)?,
+            (2, Some(_)) => {
+                let message = "a case in two dimensions has cells along x alone; leave `y` out";
+                return Err(self.fail(format!("{here}.y"), message));
+            }
+            _ => {
+                let message = "a half-space in three dimensions needs its cells along `y` too";
+                return Err(self.fail(here, message));
+            }
+        };
+        Ok(Grid {
+            from: [x.0, y.0],
+            size: [x.1, y.1],
+            cells: [x.2, y.2],
+        })
+    }
+
+    fn reach(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Reach, InputError> {
+        match (spec.periodic, spec.depth) {
+            (true, Some(depth)) => Ok(Reach::Periodic(depth)),
+            (false, Some(depth)) if S::D == 2 => Ok(Reach::Infinite(depth)),
+            (false, None) if S::D == 3 => Ok(Reach::Infinite(f64::INFINITY)),
+            (false, Some(_)) => {
+                let message = "in three dimensions displacements vanish at infinity; leave `depth` out, or let the cells be `periodic`";
+                Err(self.fail(here, message))
+            }
+            (_, None) => {
+                let message = "a half-space in two dimensions, or one that is periodic, has no displacement without a `depth` below the load at which it is zero: give the distance to its holder";
+                let whole = here.strip_suffix(".depth").unwrap_or(here);
+                Err(self.fail(whole, message))
+            }
+        }
+    }
+
+    fn holder(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Vec<Dof>, InputError> {
+        let axes = [&spec.dofs.x, &spec.dofs.y, &spec.dofs.z];
+        let mut out = Vec::new();
+        for (axis, dof) in ["x", "y", "z"].iter().zip(axes) {
+            if let Some(dof) = dof {
+                self.check_holder(&format!("{here}.{axis}"), axis, dof)?;
+            }
+            out.push(dof.clone().unwrap_or(Dof::Fixed));
+        }
+        out.truncate(S::D);
+        Ok(out)
+    }
+
+    /// A surface that rolls passes no more than a cell in a step.
+    fn check_rolling(
+        &self,
+        here: &str,
+        rolling: &fretwork_core::bodies::TimeFunction,
+        grid: &Grid,
+    ) -> Result<(), InputError> {
+        if let Some(why) = rolling.fault() {
+            return Err(self.fail(here, why));
+        }
+        let (h, end) = (self.case.time.step, self.case.time.end);
+        let times = (0..=1000).map(|k| f64::from(k) * 1e-3 * end);
+        let fastest = times.map(|t| rolling.value(t).abs()).fold(0.0, f64::max);
+        if fastest * h > grid.size[0] * (1.0 + 1e-9) {
+            let message = format!(
+                "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",
+                fastest * h,
+                grid.size[0],
+                grid.size[0] / fastest
+            );
+            return Err(self.fail(here, message));
+        }
+        Ok(())
+    }
+
+    fn height_profile(
+        &self,
+        here: &str,
+        spec: &HalfSpaceSpec,
+        grid: &Grid,
+    ) -> Result<Profile, InputError> {
+        let positive = |name: &str, value: f64| {
+            if value > 0.0 {
+                return Ok(value);
+            }
+            let message = format!("it must be positive, got {value} m");
+            Err(self.fail(format!("{here}.{name}"), message))
+        };
+        match &spec.profile {
+            HalfSpaceProfile::Flat => Ok(Profile::Flat),
+            HalfSpaceProfile::Summit { x, y } => Ok(Profile::Paraboloid([
+                positive("x", *x)?,
+                positive("y", *y)?,
+            ])),
+            HalfSpaceProfile::Wave { amplitude, x, y } => Ok(Profile::Wave(
+                *amplitude,
+                [positive("x", *x)?, positive("y", *y)?],
+            )),
+            HalfSpaceProfile::Heights { file, scale } => {
+                let at = format!("{here}.file");
+                let path = self.folder.join(file);
+                let text = std::fs::read_to_string(&path).map_err(|e| {
+                    self.fail(
+                        at.as_str(),
+                        format!("{} cannot be read: {e}", path.display()),
+                    )
+                })?;
+                let words = text.split(|c: char| c.is_whitespace() || c == ',' || c == ';');
+                let heights: Result<Vec<f64>, _> = words
+                    .filter(|w| !w.is_empty())
+                    .map(|w| w.parse::<f64>().map(|z| z * scale).map_err(|_| w))
+                    .collect();
+                let heights = heights.map_err(|word| {
+                    self.fail(
+                        at.as_str(),
+                        format!("`{word}` in {file} is no number; the file has heights alone"),
+                    )
+                })?;
+                if heights.len() != grid.len() {
+                    let message = format!(
+                        "{file} has {} heights, and there are {} cells, {} along x",
+                        heights.len(),
+                        grid.len(),
+                        grid.cells[0]
+                    );
+                    return Err(self.fail(at, message));
+                }
+                Ok(Profile::Heights(heights))
+            }
+        }
+    }
+}

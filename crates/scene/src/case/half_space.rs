@@ -1,0 +1,161 @@
+//! Elastic half-spaces in a case.
+
+use super::Side;
+use fretwork_core::bodies::{Dof, TimeFunction};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A body that is large against what touches it: its surface deforms as that of a half-space, at once and without inertia. Young's modulus
+/// and Poisson's ratio are those of its material; in 2D the strain is plane.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct HalfSpaceSpec {
+    /// Name.
+    pub name: String,
+    /// Name of its material in this case; its file has the properties `young` and `poisson`.
+    pub material: String,
+    /// Which side of its surface is solid.
+    #[serde(default = "below")]
+    pub side: Side,
+    /// Where the origin of its surface is (m); the origin by default.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub position: Vec<f64>,
+    /// The cells of its surface along x.
+    pub x: CellSpec,
+    /// Those along y (3D).
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub y: Option<CellSpec>,
+    /// Depth below a load at which the displacement is zero (m): needed in 2D and where the cells repeat; in 3D it is infinite.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub depth: Option<f64>,
+    /// Whether the cells and their loads repeat along the surface.
+    #[serde(default)]
+    pub periodic: bool,
+    /// Shape of the surface without load; flat by default.
+    #[serde(default)]
+    pub profile: HalfSpaceProfile,
+    /// Mass that moves with it (kg; kg/m in 2D): needed where it is free or under a force.
+    #[serde(default)]
+    pub mass: f64,
+    /// How it is held and driven far away.
+    #[serde(default)]
+    pub dofs: HolderSpec,
+    /// Velocity of its material along x through the cells (m/s), of a surface that rolls.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub rolling: Option<TimeFunction>,
+    /// How its cells touch.
+    pub touches: CellTouch,
+}
+
+/// The cells of a surface along an axis (m).
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct CellSpec {
+    /// Where they begin.
+    pub from: f64,
+    /// Where they end.
+    pub to: f64,
+    /// Size of a cell, rounded such that a whole number fits.
+    pub size: f64,
+}
+
+/// The shape of the surface of a half-space without load.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum HalfSpaceProfile {
+    /// A plane.
+    #[default]
+    Flat,
+    /// A summit at the origin with radii of curvature (m): a cylinder where one is left out, a sphere where both are the same.
+    Summit {
+        /// In the plane of x.
+        #[serde(default = "straight")]
+        x: f64,
+        /// In the plane of y (3D).
+        #[serde(default = "straight")]
+        y: f64,
+    },
+    /// A wave with a crest at the origin.
+    Wave {
+        /// Its amplitude (m).
+        amplitude: f64,
+        /// Its length along x (m).
+        #[serde(default = "straight")]
+        x: f64,
+        /// Its length along y (3D, m): a product of both waves.
+        #[serde(default = "straight")]
+        y: f64,
+    },
+    /// Heights over the plane (m), outward, of each cell: row by row along x. A file has them as numbers, in lines along x.
+    Heights {
+        /// The file, beside the case.
+        file: String,
+        /// Length of its unit (m).
+        #[serde(default = "one")]
+        scale: f64,
+    },
+}
+
+/// How a half-space is held: fixed along each axis by default.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct HolderSpec {
+    /// Along x.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub x: Option<Dof>,
+    /// Along y.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub y: Option<Dof>,
+    /// Along z (3D).
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub z: Option<Dof>,
+}
+
+/// How the cells of a half-space touch. Where two deformable bodies meet, one of them touches by its points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+pub enum CellTouch {
+    /// The middle of each cell: against balls, pieces and surfaces.
+    Points,
+    /// As a surface: against grains and points.
+    Surface,
+}
+
+/// Takes a value without `Some(...)` around it.
+fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(from).map(Some)
+}
+
+fn below() -> Side {
+    Side::Below
+}
+
+fn straight() -> f64 {
+    f64::INFINITY
+}
+
+fn one() -> f64 {
+    1.0
+}
