@@ -154,6 +154,15 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
     );
     for system in (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k)) {
         let Some(mesh) = system.deformed_mesh() else {
+            line(
+                "half-space",
+                format!(
+                    "{}: {} coordinates; {} contactors",
+                    system.name(),
+                    system.freedoms(),
+                    system.contactors().len()
+                ),
+            );
             continue;
         };
         line(

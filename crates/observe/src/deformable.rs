@@ -102,11 +102,11 @@ impl<S: Space> Observer<S> for Deformable {
                     file: format!("{name}.vtk"),
                     text: vtk(name, &mesh),
                 });
-                out.push(Output::Text {
-                    file: format!("{name}_tractions.csv"),
-                    text: traction_table(end.simulation, k),
-                });
             }
+            out.push(Output::Text {
+                file: format!("{name}_tractions.csv"),
+                text: traction_table(end.simulation, k),
+            });
         }
         out
     }
@@ -181,14 +181,15 @@ struct Traction<S: Space> {
     force: S::Vector,
     /// Its part along the normal, positive in compression, and along the surface: in the plane positive along +x.
     parts: [f64; 2],
-    /// Length that a point of the surface stands for in the plane (m); of other contacts none.
-    length: Option<f64>,
+    /// Length (m) or area (m^2) that a point of the surface stands for; none where it is not known.
+    area: Option<f64>,
     slips: bool,
 }
 
 /// The loaded contacts of a system, along x.
 fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     let bodies = &s.state.bodies;
+    let even = has_tractions(s, system);
     let mut out: Vec<Traction<S>> = Vec::new();
     for contact in &s.state.network.contacts {
         let side = contact.bodies.iter().position(|b| {
@@ -214,7 +215,10 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
             place: bodies.position[body] + contact.arms[side],
             force: force * sign,
             parts: [normal, size],
-            length: point.filter(|_| S::D == 2).map(|_| 2.0 * contact.radius),
+            area: point.filter(|_| even).map(|_| match S::D {
+                2 => 2.0 * contact.radius,
+                _ => std::f64::consts::PI * contact.radius * contact.radius,
+            }),
             slips: contact.slides,
         });
     }
@@ -222,15 +226,22 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     out
 }
 
-/// The contacts of a system as a table. Where a surface touches by its points in the plane also pressure and shear. (In space the
-/// points of a block have more and fewer elements in turn, and forces over their areas are no pressure.)
+/// Whether forces of points over the areas that they stand for are tractions. (In space the points of a block have more and fewer elements
+/// in turn.)
+fn has_tractions<S: Space>(s: &Simulation<S>, system: usize) -> bool {
+    let system = s.state.systems.get(system);
+    S::D == 2 || system.is_some_and(|s| s.has_equal_points())
+}
+
+/// The contacts of a system as a table. Where a surface touches by its points also pressure and shear.
 fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
     let axes = &["x", "y", "z"][..S::D];
     let newton = if S::D == 2 { "N/m" } else { "N" };
     let mut out: Vec<String> = axes.iter().map(|a| format!("{a} [m]")).collect();
     out.extend(axes.iter().map(|a| format!("force_{a} [{newton}]")));
     out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} [{newton}]")));
-    if S::D == 2 {
+    let even = has_tractions(s, system);
+    if even {
         out.extend(["pressure [Pa]", "shear [Pa]"].map(str::to_owned));
     }
     out.push("slips".to_owned());
@@ -240,9 +251,9 @@ fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
         let mut row: Vec<f64> = (0..S::D).map(|a| traction.place[a]).collect();
         row.extend((0..S::D).map(|a| traction.force[a]));
         row.extend(traction.parts);
-        if S::D == 2 {
-            row.extend(match traction.length {
-                Some(length) => traction.parts.map(|f| f / length),
+        if even {
+            row.extend(match traction.area {
+                Some(area) => traction.parts.map(|f| f / area),
                 None => [f64::NAN; 2],
             });
         }
@@ -264,7 +275,7 @@ fn traction_chart<S: Space>(s: &Simulation<S>, system: usize, name: &str) -> Cha
     let curve = |which: usize, slipping: bool| {
         let at = |t: &Traction<S>| {
             let shown = !slipping || t.slips;
-            let value = t.parts[which] / t.length?;
+            let value = t.parts[which] / t.area?;
             shown.then_some((t.place[0], value))
         };
         found.iter().filter_map(at).collect()

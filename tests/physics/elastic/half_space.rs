@@ -56,7 +56,7 @@ fn empty<S: Dimensional>(mu: f64, plane: &str) -> Simulation<S> {
     scene::<S>(&Sketch {
         bodies,
         mu,
-        solver: "tolerance: 1e-12, norm: Velocity, method: Newton,".to_owned(),
+        solver: "tolerance: 1e-10, norm: Velocity, method: Newton,".to_owned(),
         ..sketch(STEP, 1.0)
     })
 }

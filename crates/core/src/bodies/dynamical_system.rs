@@ -332,6 +332,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
+    /// Whether the points that touch stand for equal areas in space, pi times the square of their radius, so that a force over its area is
+    /// a traction. (In the plane it is for all.)
+    fn has_equal_points(&self) -> bool {
+        false
+    }
+
     /// Its state between two steps, as bytes that [`Self::restore`] understands: coordinates, velocities, and what else
     /// the next step depends on.
     fn save(&self) -> Vec<u8>;

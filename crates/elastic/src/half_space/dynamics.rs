@@ -293,6 +293,10 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         (0..S::D).map(one).collect()
     }
 
+    fn has_equal_points(&self) -> bool {
+        true
+    }
+
     fn save(&self) -> Vec<u8> {
         let state = (&self.displacement, &self.velocity, &self.force);
         postcard::to_stdvec(&state).unwrap_or_default()

@@ -163,7 +163,8 @@ impl<S: Dimensional> Builder<'_, S> {
         let (h, end) = (self.case.time.step, self.case.time.end);
         let times = (0..=1000).map(|k| f64::from(k) * 1e-3 * end);
         let fastest = times.map(|t| rolling.value(t).abs()).fold(0.0, f64::max);
-        if fastest * h > grid.size[0] * (1.0 + 1e-9) {
+        // A creepage on top of a velocity of one cell a step is no matter.
+        if fastest * h > 1.1 * grid.size[0] {
             let message = format!(
                 "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",
                 fastest * h,
