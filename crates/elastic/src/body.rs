@@ -441,7 +441,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn holders(&self) -> Vec<Holder> {
         let freedoms = &self.model.freedoms;
         let reactions = self.step.as_ref().map(|step| self.reactions(step));
-        let theta_point = self.step.as_ref().map(|step| self.average(step).1);
+        let averages = self.step.as_ref().map(|step| self.average(step));
         let one = |held: &Held| {
             let c = held.coordinate as usize;
             let force = match (&self.step, &reactions) {
@@ -452,7 +452,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             Holder {
                 part: held.part.clone(),
                 axis: usize::from(freedoms.axis[c]),
-                displacement: theta_point.as_ref().map_or(0.0, |at| at[c]),
+                displacement: averages.as_ref().map_or(0.0, |a| a.1[c]),
+                velocity: averages.as_ref().map_or(0.0, |a| a.0[c]),
                 force,
             }
         };

@@ -10,7 +10,7 @@ use super::run_state::damage_ratio;
 use super::statistics::Column;
 use super::summary::Summary;
 use fretwork_core::code::{CodeError, decode, encode};
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::{Simulation, StepReport};
 use serde::{Deserialize, Serialize};
@@ -66,35 +66,15 @@ impl<S: Space> FrictionTest<S> {
 
     /// Q, P and the slide of the last step.
     fn measure(&self, s: &Simulation<S>) -> Sample {
-        let RubbedBody { place, normal, .. } = self.body;
-        let slide = self.body.slide(s);
-        let q = self.body.tangential_force(s);
+        let [q, slide] = self.body.drive(s);
         Sample {
             time: s.state.time,
             q,
-            p: s.state.received[place].0[normal] * facing(s, place, normal) / s.options.scheme.h,
+            p: self.body.normal_force(s),
             slide,
             work: q * slide,
         }
     }
-}
-
-/// The side on which the contacts of a driven body push it along an axis: 1 or -1.
-pub(crate) fn facing<S: Space>(s: &Simulation<S>, place: usize, axis: usize) -> f64 {
-    let body = s.state.bodies.driven[place].body;
-    let push: f64 = s
-        .state
-        .network
-        .contacts
-        .iter()
-        .filter(|c| c.impulse.norm() > 0.0)
-        .map(|c| match c.bodies {
-            [i, _] if i == body => c.normal[axis],
-            [_, j] if j == body => -c.normal[axis],
-            _ => 0.0,
-        })
-        .sum();
-    if push < 0.0 { -1.0 } else { 1.0 }
 }
 
 impl<S: Space> Observer<S> for FrictionTest<S> {
@@ -112,9 +92,8 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
 
     fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
         self.sample = self.measure(s);
-        self.state
-            .layer
-            .follow(s, (self.body.place, self.body.along));
+        let work = self.sample.work;
+        self.state.layer.follow(s, Some((&self.body, work)));
         self.state.worn += report.totals.worn_first;
         let after = self.cumulated(s);
         let (sample, state) = (&self.sample, &mut self.state);

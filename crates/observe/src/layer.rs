@@ -5,6 +5,7 @@
 //! The ledger's external work is not used here, so the two balances check each other.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::process::cycle::{Rubbed, RubbedBody};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +28,8 @@ pub struct Layer<S: Space> {
     /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger includes.
     apart: f64,
     other: f64,
+    /// External work in the ledger at the end of the last processed step.
+    external: f64,
 }
 
 impl<S: Space> Layer<S> {
@@ -36,11 +39,19 @@ impl<S: Space> Layer<S> {
             velocity: velocities(s),
             apart: 0.0,
             other: 0.0,
+            external: s.state.energy.external_work,
         }
     }
 
-    /// Takes in the last step. `test` is the driven body and the axis whose work is kept apart.
-    pub fn follow(&mut self, s: &Simulation<S>, test: (usize, usize)) {
+    /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given, which is kept apart. Where the body of the test deforms, the work of
+    /// all other drives is that of the ledger.
+    pub fn follow(&mut self, s: &Simulation<S>, test: Option<(&RubbedBody, f64)>) {
+        let external = s.state.energy.external_work;
+        let deforms = test.filter(|(body, _)| matches!(body.rubbed, Rubbed::System { .. }));
+        if let Some((_, work)) = deforms {
+            self.other += external - self.external - work;
+        }
+        self.external = external;
         let (h, theta) = (s.options.scheme.h, s.options.scheme.theta);
         let now = velocities(s);
         let steps = s.state.started.iter().zip(&now).zip(&s.state.received);
@@ -50,9 +61,11 @@ impl<S: Space> Layer<S> {
                 *v0 * (1.0 - theta) + *v1 * theta,
                 *w0 * (1.0 - theta) + *w1 * theta,
             );
-            self.other -= impulse.dot(&v) + moment.dot(&w);
-            if d == test.0 {
-                self.other += impulse[test.1] * v[test.1];
+            if deforms.is_none() {
+                self.other -= impulse.dot(&v) + moment.dot(&w);
+            }
+            if let Some((body, _)) = test.filter(|(body, _)| body.rubbed == Rubbed::Driven(d)) {
+                self.other += impulse[body.along] * v[body.along];
             }
             let (dv, dw) = (*v1 - *v0, *w1 - *w0);
             self.apart -= h * s.state.bodies.mass[b] * s.state.gravity.dot(&v);

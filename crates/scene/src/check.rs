@@ -3,6 +3,7 @@
 use super::build::Origin;
 use super::case::{AccurateResult, BodySpec, Case, Checkpoint};
 use super::phases::PhaseSpec;
+use super::processes;
 use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
 use fretwork_core::laws::Kind;
@@ -329,8 +330,12 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     let Some(test) = &case.friction else {
         return Ok(());
     };
-    if !case.bodies.iter().any(|b| b.name == test.body) {
-        let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
+    let rigid = case.bodies.iter().map(|b| b.name.as_str());
+    let elastic = case.elastic.iter().map(|b| b.name.as_str());
+    let half_spaces = case.half_spaces.iter().map(|b| b.name.as_str());
+    let deformable: Vec<&str> = elastic.chain(half_spaces).collect();
+    let names: Vec<&str> = rigid.chain(deformable.iter().copied()).collect();
+    if !names.contains(&test.body.as_str()) {
         return Err(ValidationError::new(
             "friction.body",
             format!("there is no body `{}`", test.body),
@@ -346,6 +351,16 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
             )
             .expected(format!("a number below {dimension}")));
         }
+    }
+    let deforms = deformable.contains(&test.body.as_str());
+    if deforms && processes::held(case, &test.body, test.along).is_none() {
+        return Err(ValidationError::new(
+            "friction.body",
+            format!(
+                "no part of `{}` is held along axis {}, so that there is no displacement and no force of a holder; add a support",
+                test.body, test.along
+            ),
+        ));
     }
     if !test.start.is_finite() {
         return Err(ValidationError::new(

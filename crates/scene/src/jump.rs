@@ -1,6 +1,7 @@
 //! Validation of a case's jumps over cycles.
 
 use super::case::{BodySpec, Case};
+use super::processes::held;
 use super::source::ValidationError;
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::laws::Kind;
@@ -144,8 +145,11 @@ fn reason_not_periodic(dof: &Dof, translates: bool, cycle: f64, begins: f64) -> 
 /// Length of a cycle of the friction test (s).
 fn period(case: &Case) -> Option<f64> {
     let test = case.friction.as_ref()?;
-    let body = case.bodies.iter().find(|b| b.name == test.body)?;
-    let dofs = body.ordered(case.dimension as usize);
-    let function = dofs.get(test.along).and_then(Dof::function);
+    let rigid = case.bodies.iter().find(|b| b.name == test.body);
+    let dofs = rigid.map(|body| body.ordered(case.dimension as usize));
+    let function = match &dofs {
+        Some(dofs) => dofs.get(test.along).and_then(Dof::function),
+        None => held(case, &test.body, test.along).and_then(|(_, dof)| dof.function()),
+    };
     test.period.or(function.and_then(TimeFunction::period))
 }

@@ -2,10 +2,10 @@
 
 use super::case::Case;
 use super::circuit;
-use fretwork_core::bodies::TimeFunction;
+use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::circuit::{CircuitProcess, Intervals};
-use fretwork_core::process::cycle::{CycleClock, RubbedBody};
+use fretwork_core::process::cycle::{CycleClock, Rubbed, RubbedBody};
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::Simulation;
 
@@ -24,13 +24,7 @@ impl FrictionTest {
     /// Finds the test of a case in its scene; none where the case has none.
     pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
         let test = case.friction.as_ref()?;
-        let place = s
-            .state
-            .bodies
-            .driven
-            .iter()
-            .position(|d| d.name == test.body)?;
-        let dof = &s.state.bodies.driven[place].dofs[test.along];
+        let (rubbed, dof) = rubbed(case, s)?;
         let period = test
             .period
             .or(dof.function().and_then(TimeFunction::period));
@@ -40,7 +34,7 @@ impl FrictionTest {
         };
         Some(Self {
             body: RubbedBody {
-                place,
+                rubbed,
                 along: test.along,
                 normal: test.normal,
             },
@@ -48,6 +42,40 @@ impl FrictionTest {
             start,
         })
     }
+}
+
+/// The body of the test of a case in its scene, and the drive that rubs it.
+fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(Rubbed, &'a Dof)> {
+    let test = case.friction.as_ref()?;
+    let driven = &s.state.bodies.driven;
+    if let Some(place) = driven.iter().position(|d| d.name == test.body) {
+        return Some((Rubbed::Driven(place), &driven[place].dofs[test.along]));
+    }
+    let (part, dof) = held(case, &test.body, test.along)?;
+    let systems = &s.state.systems;
+    let named = |k: &usize| systems.get(*k).is_some_and(|s| s.name() == test.body);
+    let system = (0..systems.len()).find(named)?;
+    let holders = systems.get(system)?.holders();
+    let holder = holders
+        .iter()
+        .position(|h| h.part == part && h.axis == test.along)?;
+    Some((Rubbed::System { system, holder }, dof))
+}
+
+/// The part of a deformable body that is held along an axis, and its drive: the first that moves or is pushed, or else the first.
+pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a str, &'a Dof)> {
+    if let Some(half_space) = case.half_spaces.iter().find(|b| b.name == body) {
+        let dofs = &half_space.dofs;
+        let dof = [&dofs.x, &dofs.y, &dofs.z][along].as_ref();
+        return Some(("holder", dof.unwrap_or(&Dof::Fixed)));
+    }
+    let elastic = case.elastic.iter().find(|b| b.name == body)?;
+    let supports = elastic.supports.iter();
+    let held: Vec<(&str, &Dof)> = supports
+        .filter_map(|s| Some((s.part.as_str(), [&s.x, &s.y, &s.z][along].as_ref()?)))
+        .collect();
+    let driven = held.iter().find(|(_, dof)| !matches!(dof, Dof::Fixed));
+    driven.or(held.first()).copied()
 }
 
 /// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the tribological circuit. Wear

@@ -143,6 +143,8 @@ pub struct Holder {
     pub axis: usize,
     /// Displacement of the part since the start (m).
     pub displacement: f64,
+    /// Velocity of the part over the last step, v_theta (m/s).
+    pub velocity: f64,
     /// Force of the holder on the part over the last step (N; N/m in 2D).
     pub force: f64,
 }

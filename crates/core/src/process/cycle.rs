@@ -1,6 +1,6 @@
 //! The cycles of a test, as a function of time alone.
 
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use serde::{Deserialize, Serialize};
 
@@ -51,11 +51,25 @@ impl CycleClock {
     }
 }
 
+/// What is rubbed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Rubbed {
+    /// A rigid body, by its place among the driven bodies.
+    Driven(usize),
+    /// A deformable body, by its index among the systems, and which of its holders moves it.
+    System {
+        /// Index of the system.
+        system: usize,
+        /// Index among its holders.
+        holder: usize,
+    },
+}
+
 /// A body that is rubbed along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RubbedBody {
-    /// Its place among the driven bodies.
-    pub place: usize,
+    /// Which.
+    pub rubbed: Rubbed,
     /// Axis of sliding.
     pub along: usize,
     /// Axis of the normal load.
@@ -63,14 +77,69 @@ pub struct RubbedBody {
 }
 
 impl RubbedBody {
-    /// Tangential force that moves it, the mean over the last step (N; N/m in 2D).
-    pub fn tangential_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        -s.state.received[self.place].0[self.along] / s.options.scheme.h
+    /// Tangential force that moves it, the mean over the last step (N; N/m in 2D), and its sliding over that step (m), signed. Of a
+    /// deformable body they are those of the holder.
+    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> [f64; 2] {
+        let h = s.options.scheme.h;
+        match self.rubbed {
+            Rubbed::Driven(place) => [
+                -s.state.received[place].0[self.along] / h,
+                h * step_velocity(s, place)[self.along],
+            ],
+            Rubbed::System { system, holder } => {
+                let holders = s.state.systems.get(system).map(|s| s.holders());
+                let held = holders.as_ref().and_then(|h| h.get(holder));
+                held.map_or([0.0; 2], |held| [held.force, h * held.velocity])
+            }
+        }
     }
 
-    /// Its sliding over the last step (m), signed.
-    pub fn slide<S: Space>(&self, s: &Simulation<S>) -> f64 {
-        s.options.scheme.h * step_velocity(s, self.place)[self.along]
+    /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in compression.
+    pub fn normal_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
+        let pushed = match self.rubbed {
+            Rubbed::Driven(place) => s.state.received[place].0[self.normal],
+            Rubbed::System { .. } => self
+                .sides(s)
+                .map(|(p, _, sign)| p[self.normal] * sign)
+                .sum(),
+        };
+        pushed * self.facing(s) / s.options.scheme.h
+    }
+
+    /// The side on which its contacts push it along the normal axis: 1 or -1.
+    fn facing<S: Space>(&self, s: &Simulation<S>) -> f64 {
+        let push: f64 = self
+            .sides(s)
+            .map(|(_, n, sign)| n[self.normal] * sign)
+            .sum();
+        if push < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Impulse, normal and sign on the body of each loaded contact that it has.
+    fn sides<S: Space>(
+        &self,
+        s: &Simulation<S>,
+    ) -> impl Iterator<Item = (S::Vector, S::Vector, f64)> {
+        let bodies = &s.state.bodies;
+        let own = match self.rubbed {
+            Rubbed::Driven(place) => Some(bodies.driven[place].body),
+            Rubbed::System { .. } => None,
+        };
+        let index = match self.rubbed {
+            Rubbed::System { system, .. } => Some(system as u32),
+            Rubbed::Driven(_) => None,
+        };
+        let is = move |body: u32| match own {
+            Some(own) => body == own,
+            None => bodies.carrier(body as usize).map(|c| c.system) == index,
+        };
+        let contacts = s.state.network.contacts.iter();
+        let loaded = contacts.filter(|c| c.impulse.norm() > 0.0);
+        loaded.filter_map(move |c| match c.bodies {
+            [i, _] if is(i) => Some((c.impulse, c.normal, 1.0)),
+            [_, j] if is(j) => Some((c.impulse, c.normal, -1.0)),
+            _ => None,
+        })
     }
 }
 

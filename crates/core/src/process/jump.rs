@@ -188,7 +188,8 @@ impl Jumps {
         if self.current.0 != cycle {
             self.current = (cycle, 0.0);
         }
-        self.current.1 += self.test.tangential_force(s) * self.test.slide(s);
+        let [force, slide] = self.test.drive(s);
+        self.current.1 += force * slide;
     }
 
     /// Ends a cycle, and says what the next one stands for.

@@ -274,23 +274,29 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
 
     fn holders(&self) -> Vec<Holder> {
         let held = self.held();
-        let one = |axis: usize| {
-            let c = held + axis;
-            let (displacement, force) = match &self.step {
-                Some(step) => {
-                    let moved = step.h * step.theta * self.average(c, step.theta);
-                    (self.start[0][c] + moved, self.reaction(axis, step))
-                }
-                None => (0.0, 0.0),
-            };
+        let one = |(part, axis, c): (&str, usize, usize)| {
+            let (mut displacement, mut velocity, mut force) = (0.0, 0.0, 0.0);
+            if let Some(step) = &self.step {
+                velocity = self.average(c, step.theta);
+                displacement = self.start[0][c] + step.h * step.theta * velocity;
+                force = if c == self.rolled() {
+                    -self.force[c]
+                } else {
+                    self.reaction(axis, step)
+                };
+            }
             Holder {
-                part: "holder".to_owned(),
+                part: part.to_owned(),
                 axis,
                 displacement,
+                velocity,
                 force,
             }
         };
-        (0..S::D).map(one).collect()
+        let axes = (0..S::D).map(|axis| ("holder", axis, held + axis));
+        let rolling = self.fixed.rolling.as_ref();
+        let rolling = rolling.map(|_| ("rolling", 0, self.rolled()));
+        axes.chain(rolling).map(one).collect()
     }
 
     fn has_equal_points(&self) -> bool {

@@ -1,6 +1,5 @@
 //! What the results of a run grow by over a few steps.
 
-use crate::friction_test::facing;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::{Simulation, StepError, StepReport, Steps};
@@ -80,11 +79,9 @@ impl Stretch {
             stretch.iterations = stretch.iterations.max(report.solver.iterations);
             sums.wear += report.totals.worn_first;
             if let Some(body) = body {
-                let slide = body.slide(s);
-                let push = s.state.received[body.place].0[body.normal];
-                let normal = push * facing(s, body.place, body.normal) / s.options.scheme.h;
-                sums.work += body.tangential_force(s) * slide;
-                sums.load_path += normal * slide.abs();
+                let [force, slide] = body.drive(s);
+                sums.work += force * slide;
+                sums.load_path += body.normal_force(s) * slide.abs();
             }
         }
         sums.friction_energy = s.state.energy.friction - friction;

@@ -148,7 +148,7 @@ impl<S: Space> Dissipation<S> {
         }
         if let Some((layer, _, end)) = &mut self.ledger {
             // The work of no body is excluded here.
-            layer.follow(s, (usize::MAX, 0));
+            layer.follow(s, None);
             *end = layer.balance(s);
         }
     }
