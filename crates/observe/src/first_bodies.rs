@@ -64,8 +64,11 @@ struct Worn {
 
 fn name<S: Space>(s: &Simulation<S>, body: u32) -> String {
     let driven = s.state.bodies.driven.iter().find(|d| d.body == body);
-    driven.map_or_else(
-        || format!("body {}", s.state.bodies.id[body as usize]),
-        |d| d.name.clone(),
-    )
+    let carrier = s.state.bodies.carrier(body as usize);
+    let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
+    match (driven, system) {
+        (Some(driven), _) => driven.name.clone(),
+        (None, Some(system)) => system.name().to_owned(),
+        (None, None) => format!("body {}", s.state.bodies.id[body as usize]),
+    }
 }

@@ -27,10 +27,11 @@ pub struct Polyline {
     deformed: Option<(Vec<Vector2<f64>>, f64)>,
 }
 
-/// Heights before any wear, and the displacement of vertices since the boxes were built, and the margin (m).
+/// Heights before any wear, depths, and the displacement of vertices since the boxes were built, and the margin (m).
 #[derive(Debug)]
 struct Worn {
     first: Vec<f64>,
+    depth: Vec<f64>,
     moved: f64,
     margin: f64,
 }
@@ -279,14 +280,22 @@ impl Surface<Dim2> for Polyline {
 
     fn move_vertices(&mut self, vertices: &[Vector2<f64>]) {
         self.points.copy_from_slice(vertices);
+        // The vertices are those of the body without wear.
+        let down = self.direction();
+        if let Some(worn) = &mut self.worn {
+            for (k, point) in self.points.iter_mut().enumerate() {
+                worn.first[k] = point.y;
+                point.y -= down * worn.depth[k];
+            }
+        }
         let far = |(built, margin): &(Vec<Vector2<f64>>, f64)| {
-            let mut moved = built.iter().zip(vertices);
+            let mut moved = built.iter().zip(&self.points);
             moved.any(|(a, b)| (b - a).amax() > *margin)
         };
         if self.deformed.as_ref().is_none_or(far) {
             let mean = (vertices[vertices.len() - 1] - vertices[0]).norm() / self.segments() as f64;
             let margin = MARGIN * mean;
-            self.deformed = Some((vertices.to_vec(), margin));
+            self.deformed = Some((self.points.clone(), margin));
             self.index([margin, margin]);
         }
     }
@@ -300,7 +309,7 @@ impl Surface<Dim2> for Polyline {
     }
 
     fn receding(&self) -> Option<&dyn Recede<Dim2>> {
-        self.deformed.is_none().then_some(self as &dyn Recede<Dim2>)
+        Some(self)
     }
 
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<Dim2>> {
@@ -366,6 +375,7 @@ impl Recede<Dim2> for Polyline {
         let wide = (self.points[n].x - self.points[0].x).abs();
         let worn = self.worn.get_or_insert_with(|| Worn {
             first: self.points.iter().map(|p| p.y).collect(),
+            depth: vec![0.0; n + 1],
             // The boxes have no margin for wear yet.
             moved: f64::INFINITY,
             margin: MARGIN * wide / n as f64,
@@ -377,13 +387,15 @@ impl Recede<Dim2> for Polyline {
             .map(|_| (n, 0));
         let mut step = 0.0f64;
         for (k, of) in named.iter().map(|k| (*k, *k)).chain(image) {
+            worn.depth[k] = depth[of];
             let next = worn.first[k] - down * depth[of];
             let height = &mut self.points[k].y;
             step = step.max((*height - next).abs());
             *height = next;
         }
         worn.moved += step;
-        if worn.moved > worn.margin {
+        // The boxes of a surface that deforms are built again as it moves.
+        if self.deformed.is_none() && worn.moved > worn.margin {
             worn.moved = 0.0;
             let margin = worn.margin;
             self.index([0.0, margin]);

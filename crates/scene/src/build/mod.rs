@@ -346,12 +346,20 @@ impl<S: Dimensional> Builder<'_, S> {
         self.refuse_piles(alert, skin, &table)?;
         let gravity = self.vector("gravity", &case.gravity)?;
         self.refuse_small_period(alert + skin)?;
+        let wears = self.deformable_wear()?;
         let (source, mut simulation) = (
             self.source,
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
-        for system in systems {
+        let mut scars = self.scars;
+        for (system, (name, wears)) in systems.into_iter().zip(wears) {
+            let surface = simulation.shapes.surfaces.len();
             simulation.add_system(system);
+            let carried = simulation.shapes.surfaces.get(surface);
+            if let (Some(carried), Some(wears)) = (carried, wears) {
+                let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
+                scars.extend(scar);
+            }
         }
         let service = Demands::of(&simulation).service(case.solver.method);
         if let Service::Refuses(reason) = service {
@@ -360,7 +368,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 .locate(ValidationError::new("solver.method", reason)));
         }
         simulation.state.gravity = gravity;
-        for scar in self.scars {
+        for scar in scars {
             simulation.follow_wear(scar);
         }
         super::phases::install(case, &mut simulation).map_err(|f| source.locate(f))?;

@@ -1,7 +1,7 @@
 //! Set-up of the surfaces that wear, with checks that a wear law can act on them.
 
 use super::{Builder, Dimensional};
-use crate::case::{BodySpec, InterfaceSpec};
+use crate::case::{BodySpec, CellTouch, InterfaceSpec, TouchSpec, WearSpec};
 use crate::source::InputError;
 use fretwork_core::laws::Kind;
 use fretwork_core::wear::Scar;
@@ -18,13 +18,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Ok(());
         };
         let here = format!("{here}.wears");
-        if !(wears.thickness.is_finite() && wears.thickness > 0.0) {
-            let message = format!("a thickness must be positive, got {}", wears.thickness);
-            return Err(self.fail(format!("{here}.thickness"), message));
-        }
-        if wears.every == 0 {
-            return Err(self.fail(format!("{here}.every"), "must be at least 1"));
-        }
+        self.check_wears(&here, wears)?;
         let before = self.scars.len();
         for surface in first..self.shapes.surfaces.len() {
             let name = match self.scars.len() - before {
@@ -67,6 +61,76 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(here, message));
         }
         Ok(())
+    }
+
+    fn check_wears(&self, here: &str, wears: &WearSpec) -> Result<(), InputError> {
+        if !(wears.thickness.is_finite() && wears.thickness > 0.0) {
+            let message = format!("a thickness must be positive, got {}", wears.thickness);
+            return Err(self.fail(format!("{here}.thickness"), message));
+        }
+        if wears.every == 0 {
+            return Err(self.fail(format!("{here}.every"), "must be at least 1"));
+        }
+        Ok(())
+    }
+
+    /// What deformable bodies say of their wear: place in the case, name and words, in the order of the systems.
+    pub(super) fn deformable_wear(&self) -> Result<Vec<(String, Option<WearSpec>)>, InputError> {
+        let elastic = self.case.elastic.iter().enumerate();
+        let elastic = elastic.map(|(k, e)| {
+            let surface = matches!(e.touches, TouchSpec::Surface(_));
+            (
+                format!("elastic.{k}"),
+                &e.name,
+                &e.material,
+                &e.wears,
+                surface,
+            )
+        });
+        let half_spaces = self.case.half_spaces.iter().enumerate();
+        let half_spaces = half_spaces.map(|(k, b)| {
+            let surface = b.touches == CellTouch::Surface;
+            (
+                format!("half_spaces.{k}"),
+                &b.name,
+                &b.material,
+                &b.wears,
+                surface,
+            )
+        });
+        let mut out = Vec::new();
+        for (here, name, material, wears, surface) in elastic.chain(half_spaces) {
+            let here = format!("{here}.wears");
+            if let Some(words) = wears {
+                self.check_wears(&here, words)?;
+                let law = |i: &InterfaceSpec| {
+                    i.law(Kind::WEAR).is_some()
+                        && (i.between.0 == *material || i.between.1 == *material)
+                };
+                let fault = if S::D == 3 {
+                    Some("the surface of a deformable body recedes in two dimensions alone; leave `wears` out".to_owned())
+                } else if !surface {
+                    Some(format!(
+                        "`{name}` touches by its points, which do not recede; let it touch as `Surface`, and the other body by its points"
+                    ))
+                } else if !self.case.interfaces.iter().any(law) {
+                    Some(format!(
+                        "no interface of the material `{material}` has a wear law, so that `{name}` cannot wear; give one a `wear` law, or leave `wears` out"
+                    ))
+                } else if self.scars.iter().any(|s| s.name == *name) {
+                    Some(format!(
+                        "another surface that wears has the name `{name}`; rename one"
+                    ))
+                } else {
+                    None
+                };
+                if let Some(message) = fault {
+                    return Err(self.fail(here, message));
+                }
+            }
+            out.push((name.clone(), wears.clone()));
+        }
+        Ok(out)
     }
 
     /// Rejects surfaces that wear although no wear law can remove material from them.

@@ -1,5 +1,6 @@
 //! Deformable bodies in a case.
 
+use super::WearSpec;
 use fretwork_core::bodies::Dof;
 use fretwork_elastic::Rayleigh;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -27,6 +28,13 @@ pub struct ElasticSpec {
     /// What of it touches: `Surface("top")` or `Points("bottom")`; nothing by default.
     #[serde(default)]
     pub touches: TouchSpec,
+    /// Whether what touches as a surface recedes as it wears (2D); it does not by default.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub wears: Option<WearSpec>,
     /// Its damping; none by default.
     #[serde(default)]
     pub damping: Rayleigh,

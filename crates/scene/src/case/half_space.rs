@@ -1,6 +1,6 @@
 //! Elastic half-spaces in a case.
 
-use super::Side;
+use super::{Side, WearSpec};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -56,6 +56,13 @@ pub struct HalfSpaceSpec {
     pub rolling: Option<TimeFunction>,
     /// How its cells touch.
     pub touches: CellTouch,
+    /// Whether its surface recedes as it wears (2D); it does not by default.
+    #[serde(
+        default,
+        deserialize_with = "some",
+        skip_serializing_if = "Option::is_none"
+    )]
+    pub wears: Option<WearSpec>,
 }
 
 /// The cells of a surface along an axis (m).
