@@ -1,16 +1,21 @@
-//! Bodies that deform, as dynamical systems of the core: finite elements of linear elasticity.
+//! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large rotation, and in large strain.
 
 pub mod body;
 pub mod compiled;
+pub mod corotational;
 pub mod element;
 pub mod error;
 pub mod freedom;
 pub mod generate;
+pub mod large_strain;
 pub mod material;
 pub mod matrix;
 pub mod mesh;
 mod model;
+pub mod neo_hookean;
+mod newton;
 pub mod rigid;
+pub mod strain;
 pub mod support;
 pub mod surface;
 
@@ -19,4 +24,5 @@ pub use compiled::Deformable;
 pub use error::BodyError;
 pub use material::Elasticity;
 pub use mesh::Mesh;
+pub use strain::Strain;
 pub use support::{Rayleigh, Support};

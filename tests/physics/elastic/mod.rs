@@ -9,7 +9,9 @@ mod point_contact;
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
 use fretwork::elastic::generate::{block, even, graded, mapped_block};
-use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support, Touching};
+use fretwork::elastic::{
+    BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
+};
 use fretwork::geometry::space::{Dim2, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
@@ -35,6 +37,7 @@ fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> 
         name: "specimen",
         mesh,
         material,
+        strain: Strain::Small,
         damping: Rayleigh::default(),
         supports,
         touching: Touching::Nothing,

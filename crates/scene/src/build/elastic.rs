@@ -170,6 +170,7 @@ impl<S: Dimensional> Builder<'_, S> {
             name: &spec.name,
             mesh: mesh.moved(&position),
             material: elasticity,
+            strain: spec.strain,
             damping: spec.damping,
             supports: &supports,
             touching,

@@ -1,10 +1,10 @@
 //! Deformable bodies in a case.
 
 use fretwork_core::bodies::Dof;
-use fretwork_elastic::Rayleigh;
+use fretwork_elastic::{Rayleigh, Strain};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A body of finite elements in small strain; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
+/// A body of finite elements; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
 /// of its material.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -15,6 +15,9 @@ pub struct ElasticSpec {
     pub material: String,
     /// Its mesh.
     pub mesh: MeshSpec,
+    /// How its strain is measured; in small strain by default.
+    #[serde(default)]
+    pub strain: Strain,
     /// Where the origin of the mesh is (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
