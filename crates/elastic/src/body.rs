@@ -82,6 +82,8 @@ pub struct BodySpec<'a, S: Space> {
     pub surface_material: u16,
     /// Its velocity at the start (m/s), of all that is not held.
     pub velocity: S::Vector,
+    /// Its angular velocity at the start about its centre of mass (rad/s); none in small strain, and of parts that move as one.
+    pub spin: S::Spin,
 }
 
 impl<S: Deformable> ElasticBody<S> {
@@ -100,6 +102,7 @@ impl<S: Deformable> ElasticBody<S> {
             touching,
             surface_material,
             velocity,
+            spin,
         } = spec;
         material.check()?;
         let factors = [damping.mass, damping.stiffness];
@@ -109,6 +112,9 @@ impl<S: Deformable> ElasticBody<S> {
         let freedoms = Freedoms::new(&mesh, supports)?;
         if !strain.is_finite() && crate::rigid::turns(&mesh, supports) {
             return Err(BodyError::Turns(name.to_owned()));
+        }
+        if !strain.is_finite() && spin != S::Spin::zero() {
+            return Err(BodyError::Spins(name.to_owned()));
         }
         let (mass, stiffness) = assemble(&mesh, &material, &freedoms);
         let factor = damping.stiffness;
@@ -128,9 +134,7 @@ impl<S: Deformable> ElasticBody<S> {
         for (k, coordinate) in surface.iter().enumerate() {
             place[*coordinate as usize] = k as u32;
         }
-        let axes = freedoms.axis.iter().take(freedoms.free);
-        let mut start: Vec<f64> = axes.map(|axis| velocity[usize::from(*axis)]).collect();
-        start.resize(total, 0.0);
+        let start = crate::rigid::velocities(&mesh, &freedoms, &velocity, &spin);
         let model = Model {
             name: name.to_owned(),
             mesh,

@@ -41,6 +41,9 @@ pub struct Iterate {
     reached: Option<Forces>,
     /// Linearisations in the step.
     count: u32,
+    /// Imbalance of the iterate before, and the element that last had iterates drawn back.
+    imbalance: f64,
+    inverted: Option<String>,
 }
 
 impl Iterate {
@@ -100,6 +103,8 @@ impl<S: Deformable> ElasticBody<S> {
     /// Linearises a step for the first time: at the velocities of its start, or as near to them as no element is inverted.
     pub(crate) fn begin_iterations(&mut self, step: &SystemStep<S>) {
         self.iterate.count = 0;
+        self.iterate.imbalance = f64::INFINITY;
+        self.iterate.inverted = None;
         // Velocities at which nothing moves over the step.
         let back = (1.0 - step.theta) / step.theta;
         let still: Vec<f64> = self.start[1].iter().map(|v| -back * v).collect();
@@ -231,32 +236,41 @@ impl<S: Deformable> ElasticBody<S> {
             *lacks -= p;
         }
         let off = lacks.iter().map(|r| r * r).sum::<f64>().sqrt();
-        let scale = self.scale(step, &forces);
-        if off <= scale {
+        let [balanced, rounding] = self.scales(step, &forces);
+        // What rounding leaves is a bound: iterations go on while they gain.
+        let gains = off < 0.5 * self.iterate.imbalance;
+        self.iterate.imbalance = off;
+        if off <= TOLERANCE * balanced || (off <= rounding && !gains) {
             if let Some(place) = self.inverts(step, &self.velocity) {
                 return Err(inside_out(&place));
             }
             self.iterate.reached = Some(forces);
             return Ok(false);
         }
-        if self.iterate.count >= MAX_ITERATIONS {
-            return Err(format!(
-                "forces and motion are out of balance by {:.1e} of the forces after {MAX_ITERATIONS} iterations of Newton's method; \
-                 take a shorter time.step, or load it more slowly",
-                off / scale * TOLERANCE
-            ));
-        }
+        self.iterate.inverted = self.inverts(step, &self.velocity);
         let next = self.drawn_back(step, &self.iterate.velocity, self.velocity.clone());
         self.linearise_at(step, next.map_err(|place| inside_out(&place))?);
-        Ok(true)
+        let definite = self.formed.as_ref().is_some_and(|f| f.factor.is_some());
+        if self.iterate.count <= MAX_ITERATIONS && definite {
+            return Ok(true);
+        }
+        Err(match &self.iterate.inverted {
+            Some(place) => inside_out(place),
+            None => format!(
+                "forces and motion are out of balance by {:.1e} of the forces after {} iterations of Newton's method; \
+                 take a shorter time.step, or load it more slowly",
+                off / balanced,
+                self.iterate.count - 1
+            ),
+        })
     }
 
-    /// The imbalance at which iterations end (N s; N s/m in 2D).
-    fn scale(&self, step: &SystemStep<S>, forces: &Forces) -> f64 {
+    /// The size of what balances, and what rounding leaves of it (N s; N s/m in 2D).
+    fn scales(&self, step: &SystemStep<S>, forces: &Forces) -> [f64; 2] {
         let model = &self.model;
         let h = step.h;
         let largest = |q: &[f64]| q.iter().fold(0.0, |most: f64, q| most.max(q.abs()));
-        let moved = largest(&self.start[0]).max(largest(&self.displacement));
+        let moved = largest(&self.start[0]).max(largest(&self.end_of(step, &self.velocity)));
         let (mut balanced, mut rounded) = (0.0, 0.0);
         for c in 0..model.freedoms.free {
             let (before, after) = (self.start[1][c], self.velocity[c]);
@@ -272,7 +286,7 @@ impl<S: Deformable> ElasticBody<S> {
         for driven in model.freedoms.forces() {
             balanced += (h * Self::force(&driven.drive, step)).powi(2);
         }
-        TOLERANCE * f64::sqrt(balanced) + ROUNDING * f64::sqrt(rounded)
+        [f64::sqrt(balanced), ROUNDING * f64::sqrt(rounded)]
     }
 }
 

@@ -24,6 +24,9 @@ pub struct ElasticSpec {
     /// Velocity at the start (m/s); at rest by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
+    /// Angular velocity at the start about the centre of mass (rad/s), in 3D with three components; not in small strain.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spin: Vec<f64>,
     /// What holds and drives it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub supports: Vec<SupportSpec>,
