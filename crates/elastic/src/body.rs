@@ -20,6 +20,7 @@ use crate::material::Elasticity;
 use crate::mesh::Mesh;
 use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
+use crate::small_strain;
 use crate::strain::Strain;
 use crate::support::{Rayleigh, Support};
 use fretwork_core::bodies::{
@@ -528,6 +529,12 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 .collect(),
             stress: self.stresses(),
         })
+    }
+
+    fn small_strain(&self) -> Option<[f64; 2]> {
+        let model = &self.model;
+        let largest = || small_strain::largest(&model.mesh, |p| self.displacement(p));
+        model.large.is_none().then(largest)
     }
 
     fn save(&self) -> Vec<u8> {

@@ -15,6 +15,7 @@ mod model;
 pub mod neo_hookean;
 mod newton;
 pub mod rigid;
+pub mod small_strain;
 pub mod strain;
 pub mod support;
 pub mod surface;

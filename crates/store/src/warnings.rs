@@ -112,6 +112,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("ENERGY DOES NOT ADD UP", ledger(summary));
     serious("TOO FAST", summary.step_size.warning());
     serious("MOTION LOST", summary.step_size.rounding_warning());
+    for body in &summary.small_strain {
+        serious("NOT SMALL STRAIN", body.warning());
+    }
     serious("ALIASED DRIVE", drives(summary, true));
     let missed = missed(summary);
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);

@@ -349,6 +349,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
+    /// The largest strain and the largest rotation (rad) in it now, where it takes both for small; none of other systems.
+    fn small_strain(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// Its state between two steps, as bytes that [`Self::restore`] understands: coordinates, velocities, and what else
     /// the next step depends on.
     fn save(&self) -> Vec<u8>;
