@@ -16,13 +16,10 @@ use crate::element::{Simplex, Symmetric};
 use crate::error::BodyError;
 use crate::freedom::{Freedoms, Held};
 use crate::large_strain::LargeStrain;
-use crate::material::Elasticity;
-use crate::mesh::Mesh;
 use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
-use crate::strain::Strain;
-use crate::support::{Rayleigh, Support};
+use crate::spec::BodySpec;
 use fretwork_core::bodies::{
     Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemStep,
     SystemWork, compliance_by_solving,
@@ -48,43 +45,6 @@ pub struct ElasticBody<S: Space> {
     pub(crate) iterate: Iterate,
     /// The last step.
     step: Option<SystemStep<S>>,
-}
-
-/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Touching<'a> {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
-    Points(&'a str),
-    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of pieces.
-    Surface(&'a str),
-}
-
-/// What a body is made of.
-#[derive(Clone, Debug)]
-pub struct BodySpec<'a, S: Space> {
-    /// What a user calls it.
-    pub name: &'a str,
-    /// Its mesh.
-    pub mesh: Mesh<S>,
-    /// Its material.
-    pub material: Elasticity,
-    /// How its strain is measured.
-    pub strain: Strain,
-    /// Its damping.
-    pub damping: Rayleigh,
-    /// What holds and drives it.
-    pub supports: &'a [Support],
-    /// What of it touches.
-    pub touching: Touching<'a>,
-    /// Index of the material for interface laws.
-    pub surface_material: u16,
-    /// Its velocity at the start (m/s), of all that is not held.
-    pub velocity: S::Vector,
-    /// Its angular velocity at the start about its centre of mass (rad/s); none in small strain, and of parts that move as one.
-    pub spin: S::Spin,
 }
 
 impl<S: Deformable> ElasticBody<S> {

@@ -1,7 +1,8 @@
 //! The bodies, compiled once for each dimension, so that dependent crates do not compile them again.
 
-use crate::body::{BodySpec, ElasticBody};
+use crate::body::ElasticBody;
 use crate::error::BodyError;
+use crate::spec::BodySpec;
 use crate::surface::SurfacePart;
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::mesh::Mesh;

@@ -16,14 +16,16 @@ pub mod neo_hookean;
 mod newton;
 pub mod rigid;
 pub mod small_strain;
+pub mod spec;
 pub mod strain;
 pub mod support;
 pub mod surface;
 
-pub use body::{BodySpec, ElasticBody, Touching};
+pub use body::ElasticBody;
 pub use compiled::Deformable;
 pub use error::BodyError;
 pub use material::Elasticity;
 pub use mesh::Mesh;
+pub use spec::{BodySpec, Touching};
 pub use strain::Strain;
 pub use support::{Rayleigh, Support};

@@ -1,6 +1,5 @@
 //! What of a body does not change: its mesh and what is assembled and factorised from it.
 
-use crate::body::Touching;
 use crate::compiled::Deformable;
 use crate::element::Simplex;
 use crate::error::BodyError;
@@ -9,6 +8,7 @@ use crate::large_strain::LargeStrain;
 use crate::material::Elasticity;
 use crate::matrix::{Factor, Sparse};
 use crate::mesh::Mesh;
+use crate::spec::Touching;
 use crate::support::Rayleigh;
 use crate::surface::SurfacePart;
 use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};

@@ -79,6 +79,32 @@ fn supports_that_do_not_hold() {
     );
 }
 
+/// A body that turns needs a strain that follows, and then nothing that holds it.
+#[test]
+fn strains_that_cannot_be() {
+    stiff_refused(
+        &block(MESH, "strain: ‸Large"),
+        &["Corotational", "NeoHookean"],
+    );
+    stiff_refused(
+        &block(MESH, &format!("{HELD}, spin: ‸[1.0]")),
+        &["the body `block` spins", "strain: Corotational"],
+    );
+    stiff_refused(
+        &block(MESH, "strain: Corotational, spin: ‸[1.0, 0.0, 0.0]"),
+        &["a spin has 1 components"],
+    );
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    for strain in ["Corotational", "NeoHookean"] {
+        let more = format!("strain: {strain}, spin: [0.1], touches: Surface(\"top\")");
+        trial.write("case.ron", block(MESH, &more));
+        let output = trial.call(&["run", "case.ron"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    }
+}
+
 #[test]
 fn names_that_are_none_and_bodies_that_would_pass_through_each_other() {
     let named =
