@@ -4,6 +4,7 @@ mod bar;
 mod bending;
 mod closed_forms;
 mod elastica;
+mod extremes;
 mod forces;
 mod frequency;
 mod line_contact;
