@@ -70,6 +70,12 @@ pub struct LargeStrain<S: Space> {
     pub pattern: OnceLock<Option<Pattern>>,
 }
 
+/// Most coordinates of an element.
+const SIDE: usize = 3 * CORNERS;
+
+/// A matrix between the coordinates of an element.
+type Block = [f64; SIDE * SIDE];
+
 /// An element over a step.
 struct Strained {
     /// F_theta.
@@ -203,22 +209,25 @@ impl<S: Space> LargeStrain<S> {
                 continue;
             };
             let mut own = self.element_tangent(simplex, &at, step);
+            let own = &mut own[..side * side];
             if positive {
-                let mut modes = own.symmetric_eigen();
+                let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
                 modes.eigenvalues.apply(|l| *l = l.max(0.0));
-                own = modes.recompose();
+                // Symmetric: rows are columns.
+                own.copy_from_slice(modes.recompose().as_slice());
             }
             let slots = &self.slots[e * side * side..(e + 1) * side * side];
-            for (k, slot) in slots.iter().enumerate() {
-                values[*slot as usize] += own[(k / side, k % side)];
+            for (value, slot) in own.iter().zip(slots) {
+                values[*slot as usize] += value;
             }
         }
         stiffness.with_values(values)
     }
 
-    fn element_tangent(&self, simplex: &Simplex<S>, at: &Strained, step: &Stretch) -> DMatrix<f64> {
+    /// The tangent of an element, row by row.
+    fn element_tangent(&self, simplex: &Simplex<S>, at: &Strained, step: &Stretch) -> Block {
         let side = (S::D + 1) * S::D;
-        let mut out = DMatrix::zeros(side, side);
+        let mut out = [0.0; SIDE * SIDE];
         let mut gradients = [Vector3::zeros(); CORNERS];
         for (to, g) in gradients.iter_mut().zip(simplex.gradients()) {
             *to = Vector3::from(g.padded());
@@ -227,6 +236,7 @@ impl<S: Space> LargeStrain<S> {
         let stress = at.stress + at.viscous;
         let rate = self.damping / (step.h * step.theta);
         for (b, g) in gradients.iter().enumerate() {
+            let geometric = stress * g;
             for k in 0..S::D {
                 // dF = e_k g^T, so that F^T dF is the k-th row of F as a column times g^T.
                 let half = at.gradient.row(k).transpose() * g.transpose();
@@ -236,18 +246,23 @@ impl<S: Space> LargeStrain<S> {
                     change += self.hooke(&(dc * (0.5 * rate)));
                 }
                 let material = at.gradient * change;
-                let geometric = stress * g;
-                for (a, arm) in gradients.iter().enumerate() {
+                // One triangle: the other differs by rounding.
+                let column = b * S::D + k;
+                for (a, arm) in gradients.iter().enumerate().take(b + 1) {
                     let mut force = material * arm;
                     force[k] += geometric.dot(arm);
                     for i in 0..S::D {
-                        out[(a * S::D + i, b * S::D + k)] = force[i] * simplex.volume;
+                        let row = a * S::D + i;
+                        if row <= column {
+                            let value = force[i] * simplex.volume;
+                            out[row * side + column] = value;
+                            out[column * side + row] = value;
+                        }
                     }
                 }
             }
         }
-        // The two triangles differ by rounding.
-        (&out + out.transpose()) * 0.5
+        out
     }
 
     /// Energy stored at coordinates (J; J/m in 2D).

@@ -110,7 +110,7 @@ impl<S: Deformable> ElasticBody<S> {
         let still: Vec<f64> = self.start[1].iter().map(|v| -back * v).collect();
         let wanted = self.start[1].clone();
         let velocity = self.drawn_back(step, &still, wanted).unwrap_or(still);
-        self.linearise_at(step, velocity);
+        self.linearise_at(step, velocity, None);
     }
 
     /// The wanted velocities, or others between them and those of `from` at which no element is inverted.
@@ -133,7 +133,8 @@ impl<S: Deformable> ElasticBody<S> {
         Err(why)
     }
 
-    fn linearise_at(&mut self, step: &SystemStep<S>, velocity: Vec<f64>) {
+    /// Linearises a step at final velocities, with its internal forces there where they are known.
+    fn linearise_at(&mut self, step: &SystemStep<S>, velocity: Vec<f64>, forces: Option<Forces>) {
         let model = Arc::clone(&self.model);
         let Some(large) = &model.large else { return };
         let SystemStep { h, theta, .. } = *step;
@@ -159,7 +160,7 @@ impl<S: Deformable> ElasticBody<S> {
             formed = factor(&tangent);
         }
         self.formed = Some(Arc::new(model.formed([h, theta], formed)));
-        self.iterate.forces = large.forces(&stretch);
+        self.iterate.forces = forces.unwrap_or_else(|| large.forces(&stretch));
         self.iterate.tangent = tangent;
         self.iterate.velocity = velocity;
         self.iterate.count += 1;
@@ -248,8 +249,12 @@ impl<S: Deformable> ElasticBody<S> {
             return Ok(false);
         }
         self.iterate.inverted = self.inverts(step, &self.velocity);
-        let next = self.drawn_back(step, &self.iterate.velocity, self.velocity.clone());
-        self.linearise_at(step, next.map_err(|place| inside_out(&place))?);
+        if self.iterate.inverted.is_none() {
+            self.linearise_at(step, self.velocity.clone(), Some(forces));
+        } else {
+            let next = self.drawn_back(step, &self.iterate.velocity, self.velocity.clone());
+            self.linearise_at(step, next.map_err(|place| inside_out(&place))?, None);
+        }
         let definite = self.formed.as_ref().is_some_and(|f| f.factor.is_some());
         if self.iterate.count <= MAX_ITERATIONS && definite {
             return Ok(true);
