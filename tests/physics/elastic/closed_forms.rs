@@ -33,6 +33,13 @@ fn across(stretch: f64, directions: i32) -> f64 {
     low
 }
 
+/// A part that does not move along an axis.
+fn fixed<S: Space>(part: &str, axis: usize) -> Support {
+    let mut axes = vec![None; S::D];
+    axes[axis] = Some(Dof::Fixed);
+    support(part, &axes)
+}
+
 fn cube<S: Space>(cells: usize) -> Mesh<S> {
     let line = |from: f64| even(from, from + SIDE, cells);
     let lines = [line(0.0), line(0.0), line(0.0)];
@@ -53,25 +60,20 @@ fn squeezed<S: Dimensional + Deformable>(share: f64, confined: bool) -> f64 {
         ..sketch(1.0, 1.0)
     });
     let up = S::D - 1;
-    let fixed = |part: &str, axis: usize| {
-        let mut axes = vec![None; S::D];
-        axes[axis] = Some(Dof::Fixed);
-        support(part, &axes)
-    };
     let mut driven = vec![None; S::D];
     driven[up] = ramp(share * SIDE, 10.0);
     let mut supports = vec![
-        fixed("bottom", up),
+        fixed::<S>("bottom", up),
         support("top", &driven),
-        fixed("left", 0),
+        fixed::<S>("left", 0),
     ];
     if S::D == 3 {
-        supports.push(fixed("front", 1));
+        supports.push(fixed::<S>("front", 1));
     }
     if confined {
-        supports.push(fixed("right", 0));
+        supports.push(fixed::<S>("right", 0));
         if S::D == 3 {
-            supports.push(fixed("back", 1));
+            supports.push(fixed::<S>("back", 1));
         }
     }
     add(&mut s, hyperelastic(cube::<S>(2), &supports));
@@ -134,24 +136,41 @@ fn simple_shear() {
 /// A smooth rigid lid presses a block with free sides by a fifth: the sum of its contacts is that of uniaxial strain.
 #[test]
 fn a_block_under_a_lid() {
-    let stretch = 0.8;
+    under_a_lid::<Dim2>();
+    under_a_lid::<Dim3>();
+}
+
+fn under_a_lid<S: Dimensional + Deformable>() {
+    let (up, directions, stretch) = (S::D - 1, S::D as i32 - 1, 0.8);
+    let [normal, position, axis] = match S::D {
+        2 => [
+            "[0.0, -1.0]".to_owned(),
+            format!("[0.0, {SIDE:?}]"),
+            "y".to_owned(),
+        ],
+        _ => [
+            "[0.0, 0.0, -1.0]".to_owned(),
+            format!("[0.0, 0.0, {SIDE:?}]"),
+            "z".to_owned(),
+        ],
+    };
     let drop = (stretch - 1.0) * SIDE;
     let forces = [false, false, true].map(|parallel| {
-        let mut s = scene::<Dim2>(&Sketch {
+        let mut s = scene::<S>(&Sketch {
             bodies: format!(
-                "(name: \"lid\", material: \"m0\", shapes: [HalfSpace(normal: [0.0, -1.0])], position: [0.0, {SIDE:?}], \
-                 dofs: (y: Displacement(Ramp(from: 0.0, to: {drop:?}, start: 0.0, end: 10.0)))),"
+                "(name: \"lid\", material: \"m0\", shapes: [HalfSpace(normal: {normal})], position: {position}, \
+                 dofs: ({axis}: Displacement(Ramp(from: 0.0, to: {drop:?}, start: 0.0, end: 10.0)))),"
             ),
             mu: 0.0,
             solver: "tolerance: 1e-12, norm: Velocity, method: Newton,".to_owned(),
             ..sketch(1.0, 1.0)
         });
         s.options.solver.parallel = parallel;
-        let supports = [
-            support("bottom", &[None, Some(Dof::Fixed)]),
-            support("left", &[Some(Dof::Fixed), None]),
-        ];
-        let mut spec = hyperelastic(cube::<Dim2>(4), &supports);
+        let mut supports = vec![fixed::<S>("bottom", up), fixed::<S>("left", 0)];
+        if S::D == 3 {
+            supports.push(fixed::<S>("front", 1));
+        }
+        let mut spec = hyperelastic(cube::<S>(if S::D == 2 { 4 } else { 2 }), &supports);
         spec.touching = Touching::Points("top");
         add(&mut s, spec);
         let mut most = 0;
@@ -161,11 +180,12 @@ fn a_block_under_a_lid() {
         }
         closes(&s, 1e-9);
         let contacts = s.state.network.contacts.iter();
-        let force = contacts.map(|c| c.impulse[1].abs()).sum::<f64>() / s.options.scheme.h;
-        let expected = -nominal(stretch, stretch * across(stretch, 1)) * SIDE;
-        println!("lid: {force} for {expected}, up to {most} iterations");
+        let force = contacts.map(|c| c.impulse[up].abs()).sum::<f64>() / s.options.scheme.h;
+        let volume = stretch * across(stretch, directions).powi(directions);
+        let expected = -nominal(stretch, volume) * SIDE.powi(directions);
+        println!("lid in {}D: {force} for {expected}, up to {most} iterations", S::D);
         near(expected, force, 1e-6);
-        near(expected, holder(&s, 0, "bottom", 1).force, 1e-6);
+        near(expected, holder(&s, 0, "bottom", up).force, 1e-6);
         force.to_bits()
     });
     // The same bits again, and with two threads.

@@ -136,6 +136,41 @@ fn a_spinning_block_keeps_its_angular_momentum() {
     }
 }
 
+/// Damping by stiffness takes the vibration that a sudden spin excites and does not brake the spin; damping by mass does, by
+/// (1 - alpha h/2)/(1 + alpha h/2) a step.
+#[test]
+fn damping_follows_the_rotation() {
+    for strain in LARGE {
+        for (mass, stiffness) in [(0.0, 2e-3), (5.0, 0.0)] {
+            let mut s = scene::<Dim2>(&Sketch {
+                bodies: floor::<Dim2>(),
+                ..sketch(1e-3, 0.5)
+            });
+            let mesh = block::<Dim2>(&[even(0.0, 0.2, 4), even(5.0, 5.1, 2)]).unwrap();
+            let mut spec = body(mesh, RUBBER, &[]);
+            (spec.strain, spec.spin[0]) = (strain, 20.0);
+            spec.damping = Rayleigh { mass, stiffness };
+            add(&mut s, spec);
+            let start = momentum(&s, RUBBER.density);
+            go(&mut s, 400);
+            let factor = (1.0 - 0.5e-3 * mass) / (1.0 + 0.5e-3 * mass);
+            // The moment of a braking force at the middle of the step is that of the mean momentum up to the square of the step.
+            let tolerance = if mass > 0.0 { 1e-4 } else { 1e-8 };
+            let expected = start * factor.powi(400);
+            near(expected, momentum(&s, RUBBER.density), tolerance);
+            closes(&s, 1e-9);
+            let energy = &s.state.energy;
+            println!(
+                "{strain:?}: viscous {:e} of {:e} J",
+                energy.viscous, energy.initial_kinetic
+            );
+            // A steady spin of a stretched body is strain without rate.
+            let share = energy.viscous / energy.initial_kinetic;
+            assert!(share > 0.0 && (mass > 0.0 || share < 1e-2), "{share:e}");
+        }
+    }
+}
+
 /// Steps far below and far above the time of a wave (3 ms across the block), moduli of jelly and far above steel: energy does not grow.
 #[test]
 fn any_step_and_modulus_is_stable() {
