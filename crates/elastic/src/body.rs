@@ -1,11 +1,12 @@
-//! A body of finite elements in small strain, as a dynamical system: its inertia, stiffness and damping are constant, so that
+//! A body of finite elements, as a dynamical system. In small strain its inertia, stiffness and damping are constant, so that
 //!
 //! ```text
 //! A = M + h theta C + h^2 theta^2 K
 //! ```
 //!
 //! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its corners. Contacts act on the points
-//! of a part of the boundary; columns of the compliance of these, P A^-1 P^T, are found once too, as points are touched.
+//! of a part of the boundary; columns of the compliance of these, P A^-1 P^T, are found once too, as points are touched. In large
+//! strain K is a tangent, and A is formed anew in each iteration of Newton's method, see [`crate::large_strain`].
 //!
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
@@ -14,10 +15,11 @@ use crate::compiled::Deformable;
 use crate::element::{Simplex, Symmetric};
 use crate::error::BodyError;
 use crate::freedom::{Freedoms, Held};
-use crate::material::Elasticity;
-use crate::mesh::Mesh;
+use crate::large_strain::LargeStrain;
 use crate::model::{Formed, Model, assemble, contactors};
-use crate::support::{Rayleigh, Support};
+use crate::newton::Iterate;
+use crate::small_strain;
+use crate::spec::BodySpec;
 use fretwork_core::bodies::{
     Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemStep,
     SystemWork, compliance_by_solving,
@@ -29,51 +31,20 @@ use std::sync::Arc;
 /// A body of finite elements.
 #[derive(Clone, Debug)]
 pub struct ElasticBody<S: Space> {
-    model: Arc<Model<S>>,
-    formed: Option<Arc<Formed>>,
-    displacement: Vec<f64>,
-    velocity: Vec<f64>,
+    pub(crate) model: Arc<Model<S>>,
+    pub(crate) formed: Option<Arc<Formed>>,
+    pub(crate) displacement: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
     /// Both at the start of the step.
-    start: [Vec<f64>; 2],
+    pub(crate) start: [Vec<f64>; 2],
     /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
     jump: f64,
     /// Impulse of contacts on the coordinates in the step (N s).
-    contact: Vec<f64>,
+    pub(crate) contact: Vec<f64>,
+    /// Iterations of the step; unused in small strain.
+    pub(crate) iterate: Iterate,
     /// The last step.
     step: Option<SystemStep<S>>,
-}
-
-/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Touching<'a> {
-    /// Nothing.
-    #[default]
-    Nothing,
-    /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
-    Points(&'a str),
-    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of pieces.
-    Surface(&'a str),
-}
-
-/// What a body is made of.
-#[derive(Clone, Debug)]
-pub struct BodySpec<'a, S: Space> {
-    /// What a user calls it.
-    pub name: &'a str,
-    /// Its mesh.
-    pub mesh: Mesh<S>,
-    /// Its material.
-    pub material: Elasticity,
-    /// Its damping.
-    pub damping: Rayleigh,
-    /// What holds and drives it.
-    pub supports: &'a [Support],
-    /// What of it touches.
-    pub touching: Touching<'a>,
-    /// Index of the material for interface laws.
-    pub surface_material: u16,
-    /// Its velocity at the start (m/s), of all that is not held.
-    pub velocity: S::Vector,
 }
 
 impl<S: Deformable> ElasticBody<S> {
@@ -86,11 +57,13 @@ impl<S: Deformable> ElasticBody<S> {
             name,
             mesh,
             material,
+            strain,
             damping,
             supports,
             touching,
             surface_material,
             velocity,
+            spin,
         } = spec;
         material.check()?;
         let factors = [damping.mass, damping.stiffness];
@@ -98,10 +71,15 @@ impl<S: Deformable> ElasticBody<S> {
             return Err(BodyError::Damping(damping.mass, damping.stiffness));
         }
         let freedoms = Freedoms::new(&mesh, supports)?;
-        if crate::rigid::turns(&mesh, supports) {
+        if !strain.is_finite() && crate::rigid::turns(&mesh, supports) {
             return Err(BodyError::Turns(name.to_owned()));
         }
+        if !strain.is_finite() && spin != S::Spin::zero() {
+            return Err(BodyError::Spins(name.to_owned()));
+        }
         let (mass, stiffness) = assemble(&mesh, &material, &freedoms);
+        let factor = damping.stiffness;
+        let large = LargeStrain::new(strain, &material, factor, &mesh, &freedoms, &stiffness);
         let (part, contactors) = contactors(&mesh, touching, surface_material)?;
         let points: &[u32] = part.as_ref().map_or(&[], |part| &part.points);
         let coordinates = points
@@ -117,15 +95,14 @@ impl<S: Deformable> ElasticBody<S> {
         for (k, coordinate) in surface.iter().enumerate() {
             place[*coordinate as usize] = k as u32;
         }
-        let axes = freedoms.axis.iter().take(freedoms.free);
-        let mut start: Vec<f64> = axes.map(|axis| velocity[usize::from(*axis)]).collect();
-        start.resize(total, 0.0);
+        let start = crate::rigid::velocities(&mesh, &freedoms, &velocity, &spin);
         let model = Model {
             name: name.to_owned(),
             mesh,
             material,
             damping,
             freedoms,
+            large,
             mass,
             stiffness,
             contactors,
@@ -141,6 +118,7 @@ impl<S: Deformable> ElasticBody<S> {
             start: [vec![0.0; total], vec![0.0; total]],
             jump: 0.0,
             contact: vec![0.0; total],
+            iterate: Iterate::default(),
             step: None,
         })
     }
@@ -152,6 +130,9 @@ impl<S: Deformable> ElasticBody<S> {
 
     /// Stress in each element (Pa).
     fn stresses(&self) -> Vec<Symmetric> {
+        if let Some(large) = &self.model.large {
+            return large.stresses(&self.displacement);
+        }
         let mesh = &self.model.mesh;
         let stress = |points: &[u32]| {
             let simplex = Simplex::<S>::new(&mesh.corners(points));
@@ -167,7 +148,10 @@ impl<S: Deformable> ElasticBody<S> {
     fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let (average, theta_point) = self.average(step);
-        let [elastic, viscous] = model.internal(&theta_point, &average);
+        let [elastic, viscous] = match &model.large {
+            Some(large) => self.internal_of_step(large, step, &average),
+            None => model.internal(&theta_point, &average),
+        };
         let free = model.freedoms.free;
         (free..model.freedoms.total())
             .map(|c| {
@@ -194,7 +178,7 @@ impl<S: Deformable> ElasticBody<S> {
     }
 
     /// Time function of a drive at a step, at its theta-point.
-    fn force(drive: &Dof, step: &SystemStep<S>) -> f64 {
+    pub(crate) fn force(drive: &Dof, step: &SystemStep<S>) -> f64 {
         let over = drive.over(step.time, step.h);
         over.force(step.time + step.theta * step.h)
     }
@@ -219,6 +203,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
 
     fn set_velocity(&mut self, velocity: &[f64]) {
         self.velocity.copy_from_slice(velocity);
+        self.iterate.moved();
     }
 
     fn begin_step(&mut self, step: &SystemStep<S>) {
@@ -237,10 +222,25 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         self.start[1].copy_from_slice(&self.velocity);
         self.contact.fill(0.0);
         self.step = Some(*step);
+        self.iterate.moved();
         let of = [step.h, step.theta];
-        if self.formed.as_ref().is_none_or(|formed| formed.of != of) {
+        if model.large.is_none() && self.formed.as_ref().is_none_or(|formed| formed.of != of) {
             self.formed = Some(Arc::new(model.form(step.h, step.theta)));
         }
+    }
+
+    fn linearise(&mut self, step: &SystemStep<S>) {
+        if self.model.large.is_some() {
+            self.begin_iterations(step);
+        }
+    }
+
+    fn relinearise(&mut self, step: &SystemStep<S>) -> Result<bool, String> {
+        self.iterate(step)
+    }
+
+    fn linearisations(&self) -> u32 {
+        self.iterate.count()
     }
 
     fn advance(&mut self, time: f64) {
@@ -251,6 +251,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
 
     fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
+        if model.large.is_some() {
+            return self.free_velocity_at_iterate(step);
+        }
         let SystemStep { time, h, theta, .. } = *step;
         let [q, v] = &self.start;
         let mut end = v.clone();
@@ -300,11 +303,21 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let model = &self.model;
         let SystemStep { h, theta, .. } = *step;
         let (average, _) = self.average(step);
-        let [stretched, viscous] = model.internal(&average, &average);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (viscous, scheme) = match &model.large {
+            Some(large) => {
+                let [elastic, viscous] = self.internal_of_step(large, step, &average);
+                let stored = self.stored_energy() - large.energy(&self.start[0]);
+                (viscous, h * dot(&elastic, &average) - stored)
+            }
+            None => {
+                let [stretched, viscous] = model.internal(&average, &average);
+                (viscous, (theta - 0.5) * h * h * dot(&stretched, &average))
+            }
+        };
         let mut work = SystemWork {
             damping: h * dot(&viscous, &average),
-            scheme: (theta - 0.5) * h * h * dot(&stretched, &average),
+            scheme,
             external: self.jump,
             ..SystemWork::default()
         };
@@ -331,6 +344,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn stored_energy(&self) -> f64 {
+        if let Some(large) = &self.model.large {
+            return large.energy(&self.displacement);
+        }
         let strained = self.model.strained(&self.displacement);
         0.5 * self.model.stiffness.form(&strained)
     }
@@ -474,6 +490,12 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 .collect(),
             stress: self.stresses(),
         })
+    }
+
+    fn small_strain(&self) -> Option<[f64; 2]> {
+        let model = &self.model;
+        let largest = || small_strain::largest(&model.mesh, |p| self.displacement(p));
+        model.large.is_none().then(largest)
     }
 
     fn save(&self) -> Vec<u8> {

@@ -1,8 +1,9 @@
 //! The bodies, compiled once for each dimension, so that dependent crates do not compile them again.
 
-use crate::body::{BodySpec, ElasticBody};
+use crate::body::ElasticBody;
 use crate::error::BodyError;
 use crate::half_space::{HalfSpace, HalfSpaceError, HalfSpaceSpec};
+use crate::spec::BodySpec;
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::Polyline;

@@ -38,7 +38,12 @@ pub enum BodyError {
     Damping(f64, f64),
     /// Nothing keeps the body from turning.
     #[error(
-        "nothing keeps the body `{0}` from turning, and small strain cannot follow a rotation: hold one of its parts along one axis more"
+        "nothing keeps the body `{0}` from turning, and small strain cannot follow a rotation: hold one of its parts along one axis more, or give it `strain: Corotational` or `strain: NeoHookean`"
     )]
     Turns(String),
+    /// A spin in small strain.
+    #[error(
+        "the body `{0}` spins, and small strain cannot follow a rotation: give it `strain: Corotational` or `strain: NeoHookean`"
+    )]
+    Spins(String),
 }

@@ -1,24 +1,34 @@
-//! Bodies that deform, as dynamical systems of the core: finite elements of linear elasticity, and elastic half-spaces.
+//! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large rotation, and in large strain, and
+//! elastic half-spaces.
 
 pub mod body;
 pub mod compiled;
+pub mod corotational;
 pub mod element;
 pub mod error;
 pub mod freedom;
 pub mod generate;
 pub mod half_space;
+pub mod large_strain;
 pub mod material;
 pub mod matrix;
 pub mod mesh;
 mod model;
+pub mod neo_hookean;
+mod newton;
 pub mod rigid;
+pub mod small_strain;
+pub mod spec;
+pub mod strain;
 pub mod support;
 pub mod surface;
 
-pub use body::{BodySpec, ElasticBody, Touching};
+pub use body::ElasticBody;
 pub use compiled::Deformable;
 pub use error::BodyError;
 pub use half_space::{HalfSpace, HalfSpaceSpec};
 pub use material::Elasticity;
 pub use mesh::Mesh;
+pub use spec::{BodySpec, Touching};
+pub use strain::Strain;
 pub use support::{Rayleigh, Support};

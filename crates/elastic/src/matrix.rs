@@ -54,6 +54,27 @@ impl Sparse {
         product.iter().zip(x).map(|(a, b)| a * b).sum()
     }
 
+    /// Where an entry stands among the values; none outside of the pattern.
+    pub fn slot(&self, row: usize, column: usize) -> Option<usize> {
+        let range = self.starts[row]..self.starts[row + 1];
+        let within = self.columns[range.clone()].binary_search(&column).ok()?;
+        Some(range.start + within)
+    }
+
+    /// A matrix of the same pattern, with as many values as [`Self::values`] has.
+    pub fn with_values(&self, values: Vec<f64>) -> Self {
+        Self {
+            starts: self.starts.clone(),
+            columns: self.columns.clone(),
+            values,
+        }
+    }
+
+    /// All entries, row by row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The first `n` rows and columns times `scale`, plus a diagonal.
     pub fn leading(&self, n: usize, scale: f64, diagonal: &[f64]) -> Self {
         let mut out = Self {
@@ -95,24 +116,50 @@ impl std::fmt::Debug for Factor {
     }
 }
 
-impl Factor {
-    /// Factorises; `None` where the matrix is not positive definite.
-    pub fn new(a: &Sparse) -> Option<Self> {
+/// The pattern of a matrix with the order of elimination, for factors of several matrices that share it.
+#[derive(Clone, Debug)]
+pub struct Pattern {
+    /// None without rows.
+    symbolic: Option<SymbolicLlt<usize>>,
+}
+
+impl Pattern {
+    /// That of a matrix; `None` where it has too many entries.
+    pub fn of(a: &Sparse) -> Option<Self> {
         let n = a.starts.len() - 1;
         if n == 0 {
-            return Some(Self { factor: None });
+            return Some(Self { symbolic: None });
         }
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
+        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).ok()?;
+        Some(Self {
+            symbolic: Some(symbolic),
+        })
+    }
+
+    /// Factorises a matrix of this pattern; `None` where it is not positive definite.
+    pub fn factor(&self, a: &Sparse) -> Option<Factor> {
+        let Some(symbolic) = &self.symbolic else {
+            return Some(Factor { factor: None });
+        };
         if !a.values.iter().all(|x| x.is_finite()) {
             return None;
         }
         // Rows of a symmetric matrix are its columns.
+        let n = a.starts.len() - 1;
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
-        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).ok()?;
         let matrix = SparseColMatRef::new(pattern, &a.values);
-        let factor = Llt::try_new_with_symbolic(symbolic, matrix, Side::Lower).ok()?;
-        Some(Self {
+        let factor = Llt::try_new_with_symbolic(symbolic.clone(), matrix, Side::Lower).ok()?;
+        Some(Factor {
             factor: Some(factor),
         })
+    }
+}
+
+impl Factor {
+    /// Factorises; `None` where the matrix is not positive definite.
+    pub fn new(a: &Sparse) -> Option<Self> {
+        Pattern::of(a)?.factor(a)
     }
 
     /// x = A^-1 x, for as many columns as `x` holds one after the other.

@@ -1,13 +1,14 @@
 //! What of a body does not change: its mesh and what is assembled and factorised from it.
 
-use crate::body::Touching;
 use crate::compiled::Deformable;
 use crate::element::Simplex;
 use crate::error::BodyError;
 use crate::freedom::Freedoms;
+use crate::large_strain::LargeStrain;
 use crate::material::Elasticity;
 use crate::matrix::{Factor, Sparse};
 use crate::mesh::Mesh;
+use crate::spec::Touching;
 use crate::support::Rayleigh;
 use crate::surface::SurfacePart;
 use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
@@ -45,6 +46,8 @@ pub struct Model<S: Space> {
     pub material: Elasticity,
     pub damping: Rayleigh,
     pub freedoms: Freedoms<S>,
+    /// What follows rotations; none in small strain.
+    pub large: Option<LargeStrain<S>>,
     pub mass: Vec<f64>,
     pub stiffness: Sparse,
     pub contactors: Vec<Contactor>,
@@ -84,15 +87,20 @@ impl<S: Space> Model<S> {
     pub fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
         let elastic = self.stiffness.times(&self.strained(q));
         let mut viscous = vec![0.0; v.len()];
-        let Rayleigh { mass, stiffness } = self.damping;
+        let Rayleigh { stiffness, .. } = self.damping;
         if stiffness > 0.0 {
             viscous = self.stiffness.times(&self.strained(v));
             viscous.iter_mut().for_each(|f| *f *= stiffness);
         }
-        for (c, f) in viscous.iter_mut().enumerate() {
-            *f += mass * self.mass[c] * v[c];
-        }
+        self.add_mass_damping(v, &mut viscous);
         [elastic, viscous]
+    }
+
+    /// Adds alpha M v.
+    pub fn add_mass_damping(&self, v: &[f64], to: &mut [f64]) {
+        for (c, f) in to.iter_mut().enumerate() {
+            *f += self.damping.mass * self.mass[c] * v[c];
+        }
     }
 
     pub fn form(&self, h: f64, theta: f64) -> Formed {
@@ -102,11 +110,15 @@ impl<S: Space> Model<S> {
         let diagonal: Vec<f64> = self.mass[..free].iter().map(|m| m * inertia).collect();
         let scale = step * self.damping.stiffness + step * step;
         let a = self.stiffness.leading(free, scale, &diagonal);
-        let factor = Factor::new(&a);
+        self.formed([h, theta], Factor::new(&a))
+    }
+
+    /// With a factor of A.
+    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> Formed {
         let kept = self.surface.len() <= MAX_SURFACE;
         let columns = if kept { self.surface.len() } else { 0 };
         Formed {
-            of: [h, theta],
+            of,
             factor,
             surface: (0..columns).map(|_| OnceLock::new()).collect(),
         }

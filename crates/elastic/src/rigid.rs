@@ -1,5 +1,7 @@
-//! Whether supports leave a body free to turn as a rigid one, which small strain cannot follow.
+//! Motions of a body as a rigid one: whether supports leave it free to turn, which small strain cannot follow, and how it starts.
 
+use crate::element::Simplex;
+use crate::freedom::Freedoms;
 use crate::mesh::Mesh;
 use crate::support::Support;
 use fretwork_core::bodies::Dof;
@@ -64,6 +66,38 @@ pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
             .sum();
         modes.eigenvalues[k] < 1e-12 * most && turning > 1e-8
     })
+}
+
+/// Velocities of all coordinates of a body that moves as a rigid one, with a velocity of its centre of mass (m/s) and an angular
+/// velocity about it (rad/s). Parts that move as one do not turn, and imposed coordinates are at rest.
+pub fn velocities<S: Space>(
+    mesh: &Mesh<S>,
+    freedoms: &Freedoms<S>,
+    velocity: &S::Vector,
+    spin: &S::Spin,
+) -> Vec<f64> {
+    let (mut sum, mut volume) = (S::Vector::zero(), 0.0);
+    for points in mesh.elements() {
+        let corners = mesh.corners(points);
+        let own = Simplex::<S>::new(&corners).map_or(0.0, |s| s.volume);
+        volume += own;
+        let all = corners.iter().fold(S::Vector::zero(), |sum, x| sum + *x);
+        sum += all * (own / corners.len() as f64);
+    }
+    let centre = sum * (1.0 / volume);
+    let held: Vec<u32> = freedoms.held.iter().map(|h| h.coordinate).collect();
+    let mut out = vec![0.0; freedoms.total()];
+    for (p, x) in mesh.points().iter().enumerate() {
+        let turning = S::spin_velocity(spin, &(*x - centre));
+        for axis in 0..S::D {
+            let c = freedoms.of(p as u32, axis);
+            if c < freedoms.free {
+                let alone = !held.contains(&(c as u32));
+                out[c] = velocity[axis] + if alone { turning[axis] } else { 0.0 };
+            }
+        }
+    }
+    out
 }
 
 #[cfg(test)]

@@ -6,9 +6,12 @@ use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
-use fretwork_core::bodies::{DeformedMesh, von_mises};
+use super::summary::Summary;
+use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
+use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
+use serde::Serialize;
 use std::fmt::Write as _;
 
 /// Kinds of cells of VTK, a triangle and a tetrahedron.
@@ -19,6 +22,39 @@ const VTK_CELLS: [u8; 2] = [5, 10];
 pub struct Deformable {
     holders: Vec<String>,
     bodies: Vec<String>,
+    /// Largest strain and rotation of each, where it takes both for small.
+    distortions: Vec<Option<[f64; 2]>>,
+}
+
+/// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
+/// per cent, and its forces act in directions that are off by the rotation, here two per cent.
+const LARGE: f64 = 0.02;
+
+/// A body in small strain, and how large its strain was.
+#[derive(Clone, Debug, Serialize)]
+pub struct SmallStrain {
+    /// Name of the body.
+    pub body: String,
+    /// Largest principal strain of an element, by its size, at the rows of the statistics.
+    pub strain: f64,
+    /// Largest rotation of an element (rad).
+    pub rotation: f64,
+}
+
+impl SmallStrain {
+    /// What is wrong where it was not small.
+    pub fn warning(&self) -> Option<String> {
+        (self.strain.max(self.rotation) > LARGE).then(|| {
+            format!(
+                "the body `{}` is computed in small strain, and its elements strain by up to {:.1} % and turn by up to {:.3} rad (more than \
+                 {:.0} % or {LARGE} rad is not small); give it `strain: Corotational` for large rotations, or `strain: NeoHookean` for large strains",
+                self.body,
+                100.0 * self.strain,
+                self.rotation,
+                100.0 * LARGE
+            )
+        })
+    }
 }
 
 impl Deformable {
@@ -32,8 +68,15 @@ impl Deformable {
         Self {
             holders: named.collect(),
             bodies: systems().map(|s| s.name().to_owned()).collect(),
+            distortions: systems().map(DynamicalSystem::small_strain).collect(),
         }
     }
+}
+
+/// The larger of two distortions in each part.
+fn larger(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let (a, b) = (a?, b?);
+    Some([a[0].max(b[0]), a[1].max(b[1])])
 }
 
 impl<S: Space> Observer<S> for Deformable {
@@ -75,8 +118,11 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
-        let holders = systems.flat_map(|system| system.holders());
+        let systems = || (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+        for (most, system) in self.distortions.iter_mut().zip(systems()) {
+            *most = larger(*most, system.small_strain());
+        }
+        let holders = systems().flat_map(|system| system.holders());
         holders.flat_map(|h| [h.displacement, h.force]).collect()
     }
 
@@ -89,6 +135,29 @@ impl<S: Space> Observer<S> for Deformable {
 
     fn picture_names(&self) -> Vec<&'static str> {
         vec!["stress"]
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        for (k, name) in self.bodies.iter().enumerate() {
+            let system = end.simulation.state.systems.get(k);
+            let now = system.and_then(DynamicalSystem::small_strain);
+            if let Some([strain, rotation]) = larger(self.distortions[k], now) {
+                summary.small_strain.push(SmallStrain {
+                    body: name.clone(),
+                    strain,
+                    rotation,
+                });
+            }
+        }
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.distortions)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.distortions = decode(from)?;
+        Ok(())
     }
 
     fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

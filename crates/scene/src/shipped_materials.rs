@@ -1,7 +1,7 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 7] = [
+pub const FILES: [(&str, &str); 8] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
@@ -25,6 +25,10 @@ pub const FILES: [(&str, &str); 7] = [
     (
         "verification_grain",
         include_str!("../../../materials/verification_grain.ron"),
+    ),
+    (
+        "verification_rubber",
+        include_str!("../../../materials/verification_rubber.ron"),
     ),
     (
         "wheel_steel_er7",

@@ -112,6 +112,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("ENERGY DOES NOT ADD UP", ledger(summary));
     serious("TOO FAST", summary.step_size.warning());
     serious("MOTION LOST", summary.step_size.rounding_warning());
+    for body in &summary.small_strain {
+        serious("NOT SMALL STRAIN", body.warning());
+    }
     serious("ALIASED DRIVE", drives(summary, true));
     let missed = missed(summary);
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);
@@ -360,6 +363,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_observe::deformable::SmallStrain;
 
     fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
         let mut summary = Summary {
@@ -384,6 +388,13 @@ mod tests {
             s.solver.overlap_after = 0.5;
             s.step_size.late = 3;
             s.step_size.deepest = 0.2;
+            s.small_strain = [("bent", 1e-3, 0.3), ("stiff", 1e-3, 1e-3)]
+                .map(|(body, strain, rotation)| SmallStrain {
+                    body: body.into(),
+                    strain,
+                    rotation,
+                })
+                .into();
             s.energy.kinetic = f64::NAN;
             s.energy_residual_relative = 1e-3;
             s.phases_missed = vec!["shear".to_owned()];
@@ -403,15 +414,18 @@ mod tests {
             "NOT FINITE",
             "ENERGY DOES NOT ADD UP",
             "TOO FAST",
+            "NOT SMALL STRAIN",
             "NOT CONVERGED",
             "NOT COUPLED",
             "NOT CERTIFIED",
         ];
         assert_eq!(reasons, expected);
+        let bent = list.iter().find(|w| w.of == "NOT SMALL STRAIN").unwrap();
+        assert!(bent.text.contains("`bent`") && bent.text.contains("strain: Corotational"));
         let notes: Vec<&str> = list.iter().filter(|w| !w.serious).map(|w| w.of).collect();
         assert_eq!(notes, ["OVERLAP"]);
         assert!(
-            list[4]
+            list[5]
                 .to_string()
                 .starts_with("NOT CONVERGED: 12 of 600 steps")
         );

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::extremes::bench::floor;
-use fretwork::bodies::Holder;
 use nalgebra::Vector2;
 
 const WIDTH: f64 = 0.01;
@@ -12,12 +11,6 @@ const HEIGHT: f64 = 0.005;
 fn small(from: f64) -> Mesh<Dim2> {
     let x = even(-0.5 * WIDTH, 0.5 * WIDTH, 10);
     block::<Dim2>(&[x, even(from, from + HEIGHT, 5)]).unwrap()
-}
-
-fn holder(s: &Simulation<Dim2>, system: usize, part: &str, axis: usize) -> Holder {
-    let held = s.state.systems.get(system).unwrap().holders();
-    let found = held.into_iter().find(|h| h.part == part && h.axis == axis);
-    found.unwrap()
 }
 
 fn force(value: f64) -> Option<Dof> {

@@ -2,15 +2,23 @@
 
 mod bar;
 mod bending;
+mod closed_forms;
+mod elastica;
+mod extremes;
 mod forces;
+mod frequency;
 mod half_space;
 mod line_contact;
+mod newton;
 mod point_contact;
+mod rotation;
 
 use crate::extremes::bench::Sketch;
-use fretwork::bodies::{DeformedMesh, Dof, TimeFunction};
+use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
 use fretwork::elastic::generate::{block, even, graded, mapped_block};
-use fretwork::elastic::{BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Support, Touching};
+use fretwork::elastic::{
+    BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
+};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
@@ -21,6 +29,16 @@ const STEEL: Elasticity = Elasticity {
     poisson: 0.3,
     density: 7800.0,
 };
+
+/// Rubber, of which a few per cent of strain are little.
+const RUBBER: Elasticity = Elasticity {
+    young: 1e6,
+    poisson: 0.3,
+    density: 1000.0,
+};
+
+/// What follows rotations.
+const LARGE: [Strain; 2] = [Strain::Corotational, Strain::NeoHookean];
 
 /// A support of a part, with a drive along some axes.
 fn support(part: &str, axes: &[Option<Dof>]) -> Support {
@@ -36,11 +54,13 @@ fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> 
         name: "specimen",
         mesh,
         material,
+        strain: Strain::Small,
         damping: Rayleigh::default(),
         supports,
         touching: Touching::Nothing,
         surface_material: 0,
         velocity: S::Vector::zero(),
+        spin: S::Spin::zero(),
     }
 }
 
@@ -74,6 +94,22 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
 fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
     let system = s.state.systems.get(system).unwrap();
     system.deformed_mesh().unwrap()
+}
+
+fn holder<S: Space>(s: &Simulation<S>, system: usize, part: &str, axis: usize) -> Holder {
+    let held = s.state.systems.get(system).unwrap().holders();
+    let found = held.into_iter().find(|h| h.part == part && h.axis == axis);
+    found.unwrap()
+}
+
+/// A displacement that grows from zero to a value and stays there.
+fn ramp(to: f64, end: f64) -> Option<Dof> {
+    Some(Dof::Displacement(TimeFunction::Ramp {
+        from: 0.0,
+        to,
+        start: 0.0,
+        end,
+    }))
 }
 
 /// The ledger closes to rounding.

@@ -4,6 +4,7 @@
 //! obtained, tolerance. Every expected value is a formula written here.
 
 mod bonds;
+mod deformable;
 mod drives;
 mod dynamics;
 mod energy;
@@ -98,5 +99,6 @@ fn closed_forms_are_met() {
     solvers::all(&mut table);
     laws::all(&mut table);
     stages::all(&mut table);
+    deformable::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
 }

@@ -79,6 +79,51 @@ fn supports_that_do_not_hold() {
     );
 }
 
+/// A body that turns needs a strain that follows, and then nothing that holds it.
+#[test]
+fn strains_that_cannot_be() {
+    stiff_refused(
+        &block(MESH, "strain: ‸Large"),
+        &["Corotational", "NeoHookean"],
+    );
+    stiff_refused(
+        &block(MESH, &format!("{HELD}, spin: ‸[1.0]")),
+        &["the body `block` spins", "strain: Corotational"],
+    );
+    stiff_refused(
+        &block(MESH, "strain: Corotational, spin: ‸[1.0, 0.0, 0.0]"),
+        &["a spin has 1 components"],
+    );
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    for strain in ["Corotational", "NeoHookean"] {
+        let more = format!("strain: {strain}, spin: [0.1], touches: Surface(\"top\")");
+        trial.write("case.ron", block(MESH, &more));
+        let output = trial.call(&["run", "case.ron"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+    }
+}
+
+/// A block in small strain that is sheared by a tenth runs, and is no run to trust; in large strain it is.
+#[test]
+fn strains_that_are_not_small_are_warned_of() {
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let shear = "(part: \"top\", x: Displacement(Ramp(from: 0.0, to: 0.02, start: 0.0, end: 0.002)), y: Fixed)";
+    let supports = format!("supports: [(part: \"bottom\", x: Fixed, y: Fixed), {shear}]");
+    for (strain, warned) in [("Small", true), ("NeoHookean", false)] {
+        let case = block(MESH, &format!("{supports}, strain: {strain}"));
+        trial.write("case.ron", case);
+        let output = trial.call(&["run", "case.ron", "--json"]);
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        let sentence = "NOT SMALL STRAIN: the body `block`";
+        assert_eq!(said.contains(sentence), warned, "{strain}: {said}");
+        assert_eq!(said.contains("\"rotation\""), warned, "{strain}: {said}");
+    }
+}
+
 #[test]
 fn names_that_are_none_and_bodies_that_would_pass_through_each_other() {
     let named =

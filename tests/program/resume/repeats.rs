@@ -60,6 +60,7 @@ fn the_steps_after_repeated_ones_have_the_same_bits() {
     check("verification/worn_slide", &[], 30, 20);
     check("verification/worn_slide_3d", &[], 30, 20);
     check("verification/bond_mixed", &[], 60, 60);
+    check("verification/rubber_block", &[], 10, 10);
 }
 
 /// A phase that begins in a repeated step, and sets a parameter of a law there, has not begun.

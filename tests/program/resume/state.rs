@@ -77,6 +77,12 @@ fn a_surface_that_wears_goes_on_from_what_it_shows() {
     check("verification/worn_slide_3d", &[], 50, 60);
 }
 
+/// A state has no tangent: it is formed again.
+#[test]
+fn a_body_in_large_strain_goes_on_with_the_same_bits() {
+    check("verification/rubber_block", &[], 10, 10);
+}
+
 #[test]
 fn a_state_of_another_scene_is_not_taken() {
     let [Scene::Dim2(one), Scene::Dim2(other)] = [

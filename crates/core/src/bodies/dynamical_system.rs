@@ -181,7 +181,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// 4. [`contact_nodes`](Self::contact_nodes) once for each contact, then [`compliance`](Self::compliance) of the nodes that are
 ///    touched; where the step is solved again with more contacts, nodes of all contacts again, and the compliance if other
 ///    nodes are touched,
-/// 5. [`set_contact_impulse`](Self::set_contact_impulse) and [`set_velocity`](Self::set_velocity) with v+; several times where a step is solved again,
+/// 5. [`set_contact_impulse`](Self::set_contact_impulse) and [`set_velocity`](Self::set_velocity) with v+, then
+///    [`relinearise`](Self::relinearise), after which all from the free velocity on is asked again where it says so; several times where a step is solved again,
 /// 6. `advance` by theta h, and [`work`](Self::work) at the end.
 ///
 /// Velocities have [`freedoms`](Self::freedoms) entries, in the system's own units.
@@ -201,7 +202,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// v + A^-1 h (F - C v - f(q + h theta v)). Where no impact makes the velocity jump the force is then wrong by O(h^4), and the rule is
 /// of second order at theta = 1/2.
 /// What the linearised force does along the step and what is stored differ: the difference is part of
-/// [`SystemWork::scheme`], and the ledger closes.
+/// [`SystemWork::scheme`], and the ledger closes. A system whose forces change more than that within a step converges them by
+/// [`relinearise`](DynamicalSystem::relinearise).
 pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// What a user calls it.
     fn name(&self) -> &str;
@@ -227,6 +229,21 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// takes its tangent and factorises, one in a floating frame turns its blocks. Called once a step, at q_m, before all that
     /// needs A; [`Self::begin_step`] has remembered the start. Here nothing: A is that of a linear system.
     fn linearise(&mut self, _step: &SystemStep<S>) {}
+
+    /// Asked after the contacts of a step were solved, at the velocities that they led to: whether the system has linearised anew,
+    /// because its forces are not those of the step at these velocities. The free velocity and the compliance are then asked for
+    /// again, and the contacts are solved again: Newton's method, whose end the system decides. Here false: what [`Self::linearise`] gave stands.
+    ///
+    /// # Errors
+    /// Why there is no balance, and what to change, as the second half of a sentence.
+    fn relinearise(&mut self, _step: &SystemStep<S>) -> Result<bool, String> {
+        Ok(false)
+    }
+
+    /// How often it has linearised in the step; none of linear systems.
+    fn linearisations(&self) -> u32 {
+        0
+    }
 
     /// Moves the coordinates by a time (s) at the current velocities.
     fn advance(&mut self, time: f64);
@@ -338,6 +355,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// a traction. (In the plane it is for all.)
     fn has_equal_points(&self) -> bool {
         false
+    }
+
+    /// The largest strain and the largest rotation (rad) in it now, where it takes both for small; none of other systems.
+    fn small_strain(&self) -> Option<[f64; 2]> {
+        None
     }
 
     /// Its state between two steps, as bytes that [`Self::restore`] understands: coordinates, velocities, and what else

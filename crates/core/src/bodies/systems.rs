@@ -186,6 +186,22 @@ impl<S: Space> Systems<S> {
         }
     }
 
+    /// Has systems linearise anew where their forces are not those of the velocities that they have, and finds their velocities without
+    /// contacts again; gives the systems that did.
+    ///
+    /// # Errors
+    /// The index of a system that finds no balance, and why.
+    pub fn relinearise(&mut self, step: &SystemStep<S>) -> Result<Vec<usize>, (usize, String)> {
+        let mut changed = Vec::new();
+        for (k, entry) in self.entries.iter_mut().enumerate() {
+            if entry.system.relinearise(step).map_err(|why| (k, why))? {
+                entry.free = entry.system.free_velocity(step);
+                changed.push(k);
+            }
+        }
+        Ok(changed)
+    }
+
     /// The velocity without contacts of a node of a system (m/s).
     pub fn free_velocity_of(&self, system: usize, node: u32) -> S::Vector {
         let entry = &self.entries[system];

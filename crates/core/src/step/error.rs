@@ -96,6 +96,18 @@ pub enum StepError {
         /// Name of the system.
         system: String,
     },
+    /// A dynamical system whose forces are not linear finds no balance.
+    #[error("step {step} at t = {time:.6e} s: the body `{system}`: {why}")]
+    SystemBalance {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// Name of the system.
+        system: String,
+        /// Why, and what to change.
+        why: String,
+    },
     /// A quantity of the state or of the ledger is not finite.
     #[error(
         "step {step} at t = {time:.6e} s: {quantity} is {value}, beyond what can be computed with; check the units of sizes, \
@@ -114,8 +126,12 @@ pub enum StepError {
 }
 
 impl StepError {
-    /// Whether a law asks for a smaller time step.
+    /// Whether a law or a dynamical system asks for a smaller time step.
     pub fn asks_for_smaller_step(&self) -> bool {
-        matches!(self, Self::Law { source, .. } if source.asks_for_smaller_step())
+        match self {
+            Self::Law { source, .. } => source.asks_for_smaller_step(),
+            Self::SystemBalance { .. } => true,
+            _ => false,
+        }
     }
 }

@@ -52,18 +52,7 @@ impl<S: Space> Simulation<S> {
             report.timing.laws += clock.elapsed();
 
             let clock = Instant::now();
-            self.pose(free);
-            self.check_method()?;
-            let solved = solve::solve(
-                &mut self.workspace.problem,
-                &self.workspace.forms,
-                &self.workspace.moments,
-                &options,
-                &mut self.state.auto_state,
-            );
-            report.solver.add(&solved);
-            self.adopt_velocities()?;
-            self.adopt_system_velocities()?;
+            self.solve_contacts(free, &options, report)?;
             report.timing.solve += clock.elapsed();
 
             self.collect_contact_steps();
@@ -94,6 +83,33 @@ impl<S: Space> Simulation<S> {
                 .zip(&self.workspace.solved.contact_steps)
             {
                 form.impulse = contact_step.solution.impulse;
+            }
+        }
+    }
+
+    /// Solves the contacts with the current forms, and again while dynamical systems linearise anew at the velocities that they
+    /// reach.
+    fn solve_contacts(
+        &mut self,
+        free: &[(S::Vector, S::Spin)],
+        options: &solve::Options,
+        report: &mut StepReport,
+    ) -> Result<(), StepError> {
+        loop {
+            self.pose(free);
+            self.check_method()?;
+            let solved = solve::solve(
+                &mut self.workspace.problem,
+                &self.workspace.forms,
+                &self.workspace.moments,
+                options,
+                &mut self.state.auto_state,
+            );
+            report.solver.add(&solved);
+            self.adopt_velocities()?;
+            self.adopt_system_velocities()?;
+            if !self.relinearise_systems()? {
+                return Ok(());
             }
         }
     }

@@ -231,6 +231,42 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
+    /// Has systems whose forces are not linear linearise at the velocities that they reached; whether one did, so that the contacts
+    /// are to be solved again. Their next impulses start from the current ones.
+    ///
+    /// # Errors
+    /// A system that finds no balance.
+    pub(super) fn relinearise_systems(&mut self) -> Result<bool, StepError> {
+        if self.state.systems.is_empty() {
+            return Ok(false);
+        }
+        let step = self.system_step();
+        let changed = self.state.systems.relinearise(&step);
+        let changed = changed.map_err(|(system, why)| StepError::SystemBalance {
+            step: self.state.steps + 1,
+            time: self.state.time,
+            system: self
+                .state
+                .systems
+                .get(system)
+                .map_or_else(String::new, |s| s.name().to_owned()),
+            why,
+        })?;
+        for system in &changed {
+            let nodes = std::mem::take(&mut self.workspace.systems.nodal[*system].nodes);
+            let of = |node: &u32| self.state.systems.free_velocity_of(*system, *node);
+            let free = nodes.iter().map(of).collect();
+            let compliance = self.state.systems.compliance(*system, &nodes);
+            self.workspace.systems.nodal[*system] = NodalSystem::new(nodes, free, compliance);
+        }
+        if !changed.is_empty() {
+            for (k, form) in self.workspace.forms.iter_mut().enumerate() {
+                form.impulse = self.workspace.problem.solution(k).impulse;
+            }
+        }
+        Ok(!changed.is_empty())
+    }
+
     /// Velocity of a side of a contact, at the current velocities (m/s).
     fn velocity_of_side(&self, side: &Side<S>) -> S::Vector {
         match side {

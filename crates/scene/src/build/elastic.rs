@@ -204,6 +204,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let mesh = self.mesh(&format!("{here}.mesh"), spec)?;
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let velocity = self.vector(&format!("{here}.velocity"), &spec.velocity)?;
+        let spin = self.spin(&format!("{here}.spin"), &spec.spin)?;
         let supports = self.supports(here, &spec.supports)?;
         let touching = match &spec.touches {
             TouchSpec::Nothing => Touching::Nothing,
@@ -214,17 +215,20 @@ impl<S: Dimensional> Builder<'_, S> {
             name: &spec.name,
             mesh: mesh.moved(&position),
             material: elasticity,
+            strain: spec.strain,
             damping: spec.damping,
             supports: &supports,
             touching,
             surface_material: material,
             velocity,
+            spin,
         });
         built.map_err(|error| {
             let below = match &error {
                 BodyError::Mesh(_) => "mesh",
                 BodyError::Material(_) => "material",
                 BodyError::Damping(..) => "damping",
+                BodyError::Spins(..) => "spin",
                 BodyError::NoChain(..) | BodyError::NoSurface(..) => "touches",
                 BodyError::NoPart(part, _) => match &spec.touches {
                     TouchSpec::Points(touching) | TouchSpec::Surface(touching)

@@ -2,10 +2,10 @@
 
 use super::WearSpec;
 use fretwork_core::bodies::Dof;
-use fretwork_elastic::Rayleigh;
+use fretwork_elastic::{Rayleigh, Strain};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A body of finite elements in small strain; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
+/// A body of finite elements; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
 /// of its material.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -16,12 +16,18 @@ pub struct ElasticSpec {
     pub material: String,
     /// Its mesh.
     pub mesh: MeshSpec,
+    /// How its strain is measured; in small strain by default.
+    #[serde(default)]
+    pub strain: Strain,
     /// Where the origin of the mesh is (m); the origin by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub position: Vec<f64>,
     /// Velocity at the start (m/s); at rest by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
+    /// Angular velocity at the start about the centre of mass (rad/s), in 3D with three components; not in small strain.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spin: Vec<f64>,
     /// What holds and drives it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub supports: Vec<SupportSpec>,

@@ -1,0 +1,316 @@
+//! Elements in large strain or rotation: what they do over a step, and their tangent.
+//!
+//! With the gradients F and F+ of the motion at the start and at the end of a step, the forces of the step are those of
+//!
+//! ```text
+//! P = F_theta S(C_theta),   F_theta = (1 - theta) F + theta F+,   C_theta = (1 - theta) F^T F + theta F+^T F+
+//! ```
+//!
+//! on the nodes f_a = V P g_a. The strain is averaged, not the place: a rotation over the step strains nothing, whatever its angle,
+//! where F_theta^T F_theta would shrink by a factor cos^2 of half the angle. At theta = 1/2 the moment of these forces about any point is zero at the middle of the
+//! step, so that angular momentum is kept, and their work is that of S along the change of C.
+//!
+//! The tangent is that of P with the strain's own derivative taken at F_theta in place of F+, which makes it symmetric:
+//!
+//! ```text
+//! K_t = df/dq at theta = 1;   otherwise it is off by about half of (F+ - F), and iterations converge by that factor
+//! ```
+//!
+//! Sources: J. C. Simo and N. Tarnow, "The discrete energy-momentum method", Z. Angew. Math. Phys. 43 (1992); J. Bonet and R. D.
+//! Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd edition (2008), chapters 8 and 9; for tangents that are not
+//! positive J. Teran, E. Sifakis, G. Irving and R. Fedkiw, "Robust quasistatic finite elements and flesh simulation" (2005).
+
+use crate::element::{CORNERS, Simplex, Symmetric};
+use crate::freedom::Freedoms;
+use crate::material::Elasticity;
+use crate::matrix::{Pattern, Sparse};
+use crate::mesh::{Mesh, place};
+use crate::strain::{Response, Strain};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use nalgebra::{DMatrix, Matrix3, Vector3};
+use std::sync::OnceLock;
+
+/// A step from coordinates to others (m).
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch<'a> {
+    /// Coordinates at its start.
+    pub start: &'a [f64],
+    /// Coordinates at its end.
+    pub end: &'a [f64],
+    /// Its length (s).
+    pub h: f64,
+    /// Theta.
+    pub theta: f64,
+}
+
+/// Internal forces of a step on each coordinate (N; N/m in 2D).
+#[derive(Clone, Debug, Default)]
+pub struct Forces {
+    /// Of elasticity.
+    pub elastic: Vec<f64>,
+    /// Of damping by stiffness.
+    pub viscous: Vec<f64>,
+    /// Sum of the sizes of what elements contribute: the measure of what is small.
+    pub size: Vec<f64>,
+}
+
+/// The elements of a body in large strain or rotation.
+#[derive(Debug)]
+pub struct LargeStrain<S: Space> {
+    strain: Strain,
+    material: Elasticity,
+    /// Factor beta of Rayleigh damping (s).
+    damping: f64,
+    simplices: Vec<Simplex<S>>,
+    /// Coordinates of the corners of each element, axis by axis.
+    coordinates: Vec<u32>,
+    /// Where their entries stand in the stiffness, row by row.
+    slots: Vec<u32>,
+    /// Pattern of A, once known.
+    pub pattern: OnceLock<Option<Pattern>>,
+}
+
+/// Most coordinates of an element.
+const SIDE: usize = 3 * CORNERS;
+
+/// A matrix between the coordinates of an element.
+type Block = [f64; SIDE * SIDE];
+
+/// An element over a step.
+struct Strained {
+    /// F_theta.
+    gradient: Matrix3<f64>,
+    response: Response,
+    stress: Matrix3<f64>,
+    viscous: Matrix3<f64>,
+}
+
+impl<S: Space> LargeStrain<S> {
+    /// Of a mesh; none in small strain.
+    pub fn new(
+        strain: Strain,
+        material: &Elasticity,
+        damping: f64,
+        mesh: &Mesh<S>,
+        freedoms: &Freedoms<S>,
+        stiffness: &Sparse,
+    ) -> Option<Self> {
+        if !strain.is_finite() {
+            return None;
+        }
+        let mut out = Self {
+            strain,
+            material: *material,
+            damping,
+            simplices: Vec::new(),
+            coordinates: Vec::new(),
+            slots: Vec::new(),
+            pattern: OnceLock::new(),
+        };
+        for points in mesh.elements() {
+            out.simplices.push(Simplex::new(&mesh.corners(points))?);
+            let first = out.coordinates.len();
+            for point in points {
+                let axes = (0..S::D).map(|axis| freedoms.of(*point, axis) as u32);
+                out.coordinates.extend(axes);
+            }
+            let own = &out.coordinates[first..];
+            for row in own {
+                for column in own {
+                    let slot = stiffness.slot(*row as usize, *column as usize)?;
+                    out.slots.push(slot as u32);
+                }
+            }
+        }
+        Some(out)
+    }
+
+    /// Coordinates of an element.
+    fn coordinates(&self, e: usize) -> &[u32] {
+        let each = (S::D + 1) * S::D;
+        &self.coordinates[e * each..(e + 1) * each]
+    }
+
+    /// The gradient of the displacement in an element.
+    fn gradient(&self, e: usize, q: &[f64]) -> Matrix3<f64> {
+        let at = self.coordinates(e);
+        let mut out = Matrix3::zeros();
+        for (a, g) in self.simplices[e].gradients().iter().enumerate().skip(1) {
+            for i in 0..S::D {
+                // Less that of the first corner: a translation leaves no rounding.
+                let u = q[at[a * S::D + i] as usize] - q[at[i] as usize];
+                for j in 0..S::D {
+                    out[(i, j)] += u * g[j];
+                }
+            }
+        }
+        out
+    }
+
+    fn strained(&self, e: usize, step: &Stretch) -> Option<Strained> {
+        let [from, to] = [step.start, step.end].map(|q| self.gradient(e, q));
+        let (c, d) = (less_one(&from), less_one(&to));
+        let blend = |a: &Matrix3<f64>, b: &Matrix3<f64>| a * (1.0 - step.theta) + b * step.theta;
+        let response = Response::new(self.strain, &self.material, &blend(&c, &d))?;
+        let mut viscous = Matrix3::zeros();
+        if self.damping > 0.0 {
+            viscous = self.hooke(&((d - c) * (0.5 * self.damping / step.h)));
+        }
+        Some(Strained {
+            gradient: Matrix3::identity() + blend(&from, &to),
+            stress: response.stress(),
+            response,
+            viscous,
+        })
+    }
+
+    /// Hooke's stress of a strain.
+    fn hooke(&self, e: &Matrix3<f64>) -> Matrix3<f64> {
+        let (lambda, shear) = (self.material.lambda(), self.material.shear());
+        Matrix3::identity() * (lambda * e.trace()) + e * (2.0 * shear)
+    }
+
+    /// The internal forces of a step.
+    pub fn forces(&self, step: &Stretch) -> Forces {
+        let zero = vec![0.0; step.start.len()];
+        let mut out = Forces {
+            elastic: zero.clone(),
+            viscous: zero.clone(),
+            size: zero,
+        };
+        for (e, simplex) in self.simplices.iter().enumerate() {
+            let Some(at) = self.strained(e, step) else {
+                continue;
+            };
+            let [elastic, viscous] =
+                [at.stress, at.viscous].map(|s| at.gradient * s * simplex.volume);
+            let own = self.coordinates(e).chunks_exact(S::D);
+            for (coordinates, g) in own.zip(simplex.gradients()) {
+                let g = Vector3::from(g.padded());
+                let (elastic, viscous) = (elastic * g, viscous * g);
+                for (i, c) in coordinates.iter().enumerate() {
+                    let c = *c as usize;
+                    out.elastic[c] += elastic[i];
+                    out.viscous[c] += viscous[i];
+                    out.size[c] += elastic[i].abs() + viscous[i].abs();
+                }
+            }
+        }
+        out
+    }
+
+    /// The tangent of a step, with that of damping over h theta, in the pattern of the stiffness. With `positive` what is negative of
+    /// each element is left out.
+    pub fn tangent(&self, step: &Stretch, stiffness: &Sparse, positive: bool) -> Sparse {
+        let mut values = vec![0.0; stiffness.values().len()];
+        let side = (S::D + 1) * S::D;
+        for (e, simplex) in self.simplices.iter().enumerate() {
+            let Some(at) = self.strained(e, step) else {
+                continue;
+            };
+            let mut own = self.element_tangent(simplex, &at, step);
+            let own = &mut own[..side * side];
+            if positive {
+                let mut modes = DMatrix::from_row_slice(side, side, own).symmetric_eigen();
+                modes.eigenvalues.apply(|l| *l = l.max(0.0));
+                // Symmetric: rows are columns.
+                own.copy_from_slice(modes.recompose().as_slice());
+            }
+            let slots = &self.slots[e * side * side..(e + 1) * side * side];
+            for (value, slot) in own.iter().zip(slots) {
+                values[*slot as usize] += value;
+            }
+        }
+        stiffness.with_values(values)
+    }
+
+    /// The tangent of an element, row by row.
+    fn element_tangent(&self, simplex: &Simplex<S>, at: &Strained, step: &Stretch) -> Block {
+        let side = (S::D + 1) * S::D;
+        let mut out = [0.0; SIDE * SIDE];
+        let mut gradients = [Vector3::zeros(); CORNERS];
+        for (to, g) in gradients.iter_mut().zip(simplex.gradients()) {
+            *to = Vector3::from(g.padded());
+        }
+        let gradients = &gradients[..=S::D];
+        let stress = at.stress + at.viscous;
+        let rate = self.damping / (step.h * step.theta);
+        for (b, g) in gradients.iter().enumerate() {
+            let geometric = stress * g;
+            for k in 0..S::D {
+                // dF = e_k g^T, so that F^T dF is the k-th row of F as a column times g^T.
+                let half = at.gradient.row(k).transpose() * g.transpose();
+                let dc = half + half.transpose();
+                let mut change = at.response.change(&dc);
+                if rate > 0.0 {
+                    change += self.hooke(&(dc * (0.5 * rate)));
+                }
+                let material = at.gradient * change;
+                // One triangle: the other differs by rounding.
+                let column = b * S::D + k;
+                for (a, arm) in gradients.iter().enumerate().take(b + 1) {
+                    let mut force = material * arm;
+                    force[k] += geometric.dot(arm);
+                    for i in 0..S::D {
+                        let row = a * S::D + i;
+                        if row <= column {
+                            let value = force[i] * simplex.volume;
+                            out[row * side + column] = value;
+                            out[column * side + row] = value;
+                        }
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Energy stored at coordinates (J; J/m in 2D).
+    pub fn energy(&self, q: &[f64]) -> f64 {
+        let one = |(e, simplex): (usize, &Simplex<S>)| {
+            let c = less_one(&self.gradient(e, q));
+            let response = Response::new(self.strain, &self.material, &c);
+            response.map_or(0.0, |r| r.energy() * simplex.volume)
+        };
+        self.simplices.iter().enumerate().map(one).sum()
+    }
+
+    /// Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain with that along the depth.
+    pub fn stresses(&self, q: &[f64]) -> Vec<Symmetric> {
+        let one = |e: usize| {
+            let h = self.gradient(e, q);
+            let response = Response::new(self.strain, &self.material, &less_one(&h));
+            let f = Matrix3::identity() + h;
+            let s = response.map_or_else(Matrix3::zeros, |r| r.stress());
+            let s = f * s * f.transpose() / f.determinant();
+            [
+                s[(0, 0)],
+                s[(1, 1)],
+                s[(2, 2)],
+                s[(1, 2)],
+                s[(0, 2)],
+                s[(0, 1)],
+            ]
+        };
+        (0..self.simplices.len()).map(one).collect()
+    }
+
+    /// The place without load of an element that is inverted at coordinates, J <= 0.
+    pub fn inverted(&self, mesh: &Mesh<S>, q: &[f64]) -> Option<String> {
+        let volume = |e: usize| (Matrix3::identity() + self.gradient(e, q)).determinant();
+        // Also where it is not a number.
+        let e = (0..self.simplices.len()).find(|e| volume(*e).is_nan() || volume(*e) <= 0.0)?;
+        let points = mesh.elements().nth(e)?;
+        let corners = mesh.corners(points);
+        let sum = corners.iter().fold(S::Vector::zero(), |sum, x| sum + *x);
+        Some(place(&(sum * (1.0 / corners.len() as f64))))
+    }
+}
+
+/// C - 1 of a gradient of the displacement.
+fn less_one(h: &Matrix3<f64>) -> Matrix3<f64> {
+    h + h.transpose() + h.transpose() * h
+}
+
+#[cfg(test)]
+mod tests;

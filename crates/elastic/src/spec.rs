@@ -1,0 +1,44 @@
+//! What a body is made of, as its maker is told.
+
+use crate::material::Elasticity;
+use crate::mesh::Mesh;
+use crate::strain::Strain;
+use crate::support::{Rayleigh, Support};
+use fretwork_core::geometry::space::Space;
+
+/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Touching<'a> {
+    /// Nothing.
+    #[default]
+    Nothing,
+    /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
+    Points(&'a str),
+    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of pieces.
+    Surface(&'a str),
+}
+
+/// What a body is made of.
+#[derive(Clone, Debug)]
+pub struct BodySpec<'a, S: Space> {
+    /// What a user calls it.
+    pub name: &'a str,
+    /// Its mesh.
+    pub mesh: Mesh<S>,
+    /// Its material.
+    pub material: Elasticity,
+    /// How its strain is measured.
+    pub strain: Strain,
+    /// Its damping.
+    pub damping: Rayleigh,
+    /// What holds and drives it.
+    pub supports: &'a [Support],
+    /// What of it touches.
+    pub touching: Touching<'a>,
+    /// Index of the material for interface laws.
+    pub surface_material: u16,
+    /// Its velocity at the start (m/s), of all that is not held.
+    pub velocity: S::Vector,
+    /// Its angular velocity at the start about its centre of mass (rad/s); none in small strain, and of parts that move as one.
+    pub spin: S::Spin,
+}

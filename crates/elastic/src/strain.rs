@@ -1,0 +1,132 @@
+//! How the strain of a body is measured, and what stress and energy an element has by it.
+//!
+//! For large strain both are functions of C = F^T F alone, with F the gradient of the motion, so that a rotation leaves no stress at
+//! all. C is kept as C - 1, of which small strains do not vanish in the rounding of 1.
+
+use crate::corotational::Corotational;
+use crate::material::Elasticity;
+use crate::neo_hookean::NeoHookean;
+use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
+
+/// How the strain of a body is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Strain {
+    /// The symmetric part of the gradient of the displacement: linear elasticity, for strains and rotations that are small.
+    #[default]
+    Small,
+    /// Linear elasticity in a frame that turns with each element: any rotation, small strain.
+    Corotational,
+    /// The compressible neo-Hookean material W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2: any rotation, large strain.
+    NeoHookean,
+}
+
+impl Strain {
+    /// Whether it follows rotations; forces are then not linear in displacements.
+    pub fn is_finite(self) -> bool {
+        self != Self::Small
+    }
+}
+
+/// An element at a strain C - 1: its energy, stress and tangent.
+#[derive(Clone, Copy, Debug)]
+pub enum Response {
+    /// See [`Corotational`].
+    Corotational(Corotational),
+    /// See [`NeoHookean`].
+    NeoHookean(NeoHookean),
+}
+
+impl Response {
+    /// At C - 1; `None` for small strain, which does not depend on C.
+    pub fn new(strain: Strain, material: &Elasticity, c_less_one: &Matrix3<f64>) -> Option<Self> {
+        match strain {
+            Strain::Small => None,
+            Strain::Corotational => {
+                Some(Self::Corotational(Corotational::new(material, c_less_one)))
+            }
+            Strain::NeoHookean => Some(Self::NeoHookean(NeoHookean::new(material, c_less_one))),
+        }
+    }
+
+    /// Energy per volume without load, W (Pa).
+    pub fn energy(&self) -> f64 {
+        match self {
+            Self::Corotational(at) => at.energy(),
+            Self::NeoHookean(at) => at.energy(),
+        }
+    }
+
+    /// The second Piola-Kirchhoff stress, S = 2 dW/dC (Pa).
+    pub fn stress(&self) -> Matrix3<f64> {
+        match self {
+            Self::Corotational(at) => at.stress(),
+            Self::NeoHookean(at) => at.stress(),
+        }
+    }
+
+    /// The change of S (Pa) by a change of C.
+    pub fn change(&self, dc: &Matrix3<f64>) -> Matrix3<f64> {
+        match self {
+            Self::Corotational(at) => at.change(dc),
+            Self::NeoHookean(at) => at.change(dc),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RUBBER: Elasticity = Elasticity {
+        young: 1e6,
+        poisson: 0.4,
+        density: 1000.0,
+    };
+
+    fn strained(scale: f64) -> Matrix3<f64> {
+        let h = Matrix3::new(0.3, 0.2, -0.1, 0.0, -0.2, 0.15, 0.1, -0.05, 0.1) * scale;
+        h + h.transpose() + h.transpose() * h
+    }
+
+    /// S = 2 dW/dC and its change, by central differences; small strains of any size have Hooke's stress and energy.
+    #[test]
+    fn stress_and_tangent_are_derivatives_of_the_energy() {
+        for strain in [Strain::Corotational, Strain::NeoHookean] {
+            let at = |c: &Matrix3<f64>| Response::new(strain, &RUBBER, c).unwrap();
+            let (c, step) = (strained(1.0), 1e-6);
+            let here = at(&c);
+            for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+                let mut dc = Matrix3::zeros();
+                (dc[(i, j)], dc[(j, i)]) = (1.0, 1.0);
+                let [low, high] = [-step, step].map(|s| at(&(c + dc * s)));
+                let slope = (high.energy() - low.energy()) / (2.0 * step);
+                let expected = 0.5 * here.stress().component_mul(&dc).sum();
+                assert!(
+                    (slope - expected).abs() < 1e-4 * RUBBER.young * 1e-3,
+                    "{strain:?}"
+                );
+                let change = (high.stress() - low.stress()) / (2.0 * step);
+                let off = (change - here.change(&dc)).norm();
+                assert!(off < 1e-8 * change.norm(), "{strain:?}: {off:e}");
+            }
+            for scale in [1e-3, 1e-6, 1e-9, 1e-12] {
+                let c = strained(scale);
+                let e = c * 0.5;
+                let (l, g) = (RUBBER.lambda(), RUBBER.shear());
+                let hooke = Matrix3::identity() * (l * e.trace()) + e * (2.0 * g);
+                let off = (at(&c).stress() - hooke).norm() / hooke.norm();
+                assert!(
+                    off < 3.0 * scale + 1e-13,
+                    "{strain:?} at {scale:e}: {off:e}"
+                );
+                let energy = 0.5 * hooke.component_mul(&e).sum();
+                let off = (at(&c).energy() / energy - 1.0).abs();
+                assert!(
+                    off < 3.0 * scale + 1e-12,
+                    "{strain:?} at {scale:e}: {off:e}"
+                );
+            }
+        }
+    }
+}
