@@ -20,6 +20,7 @@
 
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use std::cmp::Ordering;
 use std::fmt::Debug;
 
 /// The step that a system is taken through.
@@ -125,6 +126,17 @@ impl Nodes {
         }
         nodes.count = terms.len() as u8;
         Some(nodes)
+    }
+
+    /// An order of points, by nodes and weights; equal where both are.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let key = |p: &Self| (p.count, p.ids);
+        let weights = self.weights.iter().zip(&other.weights);
+        key(self).cmp(&key(other)).then_with(|| {
+            weights.fold(Ordering::Equal, |order, (a, b)| {
+                order.then_with(|| a.total_cmp(b))
+            })
+        })
     }
 
     /// The nodes and their weights.
@@ -341,6 +353,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         compliance_by_solving(self, nodes)
     }
 
+    /// The same of points that are sums of nodes.
+    fn point_compliance(&self, points: &[Nodes]) -> Vec<S::Matrix> {
+        compliance_of_points(self, points)
+    }
+
     /// What holds and drives it, always in the same order.
     fn holders(&self) -> Vec<Holder> {
         Vec::new()
@@ -396,6 +413,32 @@ pub fn compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
         }
     }
     blocks
+}
+
+/// The blocks of points that are sums of nodes (1/kg), row by row, from those of the nodes.
+pub fn compliance_of_points<S: Space, T: DynamicalSystem<S> + ?Sized>(
+    system: &T,
+    points: &[Nodes],
+) -> Vec<S::Matrix> {
+    let terms = points.iter().flat_map(Nodes::terms);
+    let mut nodes: Vec<u32> = terms.map(|(node, _)| node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let blocks = system.compliance(&nodes);
+    let place = |node: u32| nodes.binary_search(&node).unwrap_or_default();
+    let mut out = Vec::with_capacity(points.len() * points.len());
+    for a in points {
+        for b in points {
+            let mut block = S::Matrix::uniform(0.0);
+            for (n, w) in a.terms() {
+                for (m, v) in b.terms() {
+                    block = block + blocks[place(n) * nodes.len() + place(m)].scaled(w * v);
+                }
+            }
+            out.push(block);
+        }
+    }
+    out
 }
 
 impl<S: Space> Clone for Box<dyn DynamicalSystem<S>> {

@@ -14,7 +14,7 @@ pub mod tensor;
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{
     Contactor, ContactorMotion, ContactorShape, DeformedMesh, DynamicalSystem, Holder, Nodes,
-    SystemStep, SystemWork, compliance_by_solving, von_mises,
+    SystemStep, SystemWork, compliance_by_solving, compliance_of_points, von_mises,
 };
 pub use stages::Stage;
 pub use state::Bodies;

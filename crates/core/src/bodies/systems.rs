@@ -213,6 +213,19 @@ impl<S: Space> Systems<S> {
         self.entries[system].system.compliance(nodes)
     }
 
+    /// Compliance of points of a system, see [`DynamicalSystem::point_compliance`].
+    pub fn point_compliance(&self, system: usize, points: &[Nodes]) -> Vec<S::Matrix> {
+        self.entries[system].system.point_compliance(points)
+    }
+
+    /// The velocity without contacts of a point of a system (m/s).
+    pub fn free_velocity_at(&self, system: usize, point: &Nodes) -> S::Vector {
+        let terms = point.terms();
+        terms.fold(S::Vector::zero(), |sum, (node, weight)| {
+            sum + self.free_velocity_of(system, node) * weight
+        })
+    }
+
     /// The nodes that a contact with a contactor's body acts on, at an arm from its centre (m).
     pub fn contact_nodes(&self, carrier: Carrier, arm: &S::Vector) -> Nodes {
         let entry = &self.entries[carrier.system as usize];

@@ -10,6 +10,9 @@ use rstar::{AABB, RTree};
 /// Bounding box of a segment, with the segment's index and its shift along x (m).
 type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, f64)>;
 
+/// Distance from a vertex, relative to its segment, up to which it is one of rounding.
+const AT_VERTEX: f64 = 1e-9;
+
 /// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it determines how
 /// often they are rebuilt.
 const MARGIN: f64 = 0.25;
@@ -210,9 +213,17 @@ impl Surface<Dim2> for Polyline {
             // Beyond both faces of a valley means behind them.
             let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
             let length = from.norm();
-            if length < reach && length > 0.0 && nearest {
-                let distance = if valley { -length } else { length };
-                let normal = from / distance;
+            if length < reach && nearest {
+                // At the vertex itself, and behind one that is no valley, a direction from the vertex means nothing.
+                let of = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
+                let mean = (of(along) + of(next.unwrap_or(along))).normalize();
+                let behind = !valley && next.is_some() && from.dot(&mean) < 0.0;
+                let (normal, distance) = if behind || length <= AT_VERTEX * along.norm() {
+                    (mean, from.dot(&mean))
+                } else {
+                    let distance = if valley { -length } else { length };
+                    (from / distance, distance)
+                };
                 let closest_point = vertex + Vector2::new(shift, 0.0);
                 let feature = if at_end { 2 * k + 1 } else { u32::MAX };
                 out.push(ClosestPoint {
@@ -420,6 +431,32 @@ mod tests {
 
     fn chain(points: &[[f64; 2]], period: Option<f64>) -> Polyline {
         Polyline::new(points.iter().map(|p| Vector2::from(*p)).collect(), period).unwrap()
+    }
+
+    /// Points that lie on vertices of a flat chain to rounding, above it and in it, have one contact each with the normal of the chain.
+    #[test]
+    fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
+        let size = 0.1;
+        for slope in [0.0, 0.3] {
+            let at = |x: f64| Vector2::new(x, slope * x);
+            let points = (0..=20).map(|k| at(f64::from(k) * size)).collect();
+            let line = Polyline::new(points, None).unwrap();
+            let outward = Vector2::new(-slope, 1.0).normalize();
+            for k in 1..20 {
+                for off in [0.0, 1e-17, -1e-17, 3e-17, -3e-17] {
+                    for gap in [0.0, 1e-17, -1e-17, 1e-12, -1e-12, 1e-3, -1e-3] {
+                        let centre = at(f64::from(k) * size + off) + outward * gap;
+                        let mut out = Vec::new();
+                        line.touches(&centre, 0.01, &mut out);
+                        assert!(!out.is_empty(), "{slope} {k} {off:e} {gap:e}");
+                        for touch in out {
+                            assert!((touch.normal - outward).norm() < 1e-12, "{touch:?}");
+                            assert!((touch.distance - gap).abs() < 1e-15, "{touch:?}");
+                        }
+                    }
+                }
+            }
+        }
     }
 
     #[test]

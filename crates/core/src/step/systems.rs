@@ -2,7 +2,7 @@
 //! those of rigid bodies.
 
 use super::{Simulation, StepError};
-use crate::bodies::{ContactorShape, DynamicalSystem, SystemStep};
+use crate::bodies::{ContactorShape, DynamicalSystem, Nodes, SystemStep};
 use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
@@ -14,8 +14,10 @@ use crate::solve::{NodalSystem, Side};
 pub(super) struct SystemContacts<S: Space> {
     /// The sides of each contact, in the network's order; none where both are rigid, and empty without systems.
     sides: Vec<Option<[Side<S>; 2]>>,
-    /// Each system with its touched nodes: their velocities without contacts, and their compliance.
+    /// What the solver knows of each system: touched nodes, or points between them.
     nodal: Vec<NodalSystem<S>>,
+    /// By system the points that stand for nodes; empty where nodes stand for themselves.
+    points: Vec<Vec<Nodes>>,
 }
 
 impl<S: Space> Default for SystemContacts<S> {
@@ -23,8 +25,23 @@ impl<S: Space> Default for SystemContacts<S> {
         Self {
             sides: Vec::new(),
             nodal: Vec::new(),
+            points: Vec::new(),
         }
     }
+}
+
+/// The different points in an order of their own, where they are fewer than the nodes that they are sums of, and not these
+/// themselves: a contact on a facet is then one unknown of the solver and not one for each vertex.
+fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
+    if points.iter().all(|point| point.terms().count() == 1) {
+        return Vec::new();
+    }
+    points.sort_by(Nodes::order);
+    points.dedup_by(|a, b| a.order(b).is_eq());
+    if points.len() >= nodes {
+        points.clear();
+    }
+    points
 }
 
 impl<S: Space> Simulation<S> {
@@ -154,6 +171,7 @@ impl<S: Space> Simulation<S> {
     pub(super) fn forget_system_contacts(&mut self) {
         self.workspace.systems.sides.clear();
         self.workspace.systems.nodal.clear();
+        self.workspace.systems.points.clear();
     }
 
     /// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
@@ -164,33 +182,69 @@ impl<S: Space> Simulation<S> {
         }
         let contacts = self.state.network.contacts.iter();
         let sides: Vec<_> = contacts.map(|contact| self.sides(contact)).collect();
-        let mut touched: Vec<Vec<u32>> = vec![Vec::new(); self.state.systems.len()];
+        let systems = self.state.systems.len();
+        let mut touched: Vec<Vec<u32>> = vec![Vec::new(); systems];
+        let mut places: Vec<Vec<Nodes>> = vec![Vec::new(); systems];
         for side in sides.iter().flatten().flatten() {
             if let Side::Nodes { system, nodes } = side {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
+                places[*system as usize].push(*nodes);
             }
         }
-        let mut known = std::mem::take(&mut self.workspace.systems.nodal).into_iter();
-        let nodal = touched.into_iter().enumerate().map(|(system, mut nodes)| {
+        let before = std::mem::take(&mut self.workspace.systems);
+        let mut known = before.nodal.into_iter().zip(before.points);
+        let mut found = SystemContacts {
+            sides,
+            ..SystemContacts::default()
+        };
+        for (system, (mut nodes, points)) in touched.into_iter().zip(places).enumerate() {
             nodes.sort_unstable();
             nodes.dedup();
-            if let Some(same) = known.next().filter(|known| known.nodes == nodes) {
-                return same;
+            let points = fewer_points(points, nodes.len());
+            if !points.is_empty() {
+                nodes = (0..points.len() as u32).collect();
             }
-            let of = |node: &u32| self.state.systems.free_velocity_of(system, *node);
-            let free = nodes.iter().map(of).collect();
-            let compliance = self.state.systems.compliance(system, &nodes);
-            NodalSystem::new(nodes, free, compliance)
-        });
-        self.workspace.systems = SystemContacts {
-            nodal: nodal.collect(),
-            sides,
-        };
+            let same = known.next();
+            let same = same.filter(|(nodal, of)| nodal.nodes == nodes && *of == points);
+            let nodal = same.map_or_else(|| self.nodal(system, nodes, &points), |(nodal, _)| nodal);
+            found.nodal.push(nodal);
+            found.points.push(points);
+        }
+        self.workspace.systems = found;
+    }
+
+    /// A system as the solver sees it, by nodes or, where there are any, by points.
+    fn nodal(&self, system: usize, nodes: Vec<u32>, points: &[Nodes]) -> NodalSystem<S> {
+        let systems = &self.state.systems;
+        if points.is_empty() {
+            let free = nodes.iter().map(|n| systems.free_velocity_of(system, *n));
+            let free = free.collect();
+            let compliance = systems.compliance(system, &nodes);
+            return NodalSystem::new(nodes, free, compliance);
+        }
+        let free = points.iter().map(|p| systems.free_velocity_at(system, p));
+        let free = free.collect();
+        NodalSystem::new(nodes, free, systems.point_compliance(system, points))
     }
 
     /// Hands systems, as far as contacts see them, and all contacts to the solver.
     pub(super) fn pose_with_systems(&mut self) {
-        let SystemContacts { sides, nodal } = &self.workspace.systems;
+        let SystemContacts {
+            sides,
+            nodal,
+            points,
+        } = &self.workspace.systems;
+        let posed = |side: &Side<S>| match side {
+            Side::Nodes { system, nodes } => {
+                let points = &points[*system as usize];
+                let at = points.binary_search_by(|point| point.order(nodes));
+                Side::Nodes {
+                    system: *system,
+                    nodes: at.map_or(*nodes, |at| Nodes::one(at as u32)),
+                }
+            }
+            Side::Rigid { .. } => side.clone(),
+        };
         let problem = &mut self.workspace.problem;
         for system in nodal {
             problem.push_system(system.clone());
@@ -199,7 +253,8 @@ impl<S: Space> Simulation<S> {
             match sides {
                 None => problem.push(form),
                 Some(sides) => {
-                    let known = problem.push_between(form, sides);
+                    let sides = sides.each_ref().map(posed);
+                    let known = problem.push_between(form, &sides);
                     debug_assert!(known, "all nodes of the sides were pushed");
                 }
             }
@@ -215,10 +270,20 @@ impl<S: Space> Simulation<S> {
             return Ok(());
         }
         let impulses = self.workspace.problem.node_impulses();
-        let touched = self.workspace.systems.nodal.iter().zip(impulses);
-        for (system, (nodal, impulses)) in touched.enumerate() {
-            let impulses = nodal.nodes.iter().copied().zip(impulses);
-            self.state.systems.apply(system, impulses);
+        let SystemContacts { nodal, points, .. } = &self.workspace.systems;
+        let touched = nodal.iter().zip(points).zip(impulses);
+        for (system, ((nodal, points), impulses)) in touched.enumerate() {
+            if points.is_empty() {
+                let impulses = nodal.nodes.iter().copied().zip(impulses);
+                self.state.systems.apply(system, impulses);
+            } else {
+                let shares = points.iter().zip(impulses).flat_map(|(point, impulse)| {
+                    point
+                        .terms()
+                        .map(move |(node, weight)| (node, impulse * weight))
+                });
+                self.state.systems.apply(system, shares);
+            }
         }
         if let Some(name) = self.state.systems.not_finite() {
             return Err(StepError::SystemNotFinite {

@@ -91,6 +91,9 @@ impl<S: Space> SystemRow<S> {
         solver_bodies: &mut [SolverBody<S>],
         systems: &mut [NodalSystem<S>],
     ) {
+        if *p == S::Vector::zero() {
+            return;
+        }
         for (side, sign) in self.rigid_sides() {
             let body = &mut solver_bodies[side.body as usize];
             let p = *p * sign;
