@@ -426,17 +426,24 @@ pub fn compliance_of_points<S: Space, T: DynamicalSystem<S> + ?Sized>(
     nodes.dedup();
     let blocks = system.compliance(&nodes);
     let place = |node: u32| nodes.binary_search(&node).unwrap_or_default();
+    let terms = |point: &Nodes| point.terms().map(|(n, w)| (place(n), w)).collect();
+    let terms: Vec<Vec<(usize, f64)>> = points.iter().map(terms).collect();
+    let sum = |row: &[S::Matrix], terms: &[(usize, f64)]| {
+        let zero = S::Matrix::uniform(0.0);
+        terms
+            .iter()
+            .fold(zero, |sum, (at, w)| sum + row[*at].scaled(*w))
+    };
+    // From an impulse on a point to all nodes, point by point, and from there to the points.
+    let mut of_nodes = Vec::with_capacity(points.len() * nodes.len());
+    for point in &terms {
+        let rows = blocks.chunks_exact(nodes.len());
+        of_nodes.extend(rows.map(|row| sum(row, point)));
+    }
     let mut out = Vec::with_capacity(points.len() * points.len());
-    for a in points {
-        for b in points {
-            let mut block = S::Matrix::uniform(0.0);
-            for (n, w) in a.terms() {
-                for (m, v) in b.terms() {
-                    block = block + blocks[place(n) * nodes.len() + place(m)].scaled(w * v);
-                }
-            }
-            out.push(block);
-        }
+    for a in &terms {
+        let by_point = of_nodes.chunks_exact(nodes.len());
+        out.extend(by_point.map(|row| sum(row, a)));
     }
     out
 }
