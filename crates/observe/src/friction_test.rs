@@ -32,6 +32,8 @@ struct Followed<S: Space> {
     layer: Layer<S>,
     /// Displacement of the body so far (m).
     slide: f64,
+    /// Tangential force of the last step (N; N/m).
+    force: f64,
     /// Volume worn off first bodies (m^3; m^3/m).
     worn: f64,
     /// Normal force times sliding distance, over the run and what it jumped over (N m; N).
@@ -49,6 +51,7 @@ impl<S: Space> FrictionTest<S> {
                 cycles,
                 layer: Layer::new(s),
                 slide: 0.0,
+                force: 0.0,
                 worn: 0.0,
                 load_path: 0.0,
             },
@@ -67,12 +70,13 @@ impl<S: Space> FrictionTest<S> {
     /// Q, P and the slide of the last step.
     fn measure(&self, s: &Simulation<S>) -> Sample {
         let [q, slide] = self.body.drive(s);
+        let theta = s.options.scheme.theta;
         Sample {
             time: s.state.time,
             q,
             p: self.body.normal_force(s),
             slide,
-            work: q * slide,
+            work: self.body.work([q, slide], self.state.force, theta),
         }
     }
 }
@@ -95,6 +99,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         let work = self.sample.work;
         self.state.layer.follow(s, Some((&self.body, work)));
         self.state.worn += report.totals.worn_first;
+        self.state.force = self.sample.q;
         let after = self.cumulated(s);
         let (sample, state) = (&self.sample, &mut self.state);
         state.slide += sample.slide;

@@ -94,6 +94,15 @@ impl RubbedBody {
         }
     }
 
+    /// Work of that force over the step (J; J/m in 2D), with the force of the step before (N; N/m). The force of a holder is that at t + theta h:
+    /// at the middle of the step it lies between the two, and the sum over a loop is its area.
+    pub fn work(&self, [force, slide]: [f64; 2], before: f64, theta: f64) -> f64 {
+        match self.rubbed {
+            Rubbed::Driven(_) => force * slide,
+            Rubbed::System { .. } => (force - (theta - 0.5) * (force - before)) * slide,
+        }
+    }
+
     /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in compression.
     pub fn normal_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
         let pushed = match self.rubbed {

@@ -61,6 +61,7 @@ impl Stretch {
         body: Option<&RubbedBody>,
     ) -> Result<Self, StepError> {
         let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
+        let mut force = body.map_or(0.0, |body| body.drive(s)[0]);
         let mut stretch = Self {
             converged: true,
             ..Self::default()
@@ -79,9 +80,10 @@ impl Stretch {
             stretch.iterations = stretch.iterations.max(report.solver.iterations);
             sums.wear += report.totals.worn_first;
             if let Some(body) = body {
-                let [force, slide] = body.drive(s);
-                sums.work += force * slide;
-                sums.load_path += body.normal_force(s) * slide.abs();
+                let drive = body.drive(s);
+                sums.work += body.work(drive, force, s.options.scheme.theta);
+                force = drive[0];
+                sums.load_path += body.normal_force(s) * drive[1].abs();
             }
         }
         sums.friction_energy = s.state.energy.friction - friction;
