@@ -405,7 +405,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         if contactor.shape != ContactorShape::Surface {
             return None;
         }
-        S::surface(self.surface_vertices(contactor), &part.facets).ok()
+        S::surface(self.surface_vertices(contactor), &part.facets, None).ok()
     }
 
     fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {

@@ -12,13 +12,15 @@ use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 
 /// A dimension for which this crate compiles its bodies.
 pub trait Deformable: Space {
-    /// The surface of vertices (m) and, in space, of triangles between them.
+    /// The surface of vertices (m) and, in space, of triangles between them; in the plane with a period along x (m), of which the last vertex is
+    /// the image of the first.
     ///
     /// # Errors
     /// Why they form no surface.
     fn surface(
         vertices: Vec<Self::Vector>,
         facets: &[[u32; 3]],
+        period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String>;
 
     /// A body of finite elements, see [`ElasticBody::new`].
@@ -40,8 +42,9 @@ impl Deformable for Dim2 {
     fn surface(
         vertices: Vec<Self::Vector>,
         _facets: &[[u32; 3]],
+        period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String> {
-        let profile = Polyline::new(vertices, None).map_err(|e| e.to_string())?;
+        let profile = Polyline::new(vertices, period).map_err(|e| e.to_string())?;
         Ok(Box::new(profile))
     }
 
@@ -60,6 +63,7 @@ impl Deformable for Dim3 {
     fn surface(
         vertices: Vec<Self::Vector>,
         facets: &[[u32; 3]],
+        _period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String> {
         let mesh = Mesh::new(vertices, facets.to_vec()).map_err(|e| e.to_string())?;
         Ok(Box::new(mesh))

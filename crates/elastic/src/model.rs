@@ -168,7 +168,7 @@ pub fn contactors<S: Deformable>(
         }
         Touching::Surface(_) => {
             let vertices = mesh.corners(&part.points);
-            if let Err(why) = S::surface(vertices, &part.facets) {
+            if let Err(why) = S::surface(vertices, &part.facets, None) {
                 return Err(BodyError::NoSurface(name.to_owned(), why));
             }
             let one = contactor(part.origin(), ContactorShape::Surface);

@@ -23,6 +23,7 @@ fn half_space<S: Space>(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfS
         fills: Fills::Below,
         position: S::Vector::zero(),
         grid,
+        repeats: false,
         reach: Reach::Infinite(1.0),
         profile: Profile::Flat,
         mass: 0.0,

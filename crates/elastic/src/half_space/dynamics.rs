@@ -213,14 +213,15 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
             at[axis] += x - base[axis];
         }
-        let mut weights = self.fixed.grid.weights::<S>(&at);
+        let repeats = self.fixed.repeats;
+        let mut weights = self.fixed.grid.weights::<S>(&at, repeats);
         for _ in 0..2 {
             let moved = weights
                 .iter()
                 .fold(S::Vector::zero(), |sum, (cell, weight)| {
                     sum + self.elastic(*cell) * *weight
                 });
-            weights = self.fixed.grid.weights::<S>(&(at - moved));
+            weights = self.fixed.grid.weights::<S>(&(at - moved), repeats);
         }
         Nodes::sum(&weights).unwrap_or(contactor.nodes)
     }
@@ -229,14 +230,20 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         if contactor.shape != ContactorShape::Surface {
             return None;
         }
-        S::surface(self.surface_vertices(contactor), &self.fixed.facets).ok()
+        let vertices = self.surface_vertices(contactor);
+        S::surface(vertices, &self.fixed.facets, self.period()).ok()
     }
 
     fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {
         let origin = self.node_position(self.origin());
+        let cells = self.fixed.grid.len() as u32;
         let vertices = self.fixed.vertices.iter();
         vertices
-            .map(|cell| self.node_position(*cell) - origin)
+            .map(|cell| {
+                let mut at = self.node_position(cell % cells) - origin;
+                at[0] += f64::from(cell / cells) * self.period().unwrap_or(0.0);
+                at
+            })
             .collect()
     }
 

@@ -70,8 +70,16 @@ impl Grid {
         out
     }
 
-    /// The cells around a place and their weights, by the shape functions of the facets; clamped to the grid.
-    pub fn weights<S: Space>(&self, at: &S::Vector) -> Vec<(u32, f64)> {
+    /// The cells around a place and their weights, by the shape functions of the facets; clamped to the grid, or along x wrapped into it
+    /// where it repeats (2D).
+    pub fn weights<S: Space>(&self, at: &S::Vector, repeats: bool) -> Vec<(u32, f64)> {
+        if repeats {
+            let s = (at[0] - self.from[0]) / self.size[0] - 0.5;
+            let cells = self.cells[0] as f64;
+            let (lower, part) = (s.floor(), s - s.floor());
+            let cell = |s: f64| (s.rem_euclid(cells) as u32).min(self.cells[0] as u32 - 1);
+            return vec![(cell(lower), 1.0 - part), (cell(lower + 1.0), part)];
+        }
         let along = |k: usize| {
             let s = (at[k] - self.from[k]) / self.size[k] - 0.5;
             let last = self.cells[k] - 1;
@@ -107,7 +115,7 @@ mod tests {
         };
         let f = |[x, y]: [f64; 2]| 1.0 + 2.0 * x - 3.0 * y;
         for at in [[-0.3, 2.9], [1.9, 2.2], [0.25, 2.375]] {
-            let weights = grid.weights::<Dim3>(&Vector3::new(at[0], at[1], 0.1));
+            let weights = grid.weights::<Dim3>(&Vector3::new(at[0], at[1], 0.1), false);
             let sum: f64 = weights
                 .iter()
                 .map(|(c, w)| w * f(grid.middle(*c as usize)))
@@ -118,7 +126,12 @@ mod tests {
             cells: [7, 1],
             ..grid
         };
-        let weights = line.weights::<Dim2>(&Vector2::new(9.0, 0.0));
+        let weights = line.weights::<Dim2>(&Vector2::new(9.0, 0.0), false);
         assert_eq!(weights, [(5, 0.0), (6, 1.0)]);
+        // From -1 to 2.5: the last cell and the first meet at 2.5.
+        for at in [2.5, -1.0] {
+            let weights = line.weights::<Dim2>(&Vector2::new(at, 0.0), true);
+            assert_eq!(weights, [(6, 0.5), (0, 0.5)]);
+        }
     }
 }

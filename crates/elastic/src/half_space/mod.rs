@@ -70,6 +70,8 @@ pub struct HalfSpaceSpec<'a, S: Space> {
     pub grid: Grid,
     /// How far it reaches.
     pub reach: Reach,
+    /// Whether the surface repeats along x with the extent of its cells (2D), in a scene with that period.
+    pub repeats: bool,
     /// Shape of its surface.
     pub profile: Profile,
     /// Mass that moves with it (kg; kg/m in 2D), zero for none.
@@ -101,7 +103,9 @@ struct Fixed<S: Space> {
     rolling: Option<TimeFunction>,
     touching: Cells,
     surface_material: u16,
-    /// Cells in the order of the vertices of the surface, and its facets.
+    repeats: bool,
+    /// Cells in the order of the vertices of the surface, and its facets. Where the surface repeats, one past the last cell stands for the
+    /// image of the first.
     vertices: Vec<u32>,
     facets: Vec<[u32; 3]>,
 }
@@ -154,7 +158,8 @@ impl<S: Deformable> HalfSpace<S> {
         if let Some(bad) = places.iter().find(|p| (0..S::D).any(|k| !p[k].is_finite())) {
             return Err(HalfSpaceError::Height(bad[0]));
         }
-        let mut vertices: Vec<u32> = (0..grid.len() as u32).collect();
+        let images = u32::from(spec.repeats);
+        let mut vertices: Vec<u32> = (0..grid.len() as u32 + images).collect();
         let mut facets = grid.facets(S::D);
         if spec.fills == Fills::Above {
             match S::D {
@@ -174,6 +179,7 @@ impl<S: Deformable> HalfSpace<S> {
             mass: spec.mass,
             axes: spec.axes.to_vec(),
             rolling: spec.rolling,
+            repeats: spec.repeats,
             touching: spec.touching,
             surface_material: spec.surface_material,
             vertices,
@@ -196,9 +202,15 @@ impl<S: Deformable> HalfSpace<S> {
         if spec.touching == Cells::Surface {
             let vertices =
                 fretwork_core::bodies::DynamicalSystem::surface_vertices(&body, &body.whole());
-            S::surface(vertices, &body.fixed.facets).map_err(HalfSpaceError::NoSurface)?;
+            S::surface(vertices, &body.fixed.facets, body.period())
+                .map_err(HalfSpaceError::NoSurface)?;
         }
         Ok(body)
+    }
+
+    /// Length with which its surface repeats along x (m).
+    fn period(&self) -> Option<f64> {
+        self.fixed.repeats.then(|| self.fixed.grid.extent()[0])
     }
 
     /// The contactor of a surface.

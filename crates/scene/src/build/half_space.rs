@@ -1,5 +1,6 @@
 //! Elastic half-spaces: their cells, profiles and drives.
 
+use super::surface::Roughness;
 use super::{Builder, Dimensional, Origin};
 use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
 use crate::material::Sourced;
@@ -33,14 +34,10 @@ impl<S: Dimensional> Builder<'_, S> {
         spec: &HalfSpaceSpec,
         properties: &[BTreeMap<String, Sourced>],
     ) -> Result<Box<dyn DynamicalSystem<S>>, InputError> {
-        if self.shapes.periodic.period.iter().any(Option::is_some) {
-            let message =
-                "elastic half-spaces do not repeat with the period of a case; take `periodic` away";
-            return Err(self.fail(here, message));
-        }
         let (elasticity, material) = self.elasticity(here, &spec.material, properties)?;
         let grid = self.cells(here, spec)?;
         let axes = self.holder(&format!("{here}.dofs"), spec)?;
+        let repeats = self.repeats(here, spec, &grid)?;
         if let Some(rolling) = &spec.rolling {
             self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
         }
@@ -52,6 +49,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 Side::Above => Fills::Above,
             },
             position: self.vector(&format!("{here}.position"), &spec.position)?,
+            repeats,
             reach: self.reach(&format!("{here}.depth"), spec)?,
             profile: self.height_profile(&format!("{here}.profile"), spec, &grid)?,
             grid,
@@ -137,6 +135,25 @@ impl<S: Dimensional> Builder<'_, S> {
         }
     }
 
+    /// Whether the surface repeats with the period of the case.
+    fn repeats(&self, here: &str, spec: &HalfSpaceSpec, grid: &Grid) -> Result<bool, InputError> {
+        let [x, across @ ..] = self.shapes.periodic.period;
+        if across.iter().any(Option::is_some) || (S::D == 3 && x.is_some()) {
+            let message = "an elastic half-space can repeat along x in two dimensions; take other periods of the case away";
+            return Err(self.fail(here, message));
+        }
+        let Some(period) = x else {
+            return Ok(false);
+        };
+        if !spec.periodic || (grid.extent()[0] / period - 1.0).abs() > 1e-9 {
+            let message = format!(
+                "in a case with a period of {period} m the cells of an elastic half-space repeat with it: let them extend over {period} m, with `periodic: true`"
+            );
+            return Err(self.fail(format!("{here}.x"), message));
+        }
+        Ok(true)
+    }
+
     fn holder(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Vec<Dof>, InputError> {
         let axes = [&spec.dofs.x, &spec.dofs.y, &spec.dofs.z];
         let mut out = Vec::new();
@@ -199,6 +216,28 @@ impl<S: Dimensional> Builder<'_, S> {
                 *amplitude,
                 [positive("x", *x)?, positive("y", *y)?],
             )),
+            HalfSpaceProfile::Rough {
+                rms,
+                hurst,
+                longest,
+                shortest,
+            } => {
+                if S::D == 3 {
+                    return Err(self.fail(
+                        here,
+                        "a rough profile is one in two dimensions; give `Heights` in three",
+                    ));
+                }
+                let roughness = Roughness {
+                    points: grid.cells[0],
+                    rms: *rms,
+                    hurst: *hurst,
+                    longest: *longest,
+                    shortest: *shortest,
+                };
+                let heights = self.rough_heights(here, &roughness, grid.extent()[0])?;
+                Ok(Profile::Heights(heights))
+            }
             HalfSpaceProfile::Heights { file, scale } => {
                 let at = format!("{here}.file");
                 let path = self.folder.join(file);

@@ -172,12 +172,12 @@ impl Dimensional for Dim3 {
 }
 
 /// Parameters of a random profile, see [`ShapeSpec::RoughProfile`].
-struct Roughness {
-    points: usize,
-    rms: f64,
-    hurst: f64,
-    longest: Option<f64>,
-    shortest: f64,
+pub(super) struct Roughness {
+    pub points: usize,
+    pub rms: f64,
+    pub hurst: f64,
+    pub longest: Option<f64>,
+    pub shortest: f64,
 }
 
 /// A surface, and its offset in the frame of its body (m).
@@ -309,10 +309,28 @@ impl<S: Dimensional> Builder<'_, S> {
         height: f64,
         side: Side,
     ) -> Result<Box<dyn Surface<S>>, InputError> {
-        let bad = |message: String| self.fail(here, message);
         let Some(period) = self.shapes.periodic.period[0] else {
-            return Err(bad("a rough profile needs a periodic x".into()));
+            return Err(self.fail(here, "a rough profile needs a periodic x"));
         };
+        let points = roughness.points;
+        let z = self.rough_heights(here, roughness, period)?;
+        let x = |k: usize| period * k as f64 / points as f64;
+        let mut chain: Vec<(f64, f64)> = z
+            .iter()
+            .enumerate()
+            .map(|(k, z)| (x(k), height + z))
+            .collect();
+        chain.push((period, chain[0].1));
+        S::profile(chain, side, Some(period)).map_err(|why| self.fail(here, why))
+    }
+
+    /// Random heights at equal distances over a period (m).
+    pub(super) fn rough_heights(
+        &self,
+        here: &str,
+        roughness: &Roughness,
+        period: f64,
+    ) -> Result<Vec<f64>, InputError> {
         let Roughness {
             points,
             rms,
@@ -327,10 +345,9 @@ impl<S: Dimensional> Builder<'_, S> {
             && rms.is_finite()
             && hurst.is_finite();
         if !valid {
-            return Err(bad(
-                "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0"
-                    .into(),
-            ));
+            let message =
+                "a rough profile needs at least 3 points, rms >= 0, shortest > 0 and longest > 0";
+            return Err(self.fail(here, message));
         }
         let longest = longest.unwrap_or(period);
         self.few_terms(here, points, period, (longest, shortest))?;
@@ -339,15 +356,9 @@ impl<S: Dimensional> Builder<'_, S> {
             .bytes()
             .fold(17u64, |h, b| h.wrapping_mul(31).wrapping_add(u64::from(b)));
         let seed = self.case.seed ^ salt;
-        let z = profile::rough(points, period, rms, hurst, longest, shortest, seed);
-        let x = |k: usize| period * k as f64 / points as f64;
-        let mut chain: Vec<(f64, f64)> = z
-            .iter()
-            .enumerate()
-            .map(|(k, z)| (x(k), height + z))
-            .collect();
-        chain.push((period, chain[0].1));
-        S::profile(chain, side, Some(period)).map_err(bad)
+        Ok(profile::rough(
+            points, period, rms, hurst, longest, shortest, seed,
+        ))
     }
 
     /// A field of given heights, or of random ones of a standard deviation.

@@ -35,7 +35,7 @@ pub struct HalfSpaceSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub depth: Option<f64>,
-    /// Whether the cells and their loads repeat along the surface.
+    /// Whether the cells and their loads repeat along the surface; with them the surface itself, where the case is periodic along x.
     #[serde(default)]
     pub periodic: bool,
     /// Shape of the surface without load; flat by default.
@@ -104,6 +104,23 @@ pub enum HalfSpaceProfile {
         #[serde(default = "straight")]
         y: f64,
     },
+    /// Self-affine roughness with random phases from the seed, over the extent of the cells (2D).
+    Rough {
+        /// Root mean square height (m).
+        rms: f64,
+        /// Hurst exponent.
+        #[serde(default = "hurst")]
+        hurst: f64,
+        /// Longest wave (m); the extent by default.
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        longest: Option<f64>,
+        /// Shortest wave (m).
+        shortest: f64,
+    },
     /// Heights over the plane (m), outward, of each cell: row by row along x. A file has them as numbers, in lines along x.
     Heights {
         /// The file, beside the case.
@@ -161,6 +178,10 @@ fn below() -> Side {
 
 fn straight() -> f64 {
     f64::INFINITY
+}
+
+fn hurst() -> f64 {
+    0.8
 }
 
 fn one() -> f64 {
