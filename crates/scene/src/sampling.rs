@@ -25,7 +25,7 @@ pub struct UnresolvedDrive {
     pub aliased: bool,
 }
 
-/// The functions that the time step does not resolve: bodies, then phases, then gravity.
+/// The functions that the time step does not resolve: bodies, rigid and deformable, then phases, then gravity.
 pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
@@ -54,6 +54,29 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
                     );
                 }
             }
+        }
+    }
+    let supports = case.elastic.iter().flat_map(|body| {
+        let supports = body.supports.iter();
+        supports.map(move |s| (format!("`{}` {}", body.name, s.part), [&s.x, &s.y, &s.z]))
+    });
+    let half_spaces = case.half_spaces.iter().map(|body| {
+        let dofs = &body.dofs;
+        (format!("`{}`", body.name), [&dofs.x, &dofs.y, &dofs.z])
+    });
+    for (name, dofs) in supports.chain(half_spaces) {
+        for (axis, dof) in ["x", "y", "z"].iter().zip(dofs) {
+            for drive in dof.iter().flat_map(Dof::drives) {
+                if let Some(function) = drive.function() {
+                    let moves = matches!(drive, Dof::Displacement(_));
+                    say(format!("{name} along {axis}"), function, moves);
+                }
+            }
+        }
+    }
+    for body in &case.half_spaces {
+        if let Some(function) = &body.rolling {
+            say(format!("`{}` rolling", body.name), function, false);
         }
     }
     let phases = case.phases.iter().filter_map(|p| p.gravity_drive.as_ref());
