@@ -12,6 +12,7 @@ mod line_contact;
 mod newton;
 mod point_contact;
 mod rotation;
+mod wear;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
