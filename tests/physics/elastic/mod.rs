@@ -2,6 +2,7 @@
 
 mod bar;
 mod bending;
+mod bonds;
 mod closed_forms;
 mod elastica;
 mod extremes;
