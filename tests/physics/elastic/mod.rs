@@ -8,6 +8,7 @@ mod elastica;
 mod extremes;
 mod forces;
 mod frequency;
+mod grains;
 mod half_space;
 mod line_contact;
 mod newton;
