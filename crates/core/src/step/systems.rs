@@ -243,7 +243,7 @@ impl<S: Space> Simulation<S> {
                     nodes: at.map_or(*nodes, |at| Nodes::one(at as u32)),
                 }
             }
-            Side::Rigid { .. } => side.clone(),
+            Side::Rigid { .. } => *side,
         };
         let problem = &mut self.workspace.problem;
         for system in nodal {
