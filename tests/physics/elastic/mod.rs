@@ -2,16 +2,19 @@
 
 mod bar;
 mod bending;
+mod bonds;
 mod closed_forms;
 mod elastica;
 mod extremes;
 mod forces;
 mod frequency;
+mod grains;
 mod half_space;
 mod line_contact;
 mod newton;
 mod point_contact;
 mod rotation;
+mod wear;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};

@@ -6,6 +6,7 @@ mod command_line;
 mod deformable;
 mod files;
 mod geometry;
+mod half_space;
 mod hostile_laws;
 mod limits;
 mod magnitudes;

@@ -179,3 +179,29 @@ fn deformable_bodies() {
     };
     resumes("deformable", job, &[3]);
 }
+
+/// Half-spaces: one that wears under a friction test, and two that roll, of which a step begins with the forces of the one before.
+#[test]
+fn half_spaces() {
+    let sets = [
+        "time.end=0.03",
+        "output.checkpoint=Steps(20)",
+        "output.frames=2",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "fretting_wear_elastic",
+        sets: &sets,
+    };
+    resumes("half-spaces-wear", job, &[3]);
+    let sets = [
+        "time.end=0.03",
+        "output.checkpoint=Steps(100)",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "carter_rolling",
+        sets: &sets,
+    };
+    resumes("half-spaces-roll", job, &[4]);
+}
