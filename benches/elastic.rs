@@ -33,6 +33,8 @@ const BEYOND: f64 = 5e-6;
 /// Cells along the surface, and their size (m).
 const CELLS: usize = 512;
 const SIZE: f64 = (LENGTH + 2.0 * BEYOND) / CELLS as f64;
+/// Theta of all scenes: half-spaces have no inertia and need more than 1/2.
+const THETA: f64 = 0.6;
 /// Length of a step (s), and when timing starts (s).
 const STEP: f64 = 2.5e-5;
 const WARM: f64 = 0.0215;
@@ -244,7 +246,7 @@ fn case(first: First, coulomb: bool, folder: &Path) -> String {
     name: "layer",
     dimension: 2,
     seed: 7,
-    time: (step: {STEP:e}, end: 1.0, theta: 0.5),
+    time: (step: {STEP:e}, end: 1.0, theta: {THETA}),
     inertia_scaling: 5.8e8,
     detection: (alert: 2e-7, skin: 5e-7),
     solver: {solver},
@@ -431,7 +433,7 @@ fn parts(system: &dyn DynamicalSystem<Dim2>, time_now: f64) {
     let step = SystemStep::<Dim2> {
         time: time_now,
         h: STEP,
-        theta: 0.5,
+        theta: THETA,
         gravity: Vector2::zeros(),
     };
     let contactors = system.contactors();

@@ -84,6 +84,7 @@ fn half_space<S: Dimensional>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpace
             size: [WIDTH / n as f64; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],
         },
+        repeats: false,
         reach,
         profile: Profile::Flat,
         mass: 0.0,

@@ -47,6 +47,7 @@ fn ground<S: Dimensional>(young: f64, theta: f64, all: &[String], bodies: &str) 
             size: [size; 2],
             cells: [n, if S::D == 2 { 1 } else { n }],
         },
+        repeats: false,
         reach: Reach::Infinite(if S::D == 2 { 0.2 } else { f64::INFINITY }),
         profile: Profile::Flat,
         mass: 0.0,

@@ -11,6 +11,9 @@ use fretwork_elastic::half_space::{
 };
 use std::collections::BTreeMap;
 
+/// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 - theta)/theta in a step, and near 1/2 single steps win energy.
+const MIN_THETA: f64 = 0.55;
+
 impl<S: Dimensional> Builder<'_, S> {
     /// The half-spaces of the case, in its order.
     pub(super) fn half_spaces(
@@ -24,6 +27,13 @@ impl<S: Dimensional> Builder<'_, S> {
             self.origins
                 .extend((0..contactors).map(|_| Origin::HalfSpace(k)));
             out.push(system);
+        }
+        let theta = self.case.time.theta;
+        if !out.is_empty() && theta < MIN_THETA {
+            let message = format!(
+                "elastic half-spaces have no inertia, and at theta = {theta} their forces alternate from step to step; set `theta: 1.0` in `time`, or {MIN_THETA} at least"
+            );
+            return Err(self.fail("time.theta", message));
         }
         Ok(out)
     }
