@@ -149,8 +149,8 @@ fn sheared<S: Dimensional + Steps>(young: f64, theta: f64) -> (Vec<u64>, f64) {
     settled
 }
 
-/// At theta = 1/2 a surface that rings gives energy to what touches it, which the ledger has as negative losses by impacts: up to some per cent of
-/// all energy in a step. From 0.55 on there is none of that.
+/// At theta = 1/2 a step can win some per cent of all energy, which the ledger has as negative losses by impacts: there only the ledger and the
+/// bits are tested. From 0.55 on no step of these scenes wins any.
 fn wins_nothing<S: Dimensional + Steps>(moduli: &[f64]) {
     for young in moduli {
         for theta in [0.5, 0.55, 0.75, 1.0] {
