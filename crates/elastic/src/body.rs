@@ -472,6 +472,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             Holder {
                 part: held.part.clone(),
                 axis: usize::from(freedoms.axis[c]),
+                at: self.step.as_ref().map_or(1.0, |step| step.theta),
                 displacement: averages.as_ref().map_or(0.0, |a| a.1[c]),
                 velocity: averages.as_ref().map_or(0.0, |a| a.0[c]),
                 force,

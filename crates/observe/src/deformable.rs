@@ -24,6 +24,8 @@ pub struct Deformable {
     bodies: Vec<String>,
     /// Largest strain and rotation of each, where it takes both for small.
     distortions: Vec<Option<[f64; 2]>>,
+    /// Of each body the largest share of a force on its border.
+    borders: Vec<f64>,
 }
 
 /// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
@@ -57,6 +59,32 @@ impl SmallStrain {
     }
 }
 
+/// Share of the largest force of a cell that a cell on the border may carry.
+const BORDER: f64 = 0.01;
+
+/// Largest force on the border of what of a half-space can be loaded.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BorderLoad {
+    /// Name of the body.
+    pub body: String,
+    /// Force on a cell of the border over the largest on a cell.
+    pub share: f64,
+}
+
+impl BorderLoad {
+    /// What is wrong where the contact reaches the border.
+    pub fn warning(&self) -> Option<String> {
+        (self.share > BORDER).then(|| {
+            format!(
+                "the contact reaches the last cells of the half-space `{}`, which carry {:.0} % of the largest force of a cell; there are no loads \
+                 beyond: let its cells extend further",
+                self.body,
+                100.0 * self.share
+            )
+        })
+    }
+}
+
 impl Deformable {
     /// Of the dynamical systems of a simulation.
     pub fn of<S: Space>(s: &Simulation<S>) -> Self {
@@ -69,6 +97,7 @@ impl Deformable {
             holders: named.collect(),
             bodies: systems().map(|s| s.name().to_owned()).collect(),
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
+            borders: vec![0.0; s.state.systems.len()],
         }
     }
 }
@@ -122,6 +151,9 @@ impl<S: Space> Observer<S> for Deformable {
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
         }
+        for (most, system) in self.borders.iter_mut().zip(systems()) {
+            *most = system.load_at_border().unwrap_or(0.0).max(*most);
+        }
         let holders = systems().flat_map(|system| system.holders());
         holders.flat_map(|h| [h.displacement, h.force]).collect()
     }
@@ -148,15 +180,22 @@ impl<S: Space> Observer<S> for Deformable {
                     rotation,
                 });
             }
+            let now = system.and_then(DynamicalSystem::load_at_border);
+            if let Some(share) = now.map(|share| share.max(self.borders[k])) {
+                summary.border_loads.push(BorderLoad {
+                    body: name.clone(),
+                    share,
+                });
+            }
         }
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        encode(&self.distortions)
+        encode(&(&self.distortions, &self.borders))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        self.distortions = decode(from)?;
+        (self.distortions, self.borders) = decode(from)?;
         Ok(())
     }
 

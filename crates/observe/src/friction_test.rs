@@ -69,14 +69,13 @@ impl<S: Space> FrictionTest<S> {
 
     /// Q, P and the slide of the last step.
     fn measure(&self, s: &Simulation<S>) -> Sample {
-        let [q, slide] = self.body.drive(s);
-        let theta = s.options.scheme.theta;
+        let drive = self.body.drive(s);
         Sample {
             time: s.state.time,
-            q,
+            q: drive.force,
             p: self.body.normal_force(s),
-            slide,
-            work: self.body.work([q, slide], self.state.force, theta),
+            slide: drive.slide,
+            work: drive.work(self.state.force),
         }
     }
 }

@@ -12,6 +12,7 @@ pub mod builder;
 pub mod case;
 pub mod check;
 pub mod circuit;
+mod deep;
 pub mod gmsh;
 pub mod interfaces;
 pub mod jump;

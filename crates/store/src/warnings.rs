@@ -115,6 +115,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     for body in &summary.small_strain {
         serious("NOT SMALL STRAIN", body.warning());
     }
+    for body in &summary.border_loads {
+        serious("LOAD AT BORDER", body.warning());
+    }
     serious("ALIASED DRIVE", drives(summary, true));
     let missed = missed(summary);
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);
@@ -363,7 +366,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fretwork_observe::deformable::SmallStrain;
+    use fretwork_observe::deformable::{BorderLoad, SmallStrain};
 
     fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
         let mut summary = Summary {
@@ -395,6 +398,12 @@ mod tests {
                     rotation,
                 })
                 .into();
+            s.border_loads = [("wide", 1e-3), ("narrow", 0.5)]
+                .map(|(body, share)| BorderLoad {
+                    body: body.into(),
+                    share,
+                })
+                .into();
             s.energy.kinetic = f64::NAN;
             s.energy_residual_relative = 1e-3;
             s.phases_missed = vec!["shear".to_owned()];
@@ -415,6 +424,7 @@ mod tests {
             "ENERGY DOES NOT ADD UP",
             "TOO FAST",
             "NOT SMALL STRAIN",
+            "LOAD AT BORDER",
             "NOT CONVERGED",
             "NOT COUPLED",
             "NOT CERTIFIED",
@@ -425,7 +435,7 @@ mod tests {
         let notes: Vec<&str> = list.iter().filter(|w| !w.serious).map(|w| w.of).collect();
         assert_eq!(notes, ["OVERLAP"]);
         assert!(
-            list[5]
+            list[6]
                 .to_string()
                 .starts_with("NOT CONVERGED: 12 of 600 steps")
         );

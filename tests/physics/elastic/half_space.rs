@@ -3,6 +3,7 @@
 
 use super::*;
 use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
+use fretwork::process::cycle::{Rubbed, RubbedBody};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -263,6 +264,69 @@ fn sphere() {
     go(&mut s, 40);
     near(1.102e-5, s.state.energy.friction - before, 0.01);
     closes(&s, 1e-9);
+}
+
+/// The area of a loop depends on theta by the order of the step alone, and is the heat of friction.
+#[test]
+fn the_area_of_a_loop_does_not_depend_on_theta() {
+    let areas = [0.6, 0.8, 1.0].map(|theta| {
+        let turns = [
+            (0.0, 0.0),
+            (12.0, 0.0),
+            (32.0, 4e-6),
+            (72.0, -4e-6),
+            (112.0, 4e-6),
+        ];
+        let table = turns.map(|(k, x): (f64, f64)| (k * STEP, x));
+        let axes = [
+            Dof::Displacement(TimeFunction::Table(table.to_vec())),
+            Dof::Force(ramp(-178.9e3, 0, 10)),
+        ];
+        let size = 1e-4;
+        let cells = grid([size, 1.0], [1.3e-3, 0.5]);
+        let mut s = {
+            let mut empty = empty::<Dim2>(0.3, "[0.0, 1.0]");
+            empty.options.scheme.theta = theta;
+            let reach = Reach::Infinite(0.01);
+            let flat = half_space(RAIL, cells, &[Dof::Fixed, Dof::Fixed]);
+            put(&mut empty, HalfSpaceSpec { reach, ..flat });
+            let cylinder = HalfSpaceSpec {
+                name: "upper",
+                fills: Fills::Above,
+                profile: Profile::Paraboloid([0.5, f64::INFINITY]),
+                reach,
+                mass: 10.0,
+                touching: Cells::Points,
+                ..half_space(RAIL, cells, &axes)
+            };
+            put(&mut empty, cylinder);
+            empty
+        };
+        let rubbed = RubbedBody {
+            rubbed: Rubbed::System {
+                system: 1,
+                holder: 0,
+            },
+            along: 0,
+            normal: 1,
+        };
+        go(&mut s, 32);
+        let (mut area, mut before) = (0.0, rubbed.drive(&s).force);
+        let heat = s.state.energy.friction;
+        for _ in 0..80 {
+            go(&mut s, 1);
+            let drive = rubbed.drive(&s);
+            area += drive.work(before);
+            before = drive.force;
+        }
+        near(178.9e3, rubbed.normal_force(&s), 1e-3);
+        let heat = s.state.energy.friction - heat;
+        println!("theta {theta}: area {area:e}, heat {heat:e}");
+        near(heat, area, 0.003);
+        area
+    });
+    near(areas[2], areas[0], 0.04);
+    near(areas[2], areas[1], 0.02);
 }
 
 /// S. Fouvry, Ph. Kapsa, L. Vincent, Wear 185 (1995) 35: partial slip ends where Q = mu P and E_d/(4 Q delta) = 0.2, at the displacement

@@ -6,6 +6,7 @@ mod bonds;
 mod closed_forms;
 mod elastica;
 mod extremes;
+mod facets;
 mod forces;
 mod frequency;
 mod grains;

@@ -14,8 +14,9 @@ const AREA: &str = r#"name: "ground", material: "grain", position: [0.0, 0.0, -0
 
 /// The plane case without its period and with these half-spaces.
 fn plane(half_spaces: &str) -> String {
+    let case = with(PLANE, "periodic: (x: 0.4),", "");
     added(
-        &with(PLANE, "periodic: (x: 0.4),", ""),
+        &with(&case, "theta: 0.5", "theta: 1.0"),
         "half_spaces",
         half_spaces,
     )
@@ -23,7 +24,9 @@ fn plane(half_spaces: &str) -> String {
 
 /// The case in space with these half-spaces.
 fn solid(half_spaces: &str) -> String {
-    added(SOLID, "half_spaces", half_spaces)
+    let time = "time: (step: 1e-3, end: 0.002";
+    let case = with(SOLID, time, &format!("{time}, theta: 1.0"));
+    added(&case, "half_spaces", half_spaces)
 }
 
 fn added(case: &str, field: &str, list: &str) -> String {
@@ -93,6 +96,26 @@ fn half_spaces_without_a_mistake_run() {
         "materials: {\"grain\": \"stone\"}",
         "materials: {\"grain\": \"stone\", \"other\": \"stone\"}",
     ));
+}
+
+#[test]
+fn a_theta_at_which_they_ring() {
+    let case = plane(&format!("({LINE})"));
+    refused(
+        &with(&case, "theta: 1.0", "theta: ‸0.5"),
+        &["alternate from step to step"],
+    );
+}
+
+#[test]
+fn points_that_lie_deep_in_another_body() {
+    let case = two("touches: Surface", "touches: Points");
+    let second = "(name: \"roof\"";
+    let case = case.replace(second, &format!("‸{second}"));
+    refused(
+        &with(&case, "[0.0, 0.09]", "[0.0, -0.55]"),
+        &["points of `roof` lie 5.000e-2 m behind the surface of `ground`"],
+    );
 }
 
 #[test]
@@ -222,8 +245,12 @@ fn surfaces_that_roll_past_their_cells() {
 #[test]
 fn a_case_that_repeats() {
     refused(
-        &added(PLANE, "half_spaces", &format!("‸({LINE})")),
-        &["do not repeat with the period of a case"],
+        &added(
+            PLANE,
+            "half_spaces",
+            &format!("({})", with(LINE, "x: (", "x: ‸(")),
+        ),
+        &["repeat with it: let them extend over 0.4 m"],
     );
 }
 

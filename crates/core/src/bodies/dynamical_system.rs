@@ -153,6 +153,8 @@ pub struct Holder {
     pub part: String,
     /// Axis, 0 is x.
     pub axis: usize,
+    /// Share of the last step at which displacement and force are those given: theta, or 1 where a force is that of the end.
+    pub at: f64,
     /// Displacement of the part since the start (m).
     pub displacement: f64,
     /// Velocity of the part over the last step, v_theta (m/s).
@@ -376,6 +378,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// The largest strain and the largest rotation (rad) in it now, where it takes both for small; none of other systems.
     fn small_strain(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// Where loads must stay away from the border of what can be loaded: the largest force there over the largest at all, in the last step.
+    fn load_at_border(&self) -> Option<f64> {
         None
     }
 

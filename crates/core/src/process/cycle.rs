@@ -65,6 +65,28 @@ pub enum Rubbed {
     },
 }
 
+/// Force and sliding of a body that is rubbed, over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// Tangential force that moves it (N; N/m in 2D).
+    pub force: f64,
+    /// Its sliding over the step (m), signed.
+    pub slide: f64,
+    /// Share of the step at which the force is this; 1/2 of a mean.
+    pub at: f64,
+}
+
+impl Drive {
+    /// Work over the step (J; J/m in 2D) with the force at its middle, which lies between this and that of the step before (N; N/m):
+    /// the sum over a loop is its area.
+    pub fn work(&self, before: f64) -> f64 {
+        if self.at == 0.5 {
+            return self.force * self.slide;
+        }
+        (self.force - (self.at - 0.5) * (self.force - before)) * self.slide
+    }
+}
+
 /// A body that is rubbed along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RubbedBody {
@@ -77,29 +99,24 @@ pub struct RubbedBody {
 }
 
 impl RubbedBody {
-    /// Tangential force that moves it, the mean over the last step (N; N/m in 2D), and its sliding over that step (m), signed. Of a
-    /// deformable body they are those of the holder.
-    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> [f64; 2] {
+    /// What its drive did in the last step. Of a deformable body that is its holder.
+    pub fn drive<S: Space>(&self, s: &Simulation<S>) -> Drive {
         let h = s.options.scheme.h;
         match self.rubbed {
-            Rubbed::Driven(place) => [
-                -s.state.received[place].0[self.along] / h,
-                h * step_velocity(s, place)[self.along],
-            ],
+            Rubbed::Driven(place) => Drive {
+                force: -s.state.received[place].0[self.along] / h,
+                slide: h * step_velocity(s, place)[self.along],
+                at: 0.5,
+            },
             Rubbed::System { system, holder } => {
                 let holders = s.state.systems.get(system).map(|s| s.holders());
                 let held = holders.as_ref().and_then(|h| h.get(holder));
-                held.map_or([0.0; 2], |held| [held.force, h * held.velocity])
+                held.map_or_else(Drive::default, |held| Drive {
+                    force: held.force,
+                    slide: h * held.velocity,
+                    at: held.at,
+                })
             }
-        }
-    }
-
-    /// Work of that force over the step (J; J/m in 2D), with the force of the step before (N; N/m). The force of a holder is that at t + theta h:
-    /// at the middle of the step it lies between the two, and the sum over a loop is its area.
-    pub fn work(&self, [force, slide]: [f64; 2], before: f64, theta: f64) -> f64 {
-        match self.rubbed {
-            Rubbed::Driven(_) => force * slide,
-            Rubbed::System { .. } => (force - (theta - 0.5) * (force - before)) * slide,
         }
     }
 

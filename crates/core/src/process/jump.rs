@@ -77,6 +77,8 @@ pub struct Jumps {
     worn: (f64, f64),
     /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far (J; J/m).
     current: (u32, f64),
+    /// Its tangential force in the last step (N; N/m).
+    force: f64,
     /// Steps of a cycle, and of the whole run.
     steps: [u64; 2],
     /// Work of the last cycle that represents only itself (J; J/m).
@@ -125,6 +127,7 @@ impl Jumps {
             test,
             worn: (0.0, 0.0),
             current: (0, 0.0),
+            force: 0.0,
             steps,
             work: 0.0,
             number: clock.number(s.state.time + s.options.scheme.h),
@@ -188,8 +191,9 @@ impl Jumps {
         if self.current.0 != cycle {
             self.current = (cycle, 0.0);
         }
-        let [force, slide] = self.test.drive(s);
-        self.current.1 += force * slide;
+        let drive = self.test.drive(s);
+        self.current.1 += drive.work(self.force);
+        self.force = drive.force;
     }
 
     /// Ends a cycle, and says what the next one stands for.

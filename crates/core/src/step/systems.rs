@@ -319,10 +319,8 @@ impl<S: Space> Simulation<S> {
         })?;
         for system in &changed {
             let nodes = std::mem::take(&mut self.workspace.systems.nodal[*system].nodes);
-            let of = |node: &u32| self.state.systems.free_velocity_of(*system, *node);
-            let free = nodes.iter().map(of).collect();
-            let compliance = self.state.systems.compliance(*system, &nodes);
-            self.workspace.systems.nodal[*system] = NodalSystem::new(nodes, free, compliance);
+            let again = self.nodal(*system, nodes, &self.workspace.systems.points[*system]);
+            self.workspace.systems.nodal[*system] = again;
         }
         if !changed.is_empty() {
             for (k, form) in self.workspace.forms.iter_mut().enumerate() {

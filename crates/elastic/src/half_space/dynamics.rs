@@ -285,7 +285,8 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
             let (mut displacement, mut velocity, mut force) = (0.0, 0.0, 0.0);
             if let Some(step) = &self.step {
                 velocity = self.average(c, step.theta);
-                displacement = self.start[0][c] + step.h * step.theta * velocity;
+                // Forces are those that leave the displacement of the end of the step.
+                displacement = self.start[0][c] + step.h * velocity;
                 force = if c == self.rolled() {
                     -self.force[c]
                 } else {
@@ -295,6 +296,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
             Holder {
                 part: part.to_owned(),
                 axis,
+                at: 1.0,
                 displacement,
                 velocity,
                 force,
@@ -304,6 +306,26 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         let rolling = self.fixed.rolling.as_ref();
         let rolling = rolling.map(|_| ("rolling", 0, self.rolled()));
         axes.chain(rolling).map(one).collect()
+    }
+
+    fn load_at_border(&self) -> Option<f64> {
+        let grid = &self.fixed.grid;
+        if self.fixed.kernel.is_periodic() {
+            return None;
+        }
+        let forces = (0..grid.len()).map(|c| (c, self.entries(&self.force, c).norm()));
+        let on_border = |cell: usize| {
+            let place = grid.place(cell);
+            (0..S::D - 1).any(|k| place[k] == 0 || place[k] + 1 == grid.cells[k])
+        };
+        let (mut border, mut most) = (0.0, 0.0f64);
+        for (cell, force) in forces {
+            most = most.max(force);
+            if on_border(cell) {
+                border = force.max(border);
+            }
+        }
+        Some(if most > 0.0 { border / most } else { 0.0 })
     }
 
     fn has_equal_points(&self) -> bool {

@@ -61,7 +61,7 @@ impl Stretch {
         body: Option<&RubbedBody>,
     ) -> Result<Self, StepError> {
         let (mut friction, mut bonds) = (s.state.energy.friction, damage(s));
-        let mut force = body.map_or(0.0, |body| body.drive(s)[0]);
+        let mut force = body.map_or(0.0, |body| body.drive(s).force);
         let mut stretch = Self {
             converged: true,
             ..Self::default()
@@ -81,9 +81,9 @@ impl Stretch {
             sums.wear += report.totals.worn_first;
             if let Some(body) = body {
                 let drive = body.drive(s);
-                sums.work += body.work(drive, force, s.options.scheme.theta);
-                force = drive[0];
-                sums.load_path += body.normal_force(s) * drive[1].abs();
+                sums.work += drive.work(force);
+                force = drive.force;
+                sums.load_path += body.normal_force(s) * drive.slide.abs();
             }
         }
         sums.friction_energy = s.state.energy.friction - friction;

@@ -12,7 +12,7 @@ pub use self::fracture::{BondEnergies, FractureSummary, Reference};
 
 use crate::accuracy::AccuracyReport;
 use crate::biaxial::Outcome;
-use crate::deformable::SmallStrain;
+use crate::deformable::{BorderLoad, SmallStrain};
 use crate::error_estimate::Repeats;
 pub use crate::first_bodies::BodyWear;
 use crate::fretting;
@@ -177,6 +177,9 @@ pub struct Summary {
     /// Largest strain and rotation of deformable bodies in small strain; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub small_strain: Vec<SmallStrain>,
+    /// Loads on the border of half-spaces; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub border_loads: Vec<BorderLoad>,
     /// Diagnostics of whether the step was small enough to detect every contact in time.
     #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,

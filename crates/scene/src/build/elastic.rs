@@ -143,7 +143,7 @@ impl<S: Dimensional> Builder<'_, S> {
             // The size of a point is half of the distance to the next.
             if widest > 0.0 && smallest < widest && !self.case.grains.is_empty() {
                 let message = format!(
-                    "grains down to a radius of {smallest:.3e} m fit between the points of `{}`, {:.3e} m apart; let it touch as `Surface`, or                      make its elements smaller",
+                    "grains down to a radius of {smallest:.3e} m fit between the points of `{}`, {:.3e} m apart; let it touch as `Surface`, or make its elements or cells smaller",
                     system.name(),
                     2.0 * widest
                 );

@@ -49,6 +49,15 @@ impl<S: Dimensional> Builder<'_, S> {
         let axes = self.holder(&format!("{here}.dofs"), spec)?;
         let repeats = self.repeats(here, spec, &grid)?;
         if let Some(rolling) = &spec.rolling {
+            let moves = match spec.profile {
+                HalfSpaceProfile::Flat | HalfSpaceProfile::Summit { .. } => false,
+                HalfSpaceProfile::Wave { x, .. } => x.is_finite(),
+                HalfSpaceProfile::Rough { .. } | HalfSpaceProfile::Heights { .. } => true,
+            };
+            if moves || spec.wears.is_some() {
+                let message = "the profile and the scar of a half-space stay in place, and its material passes: a surface that rolls is flat, a summit, or a wave across; take `rolling` away, or give it such a profile without `wears`";
+                return Err(self.fail(format!("{here}.rolling"), message));
+            }
             self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
         }
         let built = S::half_space(Parts {
@@ -213,7 +222,8 @@ impl<S: Dimensional> Builder<'_, S> {
             if value > 0.0 {
                 return Ok(value);
             }
-            let message = format!("it must be positive, got {value} m");
+            let message =
+                format!("the length along {name} of a profile must be positive, got {value} m");
             Err(self.fail(format!("{here}.{name}"), message))
         };
         match &spec.profile {
@@ -222,10 +232,25 @@ impl<S: Dimensional> Builder<'_, S> {
                 positive("x", *x)?,
                 positive("y", *y)?,
             ])),
-            HalfSpaceProfile::Wave { amplitude, x, y } => Ok(Profile::Wave(
-                *amplitude,
-                [positive("x", *x)?, positive("y", *y)?],
-            )),
+            HalfSpaceProfile::Wave { amplitude, x, y } => {
+                let lengths = [positive("x", *x)?, positive("y", *y)?];
+                for (k, length) in lengths.iter().enumerate().take(S::D - 1) {
+                    let (size, waves) = (grid.size[k], grid.extent()[k] / length);
+                    if *length < 4.0 * size {
+                        let message = format!(
+                            "a wave of {length} m has less than four cells of {size} m; make the cells smaller"
+                        );
+                        return Err(self.fail(here, message));
+                    }
+                    if spec.periodic && (waves - waves.round()).abs() > 1e-6 {
+                        let message = format!(
+                            "cells that repeat hold a whole number of waves, and these {waves}; change the length of the wave or the extent of the cells"
+                        );
+                        return Err(self.fail(here, message));
+                    }
+                }
+                Ok(Profile::Wave(*amplitude, lengths))
+            }
             HalfSpaceProfile::Rough {
                 rms,
                 hurst,

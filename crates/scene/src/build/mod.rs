@@ -399,6 +399,7 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         super::magnitudes::check(&simulation, &self.origins, case.time.end)
             .map_err(|f| source.locate(f))?;
+        super::deep::points(&simulation, &self.origins).map_err(|f| source.locate(f))?;
         super::check::overlaps(&mut simulation, smallest, &self.origins)
             .map_err(|f| source.locate(f))?;
         simulation.set_in_motion();
