@@ -1,10 +1,18 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 8] = [
+pub const FILES: [(&str, &str); 10] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
+    ),
+    (
+        "contact_polymer",
+        include_str!("../../../materials/contact_polymer.ron"),
+    ),
+    (
+        "contact_steel",
+        include_str!("../../../materials/contact_steel.ron"),
     ),
     (
         "glass_bead",
