@@ -1,8 +1,9 @@
 //! Elastic half-spaces in a case.
 
+use super::elastic::{one, some};
 use super::{Side, WearSpec};
 use fretwork_core::bodies::{Dof, TimeFunction};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 /// A body that is large against what touches it: its surface deforms as that of a half-space, at once and without inertia. Young's modulus
 /// and Poisson's ratio are those of its material; in 2D the strain is plane.
@@ -167,11 +168,6 @@ pub enum CellTouch {
     Surface,
 }
 
-/// Takes a value without `Some(...)` around it.
-fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(from: D) -> Result<Option<T>, D::Error> {
-    T::deserialize(from).map(Some)
-}
-
 fn below() -> Side {
     Side::Below
 }
@@ -182,8 +178,4 @@ fn straight() -> f64 {
 
 fn hurst() -> f64 {
     0.8
-}
-
-fn one() -> f64 {
-    1.0
 }
