@@ -2,6 +2,7 @@
 
 use crate::body::ElasticBody;
 use crate::error::BodyError;
+use crate::grain::{ElasticGrain, ElasticGrainSpec};
 use crate::half_space::{HalfSpace, HalfSpaceError, HalfSpaceSpec};
 use crate::spec::BodySpec;
 use fretwork_core::bodies::DynamicalSystem;
@@ -22,6 +23,23 @@ pub trait Deformable: Space {
         facets: &[[u32; 3]],
         period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String>;
+
+    /// The surface around a solid, of vertices (m), in the plane clockwise, and triangles between them.
+    ///
+    /// # Errors
+    /// Why they form no surface.
+    fn closed_surface(
+        vertices: Vec<Self::Vector>,
+        facets: &[[u32; 3]],
+    ) -> Result<Box<dyn Surface<Self>>, String>;
+
+    /// A grain that deforms, see [`ElasticGrain::new`].
+    ///
+    /// # Errors
+    /// What is out of range.
+    fn elastic_grain(
+        spec: ElasticGrainSpec<Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, String>;
 
     /// A body of finite elements, see [`ElasticBody::new`].
     ///
@@ -48,6 +66,20 @@ impl Deformable for Dim2 {
         Ok(Box::new(profile))
     }
 
+    fn closed_surface(
+        vertices: Vec<Self::Vector>,
+        _facets: &[[u32; 3]],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let surface = Polyline::closed(vertices).map_err(|e| e.to_string())?;
+        Ok(Box::new(surface))
+    }
+
+    fn elastic_grain(
+        spec: ElasticGrainSpec<Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, String> {
+        Ok(Box::new(ElasticGrain::new(spec)?))
+    }
+
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {
         Ok(Box::new(ElasticBody::new(spec)?))
     }
@@ -67,6 +99,20 @@ impl Deformable for Dim3 {
     ) -> Result<Box<dyn Surface<Self>>, String> {
         let mesh = Mesh::new(vertices, facets.to_vec()).map_err(|e| e.to_string())?;
         Ok(Box::new(mesh))
+    }
+
+    fn closed_surface(
+        vertices: Vec<Self::Vector>,
+        facets: &[[u32; 3]],
+    ) -> Result<Box<dyn Surface<Self>>, String> {
+        let surface = Mesh::closed(vertices, facets.to_vec()).map_err(|e| e.to_string())?;
+        Ok(Box::new(surface))
+    }
+
+    fn elastic_grain(
+        spec: ElasticGrainSpec<Self>,
+    ) -> Result<Box<dyn DynamicalSystem<Self>>, String> {
+        Ok(Box::new(ElasticGrain::new(spec)?))
     }
 
     fn elastic_body(spec: BodySpec<'_, Self>) -> Result<Box<dyn DynamicalSystem<Self>>, BodyError> {

@@ -36,7 +36,7 @@ impl Sparse {
     }
 
     /// Entries of a row, by column.
-    fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.starts[row]..self.starts[row + 1];
         let columns = self.columns[range.clone()].iter().copied();
         columns.zip(self.values[range].iter().copied())

@@ -87,15 +87,10 @@ impl SurfacePart {
         let vertex = |k: u32| self.points[k as usize];
         let corners = |f: usize| self.facets[f].map(|k| position(vertex(k)));
         let found = if self.dimension == 2 {
-            let off = |f: usize| {
-                let [a, b, _] = corners(f);
-                let (edge, arm) = (b - a, *at - a);
-                let s = (arm.dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0);
-                ((arm - edge * s).norm(), [1.0 - s, s, 0.0])
-            };
+            let off = |f: usize| on_facet::<S>(at, &corners(f));
             self.nearest_segment::<S>(at, &position, off)
         } else {
-            let off = |f: usize| on_triangle(at, &corners(f));
+            let off = |f: usize| on_facet::<S>(at, &corners(f));
             (0..self.facets.len())
                 .map(|f| (f, off(f)))
                 .min_by(|a, b| a.1.0.total_cmp(&b.1.0))
@@ -138,6 +133,18 @@ impl SurfacePart {
             }
         }
     }
+}
+
+/// Distance of a place from a facet (m), of which the first D corners count, and the weights of its corners at the nearest point,
+/// clamped to the facet.
+pub fn on_facet<S: Space>(at: &S::Vector, corners: &[S::Vector; 3]) -> (f64, [f64; 3]) {
+    if S::D > 2 {
+        return on_triangle(at, corners);
+    }
+    let [a, b, _] = *corners;
+    let (edge, arm) = (b - a, *at - a);
+    let s = (arm.dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0);
+    ((arm - edge * s).norm(), [1.0 - s, s, 0.0])
 }
 
 /// Distance of a place from a triangle (m), and the weights of its corners at the nearest point of its plane, clamped to the

@@ -74,6 +74,8 @@ pub enum ContactorShape {
     Point,
     /// A surface that deforms with the system, see [`DynamicalSystem::surface`].
     Surface,
+    /// A grain: a closed surface that deforms, and the vertices of it as points, see [`DynamicalSystem::point_sizes`].
+    Grain,
     /// Shapes that the caller gives to the body.
     Given,
 }
@@ -301,6 +303,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         false
     }
 
+    /// Whether it is a grain, one of many that are told together.
+    fn is_grain(&self) -> bool {
+        false
+    }
+
     /// Where a node is (m).
     fn node_position(&self, node: u32) -> S::Vector;
 
@@ -329,17 +336,32 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Of a grain, by vertex of its surface: half the length that the vertex stands for, in space the radius of the disk of its area (m).
+    fn point_sizes(&self, _contactor: &Contactor) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Velocity of the origin of a contactor (m/s) and angular velocity of its frame (rad/s) at generalised velocities: that of its
+    /// nodes, without turning.
+    fn contactor_velocity(&self, contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {
+        let terms = contactor.nodes.terms();
+        let sum = terms.fold(S::Vector::zero(), |sum, (node, weight)| {
+            sum + self.node_velocity(node, velocity) * weight
+        });
+        (sum, S::Spin::zero())
+    }
+
     /// Where a contactor stands and how it moves: as the nodes of its origin, without turning.
     fn contactor_motion(&self, contactor: &Contactor) -> ContactorMotion<S> {
+        let (velocity, spin) = self.contactor_velocity(contactor, self.velocity());
         let mut motion = ContactorMotion {
             position: S::Vector::zero(),
             rotation: S::identity(),
-            velocity: S::Vector::zero(),
-            spin: S::Spin::zero(),
+            velocity,
+            spin,
         };
         for (node, weight) in contactor.nodes.terms() {
             motion.position += self.node_position(node) * weight;
-            motion.velocity += self.node_velocity(node, self.velocity()) * weight;
         }
         motion
     }

@@ -82,8 +82,14 @@ impl<S: Space> Bodies<S> {
     pub fn name(&self, body: u32) -> String {
         if let Some(carrier) = self.carrier(body as usize) {
             let Carrier {
-                system, contactor, ..
+                system,
+                contactor,
+                grain,
+                ..
             } = carrier;
+            if grain {
+                return format!("grain {}", self.id[body as usize]);
+            }
             return format!("contactor {contactor} of system {system}");
         }
         match self.driven.iter().find(|d| d.body == body) {
@@ -251,6 +257,42 @@ impl<S: Space> Bodies<S> {
         self.update_constraints(place, time);
     }
 
+    /// Leaves out bodies of which the flag is false, before anything else refers to bodies by index; gives the new index of each.
+    ///
+    /// # Panics
+    /// Not with a flag for each body.
+    pub fn keep(&mut self, kept: &[bool]) -> Vec<Option<u32>> {
+        fn filter<T>(column: &mut Vec<T>, kept: &[bool]) {
+            let mut flags = kept.iter();
+            column.retain(|_| flags.next().copied().unwrap_or(true));
+        }
+        filter(&mut self.position, kept);
+        filter(&mut self.rotation, kept);
+        filter(&mut self.velocity, kept);
+        filter(&mut self.spin, kept);
+        filter(&mut self.mass, kept);
+        filter(&mut self.inertia, kept);
+        filter(&mut self.tensors, kept);
+        filter(&mut self.length, kept);
+        filter(&mut self.inverse_mass, kept);
+        filter(&mut self.inverse_inertia, kept);
+        filter(&mut self.removed, kept);
+        filter(&mut self.lost, kept);
+        filter(&mut self.carriers, kept);
+        self.id = (0..self.position.len() as u64).collect();
+        let mut next = 0;
+        let new = |k: &bool| {
+            let at = next;
+            next += u32::from(*k);
+            k.then_some(at)
+        };
+        let moved: Vec<Option<u32>> = kept.iter().map(new).collect();
+        for driven in &mut self.driven {
+            driven.body = moved[driven.body as usize].unwrap_or_default();
+        }
+        moved
+    }
+
     /// Removes a driven body for good.
     pub fn remove(&mut self, place: usize) {
         let driven = &mut self.driven[place];
@@ -268,11 +310,11 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven or carried by a system, and are still there.
+    /// Which bodies are grains: those that are not driven or carried by a system, unless that is a grain that deforms, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {
-            *grain &= carrier.is_none();
+            *grain &= carrier.is_none_or(|c| c.grain);
         }
         for driven in &self.driven {
             grain[driven.body as usize] = false;
@@ -325,9 +367,10 @@ impl<S: Space> Bodies<S> {
         still
     }
 
-    /// Returns the kinetic energy (J). Imposed degrees of freedom are included.
+    /// Returns the kinetic energy of rigid bodies (J). Imposed degrees of freedom are included.
     pub fn kinetic_energy(&self) -> f64 {
-        (0..self.len()).map(|b| self.energy_of(b)).sum()
+        let rigid = (0..self.len()).filter(|b| self.carrier(*b).is_none());
+        rigid.map(|b| self.energy_of(b)).sum()
     }
 }
 

@@ -4,10 +4,11 @@ use super::dynamical_system::{
     Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork,
 };
 use super::state::Bodies;
-use crate::geometry::shape::Carried;
+use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Which contactor of which system a body stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,6 +19,9 @@ pub struct Carrier {
     pub contactor: u32,
     /// Whether contactors of the system can touch each other.
     pub touches_itself: bool,
+    /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a contact of two of them is found
+    /// from both sides.
+    pub grain: bool,
 }
 
 /// A system with what the step keeps of it.
@@ -27,6 +31,8 @@ struct Entry<S: Space> {
     contactors: Vec<Contactor>,
     /// The bodies that stand for its contactors, in their order.
     bodies: Vec<u32>,
+    /// The points of its surface among the balls, of a grain.
+    points: Range<usize>,
     /// Velocities at the start of the step, and without contacts at its end.
     start: Vec<f64>,
     free: Vec<f64>,
@@ -99,6 +105,7 @@ impl<S: Space> Systems<S> {
                 system: index as u32,
                 contactor: k as u32,
                 touches_itself: system.touches_itself(),
+                grain: contactor.shape == ContactorShape::Grain,
             };
             let at = system.contactor_motion(contactor).position;
             let length = if contactor.radius > 0.0 {
@@ -106,12 +113,18 @@ impl<S: Space> Systems<S> {
             } else {
                 1.0
             };
-            bodies.add_carried(at, length, carrier)
+            let body = bodies.add_carried(at, length, carrier);
+            if carrier.grain {
+                // Of measures; the system moves it.
+                bodies.mass[body as usize] = system.mass();
+            }
+            body
         });
         let carried = carried.collect();
         let velocity = system.velocity().to_vec();
         self.entries.push(Entry {
             bodies: carried,
+            points: 0..0,
             contactors,
             start: velocity.clone(),
             free: velocity,
@@ -139,17 +152,29 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Gives the surfaces of contactors their vertices as they are now.
-    pub fn deform(&self, bodies: &Bodies<S>, surfaces: &mut [Carried<S>]) {
-        for surface in surfaces {
+    /// Is told which balls are the points of a grain, in the order of the vertices of its surface.
+    pub(crate) fn set_points(&mut self, system: usize, balls: Range<usize>) {
+        self.entries[system].points = balls;
+    }
+
+    /// Gives the surfaces of contactors their vertices as they are now, and the points of grains their places.
+    pub fn deform(&self, bodies: &Bodies<S>, shapes: &mut Shapes<S>) {
+        for surface in &mut shapes.surfaces {
             let Some(carrier) = bodies.carrier(surface.body as usize) else {
                 continue;
             };
             let entry = &self.entries[carrier.system as usize];
             let contactor = &entry.contactors[carrier.contactor as usize];
-            if contactor.shape == ContactorShape::Surface {
+            if matches!(
+                contactor.shape,
+                ContactorShape::Surface | ContactorShape::Grain
+            ) {
                 let vertices = entry.system.surface_vertices(contactor);
                 surface.shape.move_vertices(&vertices);
+                let points = &mut shapes.balls[entry.points.clone()];
+                for (point, vertex) in points.iter_mut().zip(&vertices) {
+                    point.offset = *vertex;
+                }
             }
         }
     }
@@ -178,10 +203,7 @@ impl<S: Space> Systems<S> {
             entry.system.linearise(step);
             entry.free = entry.system.free_velocity(step);
             for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
-                let terms = contactor.nodes.terms();
-                free[*body as usize].0 = terms.fold(S::Vector::zero(), |sum, (node, weight)| {
-                    sum + entry.system.node_velocity(node, &entry.free) * weight
-                });
+                free[*body as usize] = entry.system.contactor_velocity(contactor, &entry.free);
             }
         }
     }

@@ -19,6 +19,8 @@ pub struct Mesh {
     tree: RTree<Placed>,
     /// Whether its points move.
     deforms: bool,
+    /// Whether it encloses a grain.
+    closed: bool,
 }
 
 /// Reason why triangles do not form a surface.
@@ -103,6 +105,19 @@ impl Mesh {
             triangles,
             tree,
             deforms: false,
+            closed: false,
+        })
+    }
+
+    /// Creates a mesh without border, around a grain; otherwise as [`Self::new`].
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn closed(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        let mesh = Self::new(points, triangles)?;
+        Ok(Self {
+            closed: true,
+            ..mesh
         })
     }
 
@@ -135,6 +150,10 @@ impl Surface<Dim3> for Mesh {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
         facets::touches(&near, centre, reach, out);
+    }
+
+    fn is_closed(&self) -> bool {
+        self.closed
     }
 
     fn move_vertices(&mut self, vertices: &[V]) {

@@ -23,6 +23,8 @@ const MARGIN: f64 = 0.25;
 pub struct Polyline {
     points: Vec<Vector2<f64>>,
     period: Option<f64>,
+    /// Whether it is closed: its last point is its first.
+    closed: bool,
     tree: RTree<Segment>,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<Worn>,
@@ -71,6 +73,23 @@ impl Polyline {
     /// # Errors
     /// Too few, coincident or non-finite points, ends that do not match the period.
     pub fn new(points: Vec<Vector2<f64>>, period: Option<f64>) -> Result<Self, ProfileError> {
+        Self::build(points, period, false)
+    }
+
+    /// Builds a closed chain around a solid from its corners (m), clockwise.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn closed(mut corners: Vec<Vector2<f64>>) -> Result<Self, ProfileError> {
+        corners.extend(corners.first().copied());
+        Self::build(corners, None, true)
+    }
+
+    fn build(
+        points: Vec<Vector2<f64>>,
+        period: Option<f64>,
+        closed: bool,
+    ) -> Result<Self, ProfileError> {
         if points.len() < 2 {
             return Err(ProfileError::TooFew(points.len()));
         }
@@ -93,12 +112,15 @@ impl Polyline {
                 ));
             }
         }
-        if let Some((one, other, at)) = super::crossing::first(&points) {
+        // The last segment of a closed chain meets the first.
+        let open = &points[..points.len() - usize::from(closed)];
+        if let Some((one, other, at)) = super::crossing::first(open) {
             return Err(ProfileError::Crosses(one, other, at.x, at.y));
         }
         let mut out = Self {
             points,
             period,
+            closed,
             tree: RTree::new(),
             worn: None,
             deformed: None,
@@ -129,6 +151,11 @@ impl Polyline {
             }
         }
         self.tree = RTree::bulk_load(segments);
+    }
+
+    /// Returns whether the chain goes on after its last segment with its first.
+    fn goes_on(&self) -> bool {
+        self.closed || self.period.is_some()
     }
 
     /// Returns the ends of a segment, shifted along x (m).
@@ -162,7 +189,7 @@ impl Polyline {
     fn following(&self, segment: usize) -> Option<Vector2<f64>> {
         let next = match segment + 1 {
             next if next < self.segments() => next,
-            _ => self.period.map(|_| 0)?,
+            _ => self.goes_on().then_some(0)?,
         };
         Some(self.points[next + 1] - self.points[next])
     }
@@ -199,7 +226,7 @@ impl Surface<Dim2> for Polyline {
             }
             // A vertex gives one contact point: from the segment that ends in it, or at the chain's start.
             let at_end = s > 1.0;
-            if !at_end && (k > 0 || self.period.is_some()) {
+            if !at_end && (k > 0 || self.goes_on()) {
                 continue;
             }
             let vertex = if at_end { b } else { a };
@@ -262,7 +289,7 @@ impl Surface<Dim2> for Polyline {
             let [a, b] = self.segment(k, image);
             let next = if k + 1 < self.segments() {
                 k + 1
-            } else if self.period.is_some() {
+            } else if self.goes_on() {
                 0
             } else {
                 continue;
@@ -289,8 +316,16 @@ impl Surface<Dim2> for Polyline {
         vec![self.points.clone()]
     }
 
+    fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     fn move_vertices(&mut self, vertices: &[Vector2<f64>]) {
-        self.points.copy_from_slice(vertices);
+        self.points[..vertices.len()].copy_from_slice(vertices);
+        if self.closed {
+            let last = self.points.len() - 1;
+            self.points[last] = self.points[0];
+        }
         // The vertices are those of the body without wear.
         let down = self.direction();
         if let Some(worn) = &mut self.worn {
@@ -304,7 +339,8 @@ impl Surface<Dim2> for Polyline {
             moved.any(|(a, b)| (b - a).amax() > *margin)
         };
         if self.deformed.as_ref().is_none_or(far) {
-            let mean = (vertices[vertices.len() - 1] - vertices[0]).norm() / self.segments() as f64;
+            let lengths = self.points.windows(2).map(|w| (w[1] - w[0]).norm());
+            let mean = lengths.sum::<f64>() / self.segments() as f64;
             let margin = MARGIN * mean;
             self.deformed = Some((self.points.clone(), margin));
             self.index([margin, margin]);

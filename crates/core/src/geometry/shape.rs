@@ -18,14 +18,19 @@ pub struct Ball<S: Space> {
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
+    /// Of a point of a surface half the length that it stands for, in space the radius of the disk of its area (m); zero where the
+    /// length of its body is that.
+    pub point_size: f64,
 }
 
 impl<S: Space> Ball<S> {
     /// Its size in contacts (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
-    /// that it stands for, the length of its body.
+    /// that it stands for.
     pub fn size(&self, lengths: &[f64]) -> f64 {
         if self.radius > 0.0 {
             self.radius
+        } else if self.point_size > 0.0 {
+            self.point_size
         } else {
             lengths[self.body as usize]
         }
@@ -113,6 +118,10 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows each of them.
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
+    }
+    /// Returns whether it encloses its body, which is then smaller than half a period: contacts are looked for at its nearest image.
+    fn is_closed(&self) -> bool {
+        false
     }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.

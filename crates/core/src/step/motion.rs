@@ -132,7 +132,7 @@ impl<S: Space> StepStart<S> {
         theta: f64,
     ) -> BodyWork {
         let mut work = BodyWork::default();
-        for b in 0..bodies.len() {
+        for b in (0..bodies.len()).filter(|b| bodies.carrier(*b).is_none()) {
             let (v, w) = (self.velocity[b], self.spin[b]);
             let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
             work.potential -= h * bodies.mass[b] * gravity.dot(&average);

@@ -54,6 +54,7 @@ impl<S: Space> Simulation<S> {
         let contactors = system.contactors();
         let index = self.state.systems.add(system, &mut self.state.bodies);
         let system = self.state.systems.get(index);
+        let mut points = 0..0;
         for (contactor, body) in contactors.iter().zip(self.state.systems.bodies(index)) {
             if let Some(shape) = system.and_then(|s| s.surface(contactor)) {
                 self.shapes.surfaces.push(Carried {
@@ -63,10 +64,24 @@ impl<S: Space> Simulation<S> {
                     material: contactor.material,
                 });
             }
+            if let (Some(system), ContactorShape::Grain) = (system, contactor.shape) {
+                let sizes = system.point_sizes(contactor);
+                let first = self.shapes.balls.len();
+                points = first..first + sizes.len();
+                let vertices = system.surface_vertices(contactor).into_iter();
+                let point = |(offset, point_size)| Ball {
+                    body: *body,
+                    radius: 0.0,
+                    offset,
+                    material: contactor.material,
+                    point_size,
+                };
+                self.shapes.balls.extend(vertices.zip(sizes).map(point));
+            }
             let radius = match contactor.shape {
                 ContactorShape::Ball => Some(contactor.radius),
                 ContactorShape::Point => Some(0.0),
-                ContactorShape::Surface | ContactorShape::Given => None,
+                ContactorShape::Surface | ContactorShape::Grain | ContactorShape::Given => None,
             };
             if let Some(radius) = radius {
                 self.shapes.balls.push(Ball {
@@ -74,8 +89,12 @@ impl<S: Space> Simulation<S> {
                     radius,
                     offset: S::Vector::zero(),
                     material: contactor.material,
+                    point_size: 0.0,
                 });
             }
+        }
+        if !points.is_empty() {
+            self.state.systems.set_points(index, points);
         }
         self.state.network.fast = detect::fast_motion(&self.shapes, self.state.network.alert);
         self.state.network.forget_neighbours();
@@ -114,7 +133,7 @@ impl<S: Space> Simulation<S> {
         self.state.systems.carry(&mut self.state.bodies);
         self.state
             .systems
-            .deform(&self.state.bodies, &mut self.shapes.surfaces);
+            .deform(&self.state.bodies, &mut self.shapes);
     }
 
     /// The velocities of systems without contacts; those of their bodies into `free`.

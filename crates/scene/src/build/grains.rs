@@ -206,6 +206,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 radius: seed.radius,
                 offset: S::Vector::zero(),
                 material,
+                point_size: 0.0,
             });
         }
     }

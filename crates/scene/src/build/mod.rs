@@ -4,6 +4,7 @@ mod another_run;
 mod arch;
 mod blocks;
 mod elastic;
+mod elastic_grains;
 mod first_body;
 mod grains;
 mod half_space;
@@ -138,6 +139,7 @@ impl Loaded {
             },
         };
         builder.grains()?;
+        let grains = builder.elastic_grains(&properties)?;
         builder.first_bodies()?;
         builder.refuse_idle_wear()?;
         builder.check_elastic_names()?;
@@ -145,6 +147,10 @@ impl Loaded {
         let mut systems = builder.elastic_bodies(&properties)?;
         systems.extend(builder.half_spaces(&properties)?);
         builder.check_elastic_points(&systems)?;
+        for (grain, origin) in grains {
+            systems.push(grain);
+            builder.origins.push(origin);
+        }
         let names = builder
             .bodies
             .driven
@@ -352,11 +358,13 @@ impl<S: Dimensional> Builder<'_, S> {
             Simulation::new(self.bodies, self.shapes, laws, table, alert, skin),
         );
         let mut scars = self.scars;
-        for (system, (name, wears)) in systems.into_iter().zip(wears) {
+        let mut wears = wears.into_iter();
+        for system in systems {
             let surface = simulation.shapes.surfaces.len();
             simulation.add_system(system);
             let carried = simulation.shapes.surfaces.get(surface);
-            if let (Some(carried), Some(wears)) = (carried, wears) {
+            // Grains come last and do not recede.
+            if let (Some(carried), Some((name, Some(wears)))) = (carried, wears.next()) {
                 let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
                 scars.extend(scar);
             }

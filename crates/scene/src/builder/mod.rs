@@ -70,6 +70,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 gravity_drive: None,
                 elastic: Vec::new(),
                 half_spaces: Vec::new(),
+                elastic_grains: Vec::new(),
                 phases: Vec::new(),
                 inertia_scaling: 1.0,
                 coupling: Default::default(),

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod elastic;
+mod elastic_grain;
 mod grains;
 mod half_space;
 mod interface;
@@ -13,6 +14,7 @@ mod wear;
 
 pub use accuracy::{AccuracySpec, AccurateResult};
 pub use elastic::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
+pub use elastic_grain::ElasticGrainSpec;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use half_space::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, HolderSpec};
 pub use interface::{InterfaceSpec, SlotValues};
@@ -95,6 +97,9 @@ pub struct Case {
     /// Grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub grains: Vec<GrainSpec>,
+    /// Grains that deform, by their material.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub elastic_grains: Vec<ElasticGrainSpec>,
     /// What is measured as a friction test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionSpec>,

@@ -154,11 +154,11 @@ fn must_rebuild<S: Space>(
     if network.seen_at.len() != centres.len() + shapes.surfaces.len() + vertices {
         return true;
     }
-    // A rotating surface moves more than its frame does.
+    // A rotating surface moves more than its frame does; of one that deforms each vertex is watched.
     if shapes.surfaces.iter().any(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-        !s.shape.keeps_place(&spin)
+        !s.shape.keeps_place(&spin) && s.shape.moving_vertices().is_empty()
     }) {
         return true;
     }

@@ -175,7 +175,11 @@ impl<'a, S: Space> Narrow<'a, S> {
         let surface = &self.shapes.surfaces[(b & !Key::SURFACE) as usize];
         let old = self.old_contacts_of(network, (a, b));
         let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
-        let local = S::unrotate(&rotation, &(self.centres[a as usize] - origin));
+        let mut apart = self.centres[a as usize] - origin;
+        if surface.shape.is_closed() {
+            apart = self.shapes.periodic.shortest(apart);
+        }
+        let local = S::unrotate(&rotation, &apart);
         let margin = self.reach(network, old.clone());
         let mut touches = std::mem::take(&mut self.touches);
         touches.clear();
@@ -186,8 +190,16 @@ impl<'a, S: Space> Narrow<'a, S> {
             return;
         };
         let mut taken = vec![false; old.len()];
-        let size = ball.size(&self.bodies.length);
         let (i, j) = (ball.body as usize, surface.body as usize);
+        let grain = |b: usize| self.bodies.carrier(b).is_some_and(|c| c.grain);
+        let twice = ball.radius == 0.0 && grain(i) && grain(j);
+        // The points of the other grain stand for the other half of the area.
+        let share = if twice {
+            f64::powf(0.5, 1.0 / (S::D - 1) as f64)
+        } else {
+            1.0
+        };
+        let size = share * ball.size(&self.bodies.length);
         for touch in &touches {
             // The contact of the same feature, or else the nearest of those no longer found.
             let same = old.clone().find(|k| {

@@ -109,9 +109,14 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
             let pivot = self.bodies.position[surface.body as usize];
             let spin = velocities[surface.body as usize].1;
-            let sweeps = !surface
-                .shape
-                .keeps_place(&S::unrotate_spin(&rotation, &spin));
+            let follows = !surface.shape.moving_vertices().is_empty();
+            let sweeps = !follows
+                && !surface
+                    .shape
+                    .keeps_place(&S::unrotate_spin(&rotation, &spin));
+            let closed = surface.shape.is_closed();
+            let vertices = surface.shape.moving_vertices().iter();
+            let size = vertices.map(|x| x.norm()).fold(0.0, f64::max);
             let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
             turning.push(spin);
             let extra = widening(widened, surface.body);
@@ -120,8 +125,15 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
                 let known = self.laws.get(material, surface.material).is_some();
                 if known && self.may_touch(body, surface.body) {
                     let centre = self.centres[at];
-                    let local = S::unrotate(&rotation, &(centre - origin));
                     let mut reach = radius + self.reach + extra;
+                    let mut apart = centre - origin;
+                    if closed {
+                        apart = self.shapes.periodic.shortest(apart);
+                        if apart.norm() > size + reach {
+                            continue;
+                        }
+                    }
+                    let local = S::unrotate(&rotation, &apart);
                     if sweeps {
                         reach += spin * h * ((centre - pivot).norm() + radius);
                     }

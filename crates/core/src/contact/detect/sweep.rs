@@ -194,6 +194,10 @@ impl<'a, S: Space> Sweep<'a, S> {
         match &shapes[1] {
             Shape::Surface(surface) => {
                 let own = S::unrotate_spin(&other.rotation, &w_other);
+                if surface.shape.is_closed() {
+                    let apart = one.centre - other.centre;
+                    image = apart - self.shapes.periodic.shortest(apart);
+                }
                 if !surface.shape.keeps_place(&own) {
                     let far = (one.centre - other.body).norm() + shapes[0].bound();
                     turning += w_other.norm() * (far + self.h * (approach.norm() + turning));
@@ -269,7 +273,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         let bound = pair.shapes[0].bound();
         if let Shape::Surface(surface) = &pair.shapes[1] {
             let origin = other.centre;
-            let place = S::unrotate(&other.rotation, &(one.centre - origin));
+            let place = S::unrotate(&other.rotation, &(one.centre - origin - pair.image));
             // The gap to a plane closes along its normal only.
             let normal = surface.shape.flat().map(|n| S::rotate(&other.rotation, &n));
             // A cheap distance check first: surfaces are only evaluated within a short range.

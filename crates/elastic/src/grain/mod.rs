@@ -1,0 +1,235 @@
+//! A grain that deforms: a rigid body with elastic modes about it, the floating frame of reference.
+//!
+//! With the place c of its frame, its orientation R and the amplitudes eta of its modes, the point X of the grain is at and moves as
+//!
+//! ```text
+//! x = c + R (X + u),  u = sum_k phi_k(X) eta_k
+//! dx/dt = V + w x R (X + u) + R sum_k phi_k(X) deta_k/dt
+//! ```
+//!
+//! Frame and modes have the energies M V^2/2 + w . J w/2 + sum (deta_k^2 + lambda_k eta_k^2)/2 with the inertia J of the grain without load:
+//! what rotation and modes do to each other through inertia is left out, strains of the size rho w^2 R^2/E. Momentum and energy of this
+//! system are conserved to rounding as those of rigid bodies are. Strain in the frame is small; rotations are not.
+//!
+//! Source: A. A. Shabana, Dynamics of Multibody Systems, 4th ed. (2013), chapters 5 and 6; for modes of free bodies section 6.1 of
+//! T. J. R. Hughes, The Finite Element Method (1987), chapter 9.
+
+mod dynamics;
+pub mod mesh;
+pub mod shape;
+
+pub use shape::GrainShape;
+
+use crate::compiled::Deformable;
+use crate::material::Elasticity;
+use crate::support::Rayleigh;
+use fretwork_core::bodies::tensor::Tensor;
+use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use serde::{Deserialize, Serialize};
+use std::sync::{Arc, OnceLock};
+
+/// What a grain is made of.
+#[derive(Clone, Debug)]
+pub struct ElasticGrainSpec<S: Space> {
+    /// What messages call it.
+    pub name: String,
+    /// Its shape.
+    pub shape: Arc<GrainShape<S>>,
+    /// Length of the unit of its shape (m).
+    pub size: f64,
+    /// Its material.
+    pub material: Elasticity,
+    /// Its damping.
+    pub damping: Rayleigh,
+    /// Index of the material for interface laws.
+    pub surface_material: u16,
+    /// Where its centre of mass is (m).
+    pub position: S::Vector,
+    /// Its orientation.
+    pub rotation: S::Rotation,
+    /// Its velocity (m/s).
+    pub velocity: S::Vector,
+    /// Its angular velocity (rad/s).
+    pub spin: S::Spin,
+}
+
+/// What is known for the length of a step.
+#[derive(Debug)]
+struct Formed {
+    /// h and theta.
+    of: [f64; 2],
+    /// 1/(1 + h theta c_k + h^2 theta^2 lambda_k) of each mode.
+    over: Vec<f64>,
+    /// The elastic compliance of the coordinates of the surface in the frame (1/kg), column by column as they are touched.
+    columns: Vec<OnceLock<Vec<f64>>>,
+}
+
+/// What does not change, shared by copies.
+#[derive(Debug)]
+struct Model<S: Space> {
+    name: String,
+    shape: Arc<GrainShape<S>>,
+    size: f64,
+    material: Elasticity,
+    damping: Rayleigh,
+    contactor: Contactor,
+    mass: f64,
+    /// Moments of inertia in the frame, and their inverse (kg m^2).
+    inertia: S::Tensor,
+    inverse: S::Tensor,
+    /// The displacement of a mode of the shape at an amplitude of 1 (m).
+    scale: f64,
+    /// lambda of each mode (1/s^2).
+    rates: Vec<f64>,
+}
+
+/// The state of a grain between two steps.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct State<S: Space> {
+    position: S::Vector,
+    rotation: S::Rotation,
+    /// Angular momentum (kg m^2/s).
+    momentum: S::Spin,
+    amplitudes: Vec<f64>,
+    /// Velocity of the frame, its angular velocity, and the rates of the amplitudes.
+    velocity: Vec<f64>,
+}
+
+/// A grain that deforms.
+#[derive(Clone, Debug)]
+pub struct ElasticGrain<S: Space> {
+    model: Arc<Model<S>>,
+    formed: Option<Arc<Formed>>,
+    state: State<S>,
+    /// At the start of the step.
+    start: State<S>,
+    /// The orientation at q_m, and the velocities there without contacts.
+    middle: (S::Rotation, Vec<f64>),
+    /// Where the vertices of the surface are in the frame (m).
+    vertices: Vec<S::Vector>,
+}
+
+impl<S: Deformable> ElasticGrain<S> {
+    /// Builds a grain.
+    ///
+    /// # Errors
+    /// What of the material is out of range, or why the shape has no surface.
+    pub fn new(spec: ElasticGrainSpec<S>) -> Result<Self, String> {
+        spec.material.check().map_err(|e| e.to_string())?;
+        let Elasticity { young, density, .. } = spec.material;
+        let (shape, size) = (&spec.shape, spec.size);
+        let mass = density * shape.volume() * size.powi(S::D as i32);
+        let inertia = shape.inertia().scaled(density * size.powi(S::D as i32 + 2));
+        let tensor = Tensor::<S>::new(inertia);
+        let uniform = S::Tensor::uniform(fretwork_core::bodies::tensor::mean::<S>(&inertia));
+        let inertia = if tensor.is_some() { inertia } else { uniform };
+        let inverse = inertia
+            .inverse()
+            .ok_or("its mesh has no moment of inertia")?;
+        let rate = young / (density * size * size);
+        let model = Model {
+            contactor: Contactor {
+                nodes: Nodes::one(0),
+                radius: size * shape.reach(),
+                shape: ContactorShape::Grain,
+                material: spec.surface_material,
+            },
+            scale: 1.0 / (density * size.powi(S::D as i32)).sqrt(),
+            rates: shape.rates().iter().map(|r| rate * r).collect(),
+            name: spec.name,
+            shape: Arc::clone(shape),
+            size,
+            material: spec.material,
+            damping: spec.damping,
+            mass,
+            inertia,
+            inverse,
+        };
+        let mut velocity: Vec<f64> = (0..S::D).map(|k| spec.velocity[k]).collect();
+        velocity.extend((0..S::Spin::N).map(|k| spec.spin[k]));
+        velocity.resize(velocity.len() + model.rates.len(), 0.0);
+        let state = State {
+            position: spec.position,
+            rotation: spec.rotation,
+            momentum: S::turned_tensor(&spec.rotation, &model.inertia).apply(&spec.spin),
+            amplitudes: vec![0.0; model.rates.len()],
+            velocity,
+        };
+        let mut grain = Self {
+            model: Arc::new(model),
+            formed: None,
+            start: state.clone(),
+            middle: (state.rotation, state.velocity.clone()),
+            state,
+            vertices: Vec::new(),
+        };
+        grain.place_vertices();
+        let at = grain.vertices.clone();
+        S::closed_surface(at, grain.model.shape.facets())?;
+        Ok(grain)
+    }
+
+    /// Finds where the vertices are in the frame.
+    fn place_vertices(&mut self) {
+        let model = &self.model;
+        let moved = model.shape.of_vertices(&self.state.amplitudes);
+        let at = model.shape.vertices().zip(moved);
+        self.vertices = at.map(|(x, u)| x * model.size + u * model.scale).collect();
+    }
+
+    /// Displacements of all points of the mesh in the frame (m).
+    fn displacements(&self) -> Vec<S::Vector> {
+        let moved = self.model.shape.displacements(&self.state.amplitudes);
+        moved.into_iter().map(|u| u * self.model.scale).collect()
+    }
+
+    /// Velocity and angular velocity of the frame, of generalised velocities.
+    fn of_frame(velocity: &[f64]) -> (S::Vector, S::Spin) {
+        let spin = &velocity[S::D..S::D + S::Spin::N];
+        (
+            S::Vector::from_slice(&velocity[..S::D]),
+            S::Spin::from_slice(spin),
+        )
+    }
+
+    /// Rates of the amplitudes, of generalised velocities.
+    fn of_modes(velocity: &[f64]) -> &[f64] {
+        &velocity[S::D + S::Spin::N..]
+    }
+
+    /// Damping of a mode, alpha + beta lambda (1/s).
+    fn damping(&self, rate: f64) -> f64 {
+        self.model.damping.mass + self.model.damping.stiffness * rate
+    }
+
+    /// A tensor of the frame in world axes.
+    fn turned(&self, tensor: &S::Tensor) -> S::Tensor {
+        S::turned_tensor(&self.state.rotation, tensor)
+    }
+
+    /// The vertices and weights of a place on the surface, in the frame (m).
+    fn nodes_at(&self, at: &S::Vector) -> Nodes {
+        let facets = self.model.shape.facets().iter();
+        let (vertices, weights) = facets
+            .map(|facet| {
+                let corners = facet.map(|v| self.vertices[v as usize]);
+                let (far, weights) = crate::surface::on_facet::<S>(at, &corners);
+                (far, (facet, weights))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map_or((&[0; 3], [1.0, 0.0, 0.0]), |(_, found)| found);
+        // A vertex itself, up to rounding, is one node.
+        let terms = vertices.iter().zip(weights).take(S::D);
+        let terms = terms.filter(|(_, w)| *w > AT_VERTEX);
+        let terms: Vec<(u32, f64)> = terms.map(|(v, w)| (*v, w)).collect();
+        match terms[..] {
+            [(v, _)] => Nodes::one(v),
+            _ => Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertices[0])),
+        }
+    }
+}
+
+/// Share of a vertex below which a place on a facet is not on it.
+const AT_VERTEX: f64 = 1e-9;

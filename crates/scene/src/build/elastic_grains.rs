@@ -1,0 +1,238 @@
+//! Grains that deform: those of a material are taken out of the rigid bodies and become dynamical systems.
+
+use super::{Builder, Dimensional, Origin};
+use crate::case::ElasticGrainSpec;
+use crate::material::Sourced;
+use crate::source::InputError;
+use fretwork_core::bodies::DynamicalSystem;
+use fretwork_core::geometry::convex::{ConvexCollider, Core};
+use fretwork_core::geometry::shape::Ball;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_elastic::grain::mesh::{Triangles, disk, polygon, shells};
+use fretwork_elastic::{ElasticGrainSpec as Grain, Elasticity, GrainShape, Mesh};
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
+
+/// Most elements along the radius of a grain, by dimension: modes of finer meshes take minutes to find.
+const MAX_ELEMENTS: [usize; 2] = [12, 5];
+
+/// Grains that were taken out of the rigid bodies, with their entries in the case.
+pub(super) type ElasticGrains<S> = Vec<(Box<dyn DynamicalSystem<S>>, Origin)>;
+
+/// What grains of one shape share: a number for their kind, and all that their modes depend on.
+type ShapeKey = (usize, Vec<u64>);
+
+/// The collision shapes of a grain.
+struct Shapes<'a, S: Space> {
+    balls: Vec<&'a Ball<S>>,
+    pieces: Vec<&'a ConvexCollider<S>>,
+}
+
+impl<S: Dimensional> Builder<'_, S> {
+    /// Takes the grains of the materials that deform out of the rigid bodies. Called after the grains and before all other
+    /// bodies.
+    pub(super) fn elastic_grains(
+        &mut self,
+        properties: &[BTreeMap<String, Sourced>],
+    ) -> Result<ElasticGrains<S>, InputError> {
+        let mut of_material: HashMap<u16, (String, &ElasticGrainSpec, Elasticity, usize)> =
+            HashMap::new();
+        for (k, spec) in self.case.elastic_grains.iter().enumerate() {
+            let here = format!("elastic_grains.{k}");
+            let (elasticity, material) = self.elasticity(&here, &spec.material, properties)?;
+            elasticity
+                .check()
+                .map_err(|why| self.fail(format!("{here}.material"), why.to_string()))?;
+            let damping = spec.damping;
+            for (name, x) in [("mass", damping.mass), ("stiffness", damping.stiffness)] {
+                if !(x.is_finite() && x >= 0.0) {
+                    let message = format!("damping must be zero or positive, got {x}");
+                    return Err(self.fail(format!("{here}.damping.{name}"), message));
+                }
+            }
+            let most = MAX_ELEMENTS[S::D - 2];
+            let elements = spec.elements.unwrap_or(if S::D == 2 { 4 } else { 2 });
+            if !(1..=most).contains(&elements) {
+                let message = format!(
+                    "a grain has 1 to {most} elements along its radius here, got {elements}"
+                );
+                return Err(self.fail(format!("{here}.elements"), message));
+            }
+            let entry = (here.clone(), spec, elasticity, elements);
+            if of_material.insert(material, entry).is_some() {
+                let message = format!(
+                    "the grains of `{}` are here twice; leave one out",
+                    spec.material
+                );
+                return Err(self.fail(format!("{here}.material"), message));
+            }
+        }
+        if of_material.is_empty() {
+            return Ok(Vec::new());
+        }
+        if self.case.circuit.is_some() {
+            let message =
+                "grains that deform do not take part in a `circuit`; take one of the two away";
+            return Err(self.fail("elastic_grains", message));
+        }
+        let mut shapes: Vec<Shapes<'_, S>> = Vec::new();
+        shapes.resize_with(self.bodies.len(), || Shapes {
+            balls: Vec::new(),
+            pieces: Vec::new(),
+        });
+        for ball in &self.shapes.balls {
+            shapes[ball.body as usize].balls.push(ball);
+        }
+        for piece in &self.shapes.pieces {
+            shapes[piece.body as usize].pieces.push(piece);
+        }
+        let mut known: HashMap<ShapeKey, Arc<GrainShape<S>>> = HashMap::new();
+        let mut out = Vec::new();
+        let mut kept = vec![true; self.bodies.len()];
+        for (b, own) in shapes.iter().enumerate() {
+            let ball = own.balls.first().map(|ball| ball.material);
+            let material = ball.or_else(|| own.pieces.first().map(|piece| piece.material));
+            let Some((here, spec, elasticity, elements)) =
+                material.and_then(|m| of_material.get(&m))
+            else {
+                continue;
+            };
+            let origin = self.origins[b];
+            let shape =
+                self.grain_shape(own, origin, (*elements, elasticity.poisson), &mut known)?;
+            let (shape, size) = shape;
+            let grain = Grain {
+                name: format!("grain_{}", out.len()),
+                shape,
+                size,
+                material: *elasticity,
+                damping: spec.damping,
+                surface_material: material.unwrap_or_default(),
+                position: self.bodies.position[b],
+                rotation: self.bodies.rotation[b],
+                velocity: self.bodies.velocity[b],
+                spin: self.bodies.spin[b],
+            };
+            let system = S::elastic_grain(grain).map_err(|why| self.fail(here.as_str(), why))?;
+            kept[b] = false;
+            out.push((system, origin));
+        }
+        if out.is_empty() {
+            let message = "the case has no grains of this material; give the name of theirs";
+            return Err(self.fail("elastic_grains.0.material", message));
+        }
+        self.keep_bodies(&kept);
+        Ok(out)
+    }
+
+    /// The shape of a grain, and the length of its unit (m).
+    fn grain_shape(
+        &self,
+        own: &Shapes<'_, S>,
+        origin: Origin,
+        (elements, poisson): (usize, f64),
+        known: &mut HashMap<ShapeKey, Arc<GrainShape<S>>>,
+    ) -> Result<(Arc<GrainShape<S>>, f64), InputError> {
+        let refuse = |message: &str| self.fail(origin.path(), message);
+        let (key, size) = match (&own.balls[..], &own.pieces[..]) {
+            ([ball], []) => ((0, vec![poisson.to_bits(), elements as u64]), ball.radius),
+            ([], [piece]) if piece.rounding > 0.0 => {
+                return Err(refuse(
+                    "a grain that deforms has no rounded corners: set `rounding` to 0, or leave its material out of `elastic_grains`",
+                ));
+            }
+            ([], [piece]) => {
+                let mut key = vec![poisson.to_bits(), elements as u64];
+                for corner in piece.core.boundary().corners {
+                    key.extend((0..S::D).map(|k| corner[k].to_bits()));
+                }
+                ((1, key), 1.0)
+            }
+            _ => {
+                return Err(refuse(
+                    "a grain that deforms has one shape, a ball, polygon or polyhedron; leave the material of unions out of `elastic_grains`",
+                ));
+            }
+        };
+        if let Some(shape) = known.get(&key) {
+            return Ok((Arc::clone(shape), size));
+        }
+        let mesh = match own.pieces.first() {
+            None => ball_mesh(elements),
+            Some(piece) => piece_mesh(piece, elements),
+        };
+        let shape = mesh.and_then(|mesh| GrainShape::new(mesh, poisson));
+        let shape = shape.map_err(|why| refuse(&format!("this grain cannot deform: {why}")))?;
+        let shape = Arc::new(shape);
+        known.insert(key, Arc::clone(&shape));
+        Ok((shape, size))
+    }
+
+    /// Leaves out bodies, with their shapes.
+    fn keep_bodies(&mut self, kept: &[bool]) {
+        let moved = self.bodies.keep(kept);
+        let at = |body: &mut u32| match moved[*body as usize] {
+            Some(new) => {
+                *body = new;
+                true
+            }
+            None => false,
+        };
+        self.shapes.balls.retain_mut(|ball| at(&mut ball.body));
+        self.shapes.pieces.retain_mut(|piece| at(&mut piece.body));
+        self.shapes
+            .surfaces
+            .retain_mut(|surface| at(&mut surface.body));
+        let mut kept = kept.iter();
+        self.origins
+            .retain(|_| kept.next().copied().unwrap_or(true));
+    }
+}
+
+/// The mesh of a ball of unit radius.
+fn ball_mesh<S: Dimensional>(elements: usize) -> Result<Mesh<S>, String> {
+    let centre = S::Vector::zero();
+    let mesh = match S::D {
+        2 => polygon::<S>(&disk::<S>(elements), &centre, 1.0 / elements as f64),
+        _ => {
+            let surface = Triangles::<S>::icosahedron();
+            shells::<S>(&surface.cut(elements).on_unit_sphere(), &centre, elements)
+        }
+    };
+    mesh.map_err(|e| e.to_string())
+}
+
+/// The mesh of a convex part about its centre (m).
+fn piece_mesh<S: Dimensional>(
+    piece: &ConvexCollider<S>,
+    elements: usize,
+) -> Result<Mesh<S>, String> {
+    let boundary = piece.core.boundary();
+    if boundary.corners.len() <= S::D {
+        return Err("it encloses no volume".to_owned());
+    }
+    let size = piece.size / elements as f64;
+    let centre = S::Vector::zero();
+    if S::D == 2 {
+        return polygon::<S>(&boundary.corners, &centre, size).map_err(|e| e.to_string());
+    }
+    let mut triangles = Vec::new();
+    for face in &boundary.faces {
+        let fan = face.windows(2).skip(1);
+        triangles.extend(fan.map(|w| [face[0], w[0], w[1]]));
+    }
+    let points = boundary.corners;
+    let longest = triangles.iter().flat_map(|t: &[u32; 3]| {
+        let at = t.map(|p| points[p as usize]);
+        [
+            (at[1] - at[0]).norm(),
+            (at[2] - at[1]).norm(),
+            (at[0] - at[2]).norm(),
+        ]
+    });
+    let longest = longest.fold(0.0, f64::max);
+    // Edges of a face of a cube are as long as 1.6 radii of the ball of its volume.
+    let parts = (longest / (1.6 * size)).round().max(1.0) as usize;
+    let surface = Triangles { points, triangles }.cut(parts);
+    shells::<S>(&surface, &centre, elements).map_err(|e| e.to_string())
+}
