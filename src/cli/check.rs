@@ -152,7 +152,20 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
             s.shapes.surfaces.len()
         ),
     );
-    for system in (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k)) {
+    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+    let (grains, systems): (Vec<_>, Vec<_>) = systems.partition(|system| system.is_grain());
+    if !grains.is_empty() {
+        let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
+        let points = s.shapes.balls.iter().filter(|b| b.point_size > 0.0).count();
+        line(
+            "deformable grains",
+            format!(
+                "{}: {coordinates} coordinates; {points} points of surfaces",
+                grains.len()
+            ),
+        );
+    }
+    for system in systems {
         let Some(mesh) = system.deformed_mesh() else {
             line(
                 "half-space",

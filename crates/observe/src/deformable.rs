@@ -26,6 +26,8 @@ pub struct Deformable {
     distortions: Vec<Option<[f64; 2]>>,
     /// Of each body the largest share of a force on its border.
     borders: Vec<f64>,
+    /// Largest strain and rotation of grains that deform.
+    grains: Option<[f64; 2]>,
 }
 
 /// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
@@ -35,8 +37,8 @@ const LARGE: f64 = 0.02;
 /// A body in small strain, and how large its strain was.
 #[derive(Clone, Debug, Serialize)]
 pub struct SmallStrain {
-    /// Name of the body.
-    pub body: String,
+    /// Name of the body; none of grains.
+    pub body: Option<String>,
     /// Largest principal strain of an element, by its size, at the rows of the statistics.
     pub strain: f64,
     /// Largest rotation of an element (rad).
@@ -46,11 +48,22 @@ pub struct SmallStrain {
 impl SmallStrain {
     /// What is wrong where it was not small.
     pub fn warning(&self) -> Option<String> {
+        let (who, what, remedy) = match &self.body {
+            Some(name) => (
+                format!("the body `{name}` is"),
+                "its elements strain",
+                "give it `strain: Corotational` for large rotations, or `strain: NeoHookean` for large strains",
+            ),
+            None => (
+                "grains that deform are".to_owned(),
+                "elements of one strain",
+                "load them less, or give their material a larger `young`",
+            ),
+        };
         (self.strain.max(self.rotation) > LARGE).then(|| {
             format!(
-                "the body `{}` is computed in small strain, and its elements strain by up to {:.1} % and turn by up to {:.3} rad (more than \
-                 {:.0} % or {LARGE} rad is not small); give it `strain: Corotational` for large rotations, or `strain: NeoHookean` for large strains",
-                self.body,
+                "{who} computed in small strain, and {what} by up to {:.1} % and turn by up to {:.3} rad (more than \
+                 {:.0} % or {LARGE} rad is not small); {remedy}",
                 100.0 * self.strain,
                 self.rotation,
                 100.0 * LARGE
@@ -88,7 +101,7 @@ impl BorderLoad {
 impl Deformable {
     /// Of the dynamical systems of a simulation.
     pub fn of<S: Space>(s: &Simulation<S>) -> Self {
-        let systems = || (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+        let systems = || first_bodies(s);
         let named = systems().flat_map(|system| {
             let holders = system.holders().into_iter();
             holders.map(|h| format!("{}_{}_{}", system.name(), h.part, ["x", "y", "z"][h.axis]))
@@ -97,9 +110,28 @@ impl Deformable {
             holders: named.collect(),
             bodies: systems().map(|s| s.name().to_owned()).collect(),
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
-            borders: vec![0.0; s.state.systems.len()],
+            borders: vec![0.0; systems().count()],
+            grains: strain_of_grains(s),
         }
     }
+}
+
+/// Deformable bodies that are no grains; these come last.
+fn first_bodies<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = &dyn DynamicalSystem<S>> {
+    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+    systems.take_while(|system| !system.is_grain())
+}
+
+/// Grains that deform.
+fn grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = &dyn DynamicalSystem<S>> {
+    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+    systems.filter(|system| system.is_grain())
+}
+
+/// Largest strain and rotation in grains that deform.
+fn strain_of_grains<S: Space>(s: &Simulation<S>) -> Option<[f64; 2]> {
+    let all = grains(s).filter_map(DynamicalSystem::small_strain);
+    all.reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])
 }
 
 /// The larger of two distortions in each part.
@@ -147,7 +179,8 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let systems = || (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+        let systems = || first_bodies(s);
+        self.grains = larger(self.grains, strain_of_grains(s));
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
         }
@@ -175,7 +208,7 @@ impl<S: Space> Observer<S> for Deformable {
             let now = system.and_then(DynamicalSystem::small_strain);
             if let Some([strain, rotation]) = larger(self.distortions[k], now) {
                 summary.small_strain.push(SmallStrain {
-                    body: name.clone(),
+                    body: Some(name.clone()),
                     strain,
                     rotation,
                 });
@@ -188,14 +221,22 @@ impl<S: Space> Observer<S> for Deformable {
                 });
             }
         }
+        let strain = larger(self.grains, strain_of_grains(end.simulation));
+        if let Some([strain, rotation]) = strain {
+            summary.small_strain.push(SmallStrain {
+                body: None,
+                strain,
+                rotation,
+            });
+        }
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        encode(&(&self.distortions, &self.borders))
+        encode(&(&self.distortions, &self.borders, self.grains))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.distortions, self.borders) = decode(from)?;
+        (self.distortions, self.borders, self.grains) = decode(from)?;
         Ok(())
     }
 
@@ -216,13 +257,43 @@ impl<S: Space> Observer<S> for Deformable {
                 text: traction_table(end.simulation, k),
             });
         }
+        if self.grains.is_some() {
+            out.push(Output::Text {
+                file: GRAINS.to_owned(),
+                text: vtk("grains", &all_grains(end.simulation)),
+            });
+        }
         out
     }
 
     fn file_names(&self) -> Vec<String> {
         let of = |name: &String| [format!("{name}.vtk"), format!("{name}_tractions.csv")];
-        self.bodies.iter().flat_map(of).collect()
+        let grains = self.grains.map(|_| GRAINS.to_owned());
+        self.bodies.iter().flat_map(of).chain(grains).collect()
     }
+}
+
+/// File of the meshes of grains.
+const GRAINS: &str = "elastic_grains.vtk";
+
+/// The meshes of all grains that deform as one.
+fn all_grains<S: Space>(s: &Simulation<S>) -> DeformedMesh<S> {
+    let mut out = DeformedMesh {
+        points: Vec::new(),
+        displacement: Vec::new(),
+        elements: Vec::new(),
+        boundary: Vec::new(),
+        stress: Vec::new(),
+    };
+    for mesh in grains(s).filter_map(DynamicalSystem::deformed_mesh) {
+        let first = out.points.len() as u32;
+        out.points.extend(mesh.points);
+        out.displacement.extend(mesh.displacement);
+        out.elements.extend(mesh.elements.iter().map(|p| first + p));
+        out.boundary.extend(mesh.boundary.iter().map(|p| first + p));
+        out.stress.extend(mesh.stress);
+    }
+    out
 }
 
 /// Name of the column of the force of a holder, from that of its displacement.

@@ -212,6 +212,9 @@ impl Camera {
                 .as_ref()
                 .filter(|_| matches!(subject, Subject::Stress));
             bodies.extend(mesh::elements(simulation, self.window, shown));
+            if shown.is_none() {
+                bodies.extend(mesh::grains(simulation, self.window, paints));
+            }
             bodies.extend(pieces(simulation, self.window, paints));
             bodies.extend(named_balls(simulation, self.window));
         }

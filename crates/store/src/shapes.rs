@@ -67,6 +67,9 @@ fn shaped<S: Space>(s: &Simulation<S>) -> Vec<bool> {
     for driven in &s.state.bodies.driven {
         parts[driven.body as usize] = 0;
     }
+    for (parts, carrier) in parts.iter_mut().zip(&s.state.bodies.carriers) {
+        *parts = if carrier.is_some() { 0 } else { *parts };
+    }
     parts.into_iter().map(|n| n > 1).collect()
 }
 

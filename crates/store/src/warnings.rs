@@ -393,7 +393,7 @@ mod tests {
             s.step_size.deepest = 0.2;
             s.small_strain = [("bent", 1e-3, 0.3), ("stiff", 1e-3, 1e-3)]
                 .map(|(body, strain, rotation)| SmallStrain {
-                    body: body.into(),
+                    body: Some(body.into()),
                     strain,
                     rotation,
                 })

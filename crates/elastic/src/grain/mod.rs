@@ -132,7 +132,7 @@ impl<S: Deformable> ElasticGrain<S> {
         let model = Model {
             contactor: Contactor {
                 nodes: Nodes::one(0),
-                radius: size * shape.reach(),
+                radius: S::ball_radius(shape.volume() * size.powi(S::D as i32)),
                 shape: ContactorShape::Grain,
                 material: spec.surface_material,
             },

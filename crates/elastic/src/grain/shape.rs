@@ -134,11 +134,6 @@ impl<S: Space> GrainShape<S> {
         &self.rates
     }
 
-    /// Distance of the farthest vertex from the centre.
-    pub fn reach(&self) -> f64 {
-        self.vertices().map(|x| x.norm()).fold(0.0, f64::max)
-    }
-
     /// Length or area of the surface that belongs to each vertex.
     pub fn tributary(&self) -> Vec<f64> {
         let at: Vec<S::Vector> = self.vertices().collect();

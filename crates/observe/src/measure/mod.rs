@@ -125,7 +125,9 @@ impl<S: Space> Grain<'_, S> {
 /// The grains; shapes of driven bodies are excluded.
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
     let flags = s.state.bodies.grain_flags();
-    let balls = s.shapes.balls.iter().map(|b| Grain {
+    // Points of surfaces are balls without a radius.
+    let balls = s.shapes.balls.iter().filter(|b| b.radius > 0.0);
+    let balls = balls.map(|b| Grain {
         at: fretwork_core::contact::detect::centre(b, &s.state.bodies),
         body: b.body as usize,
         radius: b.radius,
@@ -139,7 +141,17 @@ fn grains<S: Space>(s: &Simulation<S>) -> Vec<Grain<'_, S>> {
         mass: 0.0,
         piece: Some(p),
     });
-    let all = balls.chain(pieces).filter(|g| flags[g.body]);
+    let bodies = &s.state.bodies;
+    let closed = s.shapes.surfaces.iter().filter(|f| f.shape.is_closed());
+    let deformable = closed.map(|f| Grain {
+        at: bodies.position[f.body as usize],
+        body: f.body as usize,
+        radius: bodies.length[f.body as usize],
+        mass: 0.0,
+        piece: None,
+    });
+    let all = balls.chain(pieces).chain(deformable);
+    let all = all.filter(|g| flags[g.body]);
     let mut all: Vec<Grain<'_, S>> = all.collect();
     let mut volumes = vec![0.0; s.state.bodies.len()];
     for g in &all {

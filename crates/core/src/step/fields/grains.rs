@@ -22,9 +22,12 @@ pub struct GrainPart<S: Space> {
 }
 
 impl<S: Space> GrainPart<S> {
-    /// All balls and then all pieces of a simulation.
+    /// All balls and then all pieces of a simulation, then its grains that deform.
     pub fn all(s: &Simulation<S>) -> impl Iterator<Item = Self> {
-        let balls = s.shapes.balls.iter().map(|ball| Self {
+        let bodies = &s.state.bodies;
+        let deforms = |body: u32| bodies.carrier(body as usize).is_some_and(|c| c.grain);
+        let balls = s.shapes.balls.iter().filter(move |b| !deforms(b.body));
+        let balls = balls.map(|ball| Self {
             body: ball.body,
             material: ball.material,
             radius: ball.radius,
@@ -38,7 +41,15 @@ impl<S: Space> GrainPart<S> {
             corners: piece.core.boundary().corners.len() as u32,
             centre: piece_centre(piece, &s.state.bodies),
         });
-        balls.chain(pieces)
+        let surfaces = s.shapes.surfaces.iter().filter(move |f| deforms(f.body));
+        let grains = surfaces.map(|surface| Self {
+            body: surface.body,
+            material: surface.material,
+            radius: bodies.length[surface.body as usize],
+            corners: surface.shape.moving_vertices().len() as u32,
+            centre: bodies.position[surface.body as usize],
+        });
+        balls.chain(pieces).chain(grains)
     }
 
     fn index(&self) -> usize {
