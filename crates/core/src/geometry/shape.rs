@@ -123,6 +123,24 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn is_closed(&self) -> bool {
         false
     }
+    /// Returns the nearest point of a closed surface to a place that it encloses, at any depth; `None` for places outside and for
+    /// surfaces that are not closed.
+    fn enclosing(&self, place: &S::Vector) -> Option<ClosestPoint<S::Vector>> {
+        if !self.is_closed() {
+            return None;
+        }
+        let far = |x: &S::Vector| x.dot(x);
+        let size = self.moving_vertices().iter().map(far).fold(0.0, f64::max);
+        if far(place) >= size {
+            return None;
+        }
+        let mut found = Vec::new();
+        self.touches(place, 2.0 * size.sqrt(), &mut found);
+        let nearest = found
+            .into_iter()
+            .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
+        nearest.filter(|touch| touch.distance < 0.0)
+    }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {

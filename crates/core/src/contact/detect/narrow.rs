@@ -186,6 +186,10 @@ impl<'a, S: Space> Narrow<'a, S> {
         surface
             .shape
             .touches(&local, ball.radius + margin, &mut touches);
+        if touches.is_empty() {
+            // A point that came too fast is pushed out of a grain from any depth.
+            touches.extend(surface.shape.enclosing(&local));
+        }
         let Some(law) = self.laws.get(ball.material, surface.material) else {
             return;
         };

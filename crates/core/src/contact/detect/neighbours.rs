@@ -129,7 +129,13 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
                     let mut apart = centre - origin;
                     if closed {
                         apart = self.shapes.periodic.shortest(apart);
-                        if apart.norm() > size + reach {
+                        let far = apart.norm();
+                        if far > size + reach {
+                            continue;
+                        }
+                        if far < size {
+                            // Within a grain no place is too deep.
+                            pairs.push((name, s as u32 | Key::SURFACE));
                             continue;
                         }
                     }
