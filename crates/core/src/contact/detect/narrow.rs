@@ -320,6 +320,11 @@ impl<'a, S: Space> Narrow<'a, S> {
                     let before = network.old[..self.at].iter().rev();
                     let same = before.take_while(|c| c.key.pair() == pair);
                     let known = same.map(|c| -c.gap).fold(0.0, f64::max);
+                    // A point of a grain is as thick as its grain.
+                    let grain =
+                        |b: &&u32| self.bodies.carrier(**b as usize).is_some_and(|c| c.grain);
+                    let grain = found.bodies.iter().find(grain);
+                    let size = grain.map_or(size, |b| self.bodies.length[*b as usize]);
                     let compliant = network.memory[found.law as usize].compliant;
                     network.step_size.record_late(
                         &found,
