@@ -511,7 +511,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         Some(TouchingSurface {
             nodes: part.points.clone(),
             points: part.points.iter().map(|p| rest(*p)).collect(),
-            facets: part.facets.iter().flat_map(|f| f[..S::D].to_vec()).collect(),
+            facets: part
+                .facets
+                .iter()
+                .flat_map(|f| f[..S::D].to_vec())
+                .collect(),
             areas: part.areas::<S>(place),
         })
     }

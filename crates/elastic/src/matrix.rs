@@ -78,7 +78,9 @@ impl Sparse {
 
     /// Its memory (bytes).
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.starts[..]) + size_of_val(&self.columns[..]) + size_of_val(&self.values[..])
+        size_of_val(&self.starts[..])
+            + size_of_val(&self.columns[..])
+            + size_of_val(&self.values[..])
     }
 
     /// The first `n` rows and columns times `scale`, plus a diagonal.

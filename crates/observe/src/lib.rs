@@ -24,6 +24,7 @@ pub mod jump;
 pub mod layer;
 pub mod loops;
 pub mod measure;
+pub mod mesh_fields;
 pub mod observer;
 pub mod output;
 pub mod picture;
@@ -40,6 +41,7 @@ pub mod steady;
 pub mod strain;
 pub mod stress;
 pub mod summary;
+pub mod tractions;
 pub mod warning;
 pub mod wear;
 
