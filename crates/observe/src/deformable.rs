@@ -2,12 +2,13 @@
 //! and the tractions along what touches.
 
 use super::chart::{Axis, Chart, Series, Style};
+use super::map::of_contact;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
 use super::summary::Summary;
-use super::tractions::{loaded, signed};
+use super::tractions::{SurfaceState, loaded, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -133,7 +134,16 @@ impl<S: Space> Observer<S> for Deformable {
         charts
             .iter_mut()
             .for_each(|c| c.subtitle = Some(end.title.to_owned()));
-        vec![Output::charts("deformable.png".to_owned(), charts, 2)]
+        let mut out = vec![Output::charts("deformable.png".to_owned(), charts, 2)];
+        for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 3) {
+            if let Some(state) = SurfaceState::of(end.simulation, k) {
+                out.push(Output::Maps {
+                    file: format!("{name}_slip.png"),
+                    maps: of_contact(name, &state, has_tractions(end.simulation, k), end.title),
+                });
+            }
+        }
+        out
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -159,15 +169,28 @@ impl<S: Space> Observer<S> for Deformable {
         holders.flat_map(|h| [h.displacement, h.force]).collect()
     }
 
-    fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        if S::D == 2 {
+            return vec![Picture {
+                name: "stress",
+                shows: Shows::Stress,
+            }];
+        }
+        let systems = self.bodies.iter().enumerate();
+        // What sticks and slips, and the pressure.
+        let maps = systems.flat_map(|(k, name)| {
+            let state = SurfaceState::of(s, k);
+            let maps = state.map(|state| of_contact(name, &state, has_tractions(s, k), ""));
+            maps.into_iter().flatten().take(2)
+        });
         vec![Picture {
-            name: "stress",
-            shows: Shows::Stress,
+            name: "slip",
+            shows: Shows::Maps(maps.collect()),
         }]
     }
 
     fn picture_names(&self) -> Vec<&'static str> {
-        vec!["stress"]
+        vec!["stress", "slip"]
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
@@ -226,6 +249,7 @@ impl<S: Space> Observer<S> for Deformable {
             [
                 format!("{name}.vtk"),
                 format!("{name}_tractions.csv"),
+                format!("{name}_slip.png"),
                 format!("mesh_{name}.vtkhdf"),
                 format!("surface_{name}.vtkhdf"),
             ]

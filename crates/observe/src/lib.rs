@@ -23,6 +23,7 @@ pub mod friction_test;
 pub mod jump;
 pub mod layer;
 pub mod loops;
+pub mod map;
 pub mod measure;
 pub mod mesh_fields;
 pub mod observer;

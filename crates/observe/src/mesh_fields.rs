@@ -1,7 +1,7 @@
 //! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line of explanation: inside a body of
 //! finite elements, and along the surface of every body that touches.
 
-use super::tractions::{SurfaceState, Zone};
+use super::tractions::{SurfaceState, Zone, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::geometry::space::{Space, VectorLike};
 
@@ -100,7 +100,7 @@ pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
 }
 
 /// Fields along a surface that touches.
-pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 6] {
+pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
     [
         MeshField {
             name: "displacement",
@@ -149,6 +149,27 @@ pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 6] {
             at: At::Points,
             width: 1,
             values: |s| s.zone.iter().copied().map(Zone::status).collect(),
+        },
+        MeshField {
+            name: "facet_pressure",
+            unit: "Pa",
+            doc: "mean of the pressure of the points of each facet",
+            at: At::Cells,
+            width: 1,
+            values: |s| s.facets().iter().map(|f| f.pressure).collect(),
+        },
+        MeshField {
+            name: "facet_shear",
+            unit: "Pa",
+            doc: "size of the mean traction along the surface of the points of each facet; in 2D positive along +x",
+            at: At::Cells,
+            width: 1,
+            values: |s| {
+                s.facets()
+                    .iter()
+                    .map(|f| signed::<S>(&f.tangential))
+                    .collect()
+            },
         },
     ]
 }

@@ -47,8 +47,20 @@ pub struct SurfaceState<S: Space> {
     pub pressure: Vec<f64>,
     /// Its part along the surface (Pa): in the plane positive along +x, in space its size.
     pub shear: Vec<f64>,
+    /// The vector of that part (Pa).
+    pub tangential: Vec<S::Vector>,
     /// What each point does.
     pub zone: Vec<Zone>,
+}
+
+/// Tractions on a facet: means of its points, which sum up to the same force. Where points have more and fewer facets in turn, pressures of
+/// points alternate, and those of facets do not.
+#[derive(Clone, Copy, Debug)]
+pub struct FacetTraction<S: Space> {
+    /// Pressure (Pa).
+    pub pressure: f64,
+    /// Traction along the surface (Pa).
+    pub tangential: S::Vector,
 }
 
 impl<S: Space> SurfaceState<S> {
@@ -78,6 +90,7 @@ impl<S: Space> SurfaceState<S> {
         let over = |v: &S::Vector, k: usize| *v * (1.0 / surface.areas[k]);
         let traction = force.iter().enumerate().map(|(k, f)| over(f, k));
         let along = tangential.iter().enumerate().map(|(k, f)| over(f, k));
+        let tangential: Vec<S::Vector> = along.collect();
         let zone = |([sticks, slips], share): (&[f64; 2], &f64)| match () {
             () if *share < TRACE => Zone::Open,
             () if slips >= sticks => Zone::Slip,
@@ -85,12 +98,30 @@ impl<S: Space> SurfaceState<S> {
         };
         Some(Self {
             traction: traction.collect(),
-            shear: along.map(|t| signed::<S>(&t)).collect(),
+            shear: tangential.iter().map(signed::<S>).collect(),
+            tangential,
             zone: slipping.iter().zip(&share).map(zone).collect(),
             pressure,
             displacement,
             surface,
         })
+    }
+
+    /// Tractions on the facets, in their order.
+    pub fn facets(&self) -> Vec<FacetTraction<S>> {
+        let mean = |points: &[u32]| {
+            let share = 1.0 / points.len() as f64;
+            let mut out = FacetTraction {
+                pressure: 0.0,
+                tangential: S::Vector::zero(),
+            };
+            for k in points.iter().map(|k| *k as usize) {
+                out.pressure += self.pressure[k] * share;
+                out.tangential += self.tangential[k] * share;
+            }
+            out
+        };
+        self.surface.facets.chunks_exact(S::D).map(mean).collect()
     }
 
     /// Where a point is now (m).

@@ -129,19 +129,17 @@ fn fields_of_bodies_of_finite_elements_are_those_of_the_other_files() {
 #[test]
 fn tractions_of_half_spaces_sum_up_to_their_forces() {
     let out = folder("half-space-surfaces");
-    let sets = [
-        "time.end=0.02",
-        "output.frames=0",
-        "output.figures=false",
-        "uncertainty.repeats=0",
-    ];
+    let sets = ["time.end=0.02", "output.frames=1", "uncertainty.repeats=0"];
     let sets = sets.iter().flat_map(|s| ["--set", s]).collect::<Vec<_>>();
     let (output, _) = run("cases/sphere_on_flat_fretting.ron", &out, &sets);
     assert!(output.status.success());
     let reader = Reader::open(&out.join("results.h5")).unwrap();
     assert!(!reader.has("views/meshes/flat/Points"));
+    assert!(out.join("frames/slip_00000032.png").exists());
     for name in ["flat", "sphere"] {
         check_surface(&out, &reader, name, &["x", "y", "z"]);
+        // What sticks and slips is drawn at the end, and with the pictures of the run.
+        assert!(out.join(format!("{name}_slip.png")).exists());
     }
     std::fs::remove_dir_all(out).ok();
 }
