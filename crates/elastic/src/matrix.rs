@@ -196,17 +196,15 @@ impl FactorSize {
                 columns.row_idx().len() + columns.col_ptr().len()
             }
             SymbolicCholeskyRaw::Supernodal(blocks) => {
-                let mut rows = 0;
                 for k in 0..blocks.n_supernodes() {
                     let below = blocks.supernode(k).pattern().len();
                     let columns = blocks.supernode_end()[k] - blocks.supernode_begin()[k];
                     for c in 1..=columns {
                         factorise += ((c + below) as f64).powi(2);
                     }
-                    rows += below;
                 }
-                // Rows of all blocks, and for each block where it begins and ends.
-                rows + 5 * blocks.n_supernodes()
+                // Rows of all blocks, the blocks of all rows, and for each block where it begins and ends.
+                2 * blocks.row_idx().len() + 6 * blocks.n_supernodes()
             }
         };
         // And the order of elimination with its inverse.
