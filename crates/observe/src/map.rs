@@ -112,7 +112,7 @@ struct Local {
 fn plane<S: Space>(state: &SurfaceState<S>, loaded: &[usize]) -> Option<[usize; 2]> {
     let mut normal = S::Vector::zero();
     for k in loaded {
-        normal += state.traction[*k] * state.surface.areas[*k];
+        normal += (state.traction[*k] - state.tangential[*k]) * state.surface.areas[*k];
     }
     let normal = normal.padded().map(f64::abs);
     let across = (0..3).max_by(|a, b| normal[*a].total_cmp(&normal[*b]));
