@@ -2,6 +2,7 @@
 """Opens the results of a run with h5py and with VTK's own reader.
 
     pip install h5py vtk
+    cargo run --release -- run cases/cylinder_on_flat_fretting.ron
     python3 tests/check_results.py results/wheel_rail_fretting
 
 Exits with a sentence where something cannot be read or does not agree.
@@ -82,6 +83,96 @@ def check_contacts(data, dimension):
         fail("contacts have a status that is none")
 
 
+def mesh_state(view, k):
+    """Point and cell data of a state of a mesh, whose points and cells are those of all states."""
+    steps = view["Steps"]
+    counts = {"PointData": int(view["NumberOfPoints"][0]), "CellData": int(view["NumberOfCells"][0])}
+    out = {}
+    for place, count in counts.items():
+        for name, data in view[place].items():
+            first = int(steps[f"{place}Offsets/{name}"][k])
+            out[name] = data[first:first + count]
+            if len(out[name]) != count:
+                fail(f"state {k} of {view.name}: {name} has {len(out[name])} values of {count}")
+    return out
+
+
+def check_mesh(view):
+    """A mesh of an unstructured grid: one part that all states share."""
+    steps, n = view["Steps"], len(view["Steps/Values"])
+    if n == 0 or int(steps.attrs["NSteps"]) != n or not (np.diff(steps["Values"]) > 0).all():
+        fail(f"{view.name} has no states, or their time does not advance")
+    points, offsets, corners = view["Points"][:], view["Offsets"][:], view["Connectivity"][:]
+    if len(points) != view["NumberOfPoints"][0] or len(offsets) != view["NumberOfCells"][0] + 1:
+        fail(f"{view.name}: points or cells are not as many as it says")
+    if offsets[-1] != len(corners) or view["NumberOfConnectivityIds"][0] != len(corners) or corners.max() >= len(points):
+        fail(f"{view.name}: corners of cells do not agree with its points")
+    if view["Types"].dtype != np.uint8 or len(view["Types"]) != len(offsets) - 1:
+        fail(f"{view.name}: kinds of cells are no bytes, one a cell")
+    for name, value in (("PartOffsets", 0), ("NumberOfParts", 1), ("PointOffsets", 0), ("CellOffsets", 0), ("ConnectivityIdOffsets", 0)):
+        if (steps[name][:] != value).any() or len(steps[name]) != n:
+            fail(f"{view.name}/Steps/{name} is not {value} in each of {n} states")
+    for k in range(n):
+        if not all(np.isfinite(values).all() for values in mesh_state(view, k).values()):
+            fail(f"state {k} of {view.name} has values that are not finite")
+    return n
+
+
+def check_stress(name, state):
+    """The von Mises stress is that of the six components, in their order."""
+    xx, yy, zz, xy, yz, xz = state["stress"].T
+    squared = 0.5 * ((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3.0 * (xy**2 + yz**2 + xz**2)
+    if not np.allclose(np.sqrt(squared), state["von_mises"], rtol=1e-12):
+        fail(f"the von Mises stress of {name} is not that of its stress")
+
+
+def check_end(folder, name, state):
+    """The last state of a mesh is that of its legacy file."""
+    with open(os.path.join(folder, f"{name}.vtk")) as file:
+        lines = file.read().split("\n")
+    start = next(k for k, line in enumerate(lines) if line.startswith("VECTORS displacement")) + 1
+    count = len(state["displacement"])
+    table = np.array([line.split() for line in lines[start:start + count]], dtype=float)
+    off = np.abs(table - state["displacement"]).max()
+    if off > 1e-12 * np.abs(table).max():
+        fail(f"displacements of {name} at the end differ from {name}.vtk by {off:e} m")
+
+
+def check_surface(folder, name, state, dimension):
+    """The sums of pressure and traction times area are the forces of the contacts at the end."""
+    table = np.genfromtxt(os.path.join(folder, f"{name}_tractions.csv"), delimiter=",", names=True)
+    area = state["area"]
+    newton = "Nm" if dimension == 2 else "N"
+    pairs = [(table[f"normal_force_{newton}"].sum(), (state["pressure"] * area).sum())]
+    for k, axis in enumerate("xyz"[:dimension]):
+        pairs.append((table[f"force_{axis}_{newton}"].sum(), (state["traction"][:, k] * area).sum()))
+    scale = max(abs(p[0]) for p in pairs)
+    if any(abs(a - b) > 1e-12 * scale for a, b in pairs):
+        fail(f"tractions of {name} do not sum up to its forces: {pairs}")
+    if not set(np.unique(state["status"])) <= {0.0, 1.0, 2.0} or ((state["status"] > 0) & (np.abs(state["traction"]).max(axis=1) == 0)).any():
+        fail(f"the status of {name} does not agree with its tractions")
+    stick, slip = [int((state["status"] == k).sum()) for k in (1, 2)]
+    print(f"  surface {name}: {pairs[0][1]:.6g} normal, off by {max(abs(a - b) for a, b in pairs) / scale:.1e}; {stick} points stick, {slip} slip")
+
+
+def check_meshes(folder, file, live):
+    """Fields of deformable bodies; those of the end also against the other files of the run."""
+    dimension = int(file.attrs["dimension"])
+    for kind in ("meshes", "surfaces"):
+        for name, view in file["views"].get(kind, {}).items():
+            n = check_mesh(view)
+            last = mesh_state(view, n - 1)
+            if kind == "meshes":
+                check_stress(name, last)
+            at_end = abs(view["Steps/Values"][-1] - file["statistics/time"][-1]) < 1e-12
+            if live or not at_end:
+                continue
+            if kind == "meshes":
+                check_end(folder, name, last)
+            else:
+                check_surface(folder, name, last, dimension)
+
+
 def check_h5(path, live):
     with h5py.File(path, "r", swmr=live) as f:
         for group in ("case", "materials", "plugins", "statistics", "views/grains", "views/contacts", "views/bodies", "VTKHDF"):
@@ -96,6 +187,7 @@ def check_h5(path, live):
                 fail(f"{bare} in {group} have no unit or no explanation")
         check_ledger(f["statistics"])
         check_contacts(f["views/contacts/CellData"], int(f.attrs["dimension"]))
+        check_meshes(os.path.dirname(path), f, live)
         views = {name: check_view(f["views"][name], name) for name in ("grains", "contacts", "bodies")}
         laws = [b.decode() if isinstance(b, bytes) else b for b in f["plugins/name"][:]]
         print(f"h5py {h5py.__version__}: {next(iter(lengths.values()))} rows of {len(lengths)} statistics, states {views}, laws {laws}")
@@ -136,8 +228,9 @@ def main():
     check_h5(path, live)
     if not live:
         check_vtk(path, "grains")
-        for name in ("contacts", "bodies"):
-            check_vtk(os.path.join(folders[0], f"{name}.vtkhdf"), name)
+        for file in sorted(os.listdir(folders[0])):
+            if file.endswith(".vtkhdf"):
+                check_vtk(os.path.join(folders[0], file), file.removesuffix(".vtkhdf"))
     print("all readable")
 
 

@@ -2,6 +2,7 @@
 
 mod bonds;
 pub(super) mod cost;
+mod deformable;
 mod features;
 mod load;
 mod springs;
@@ -46,7 +47,7 @@ fn describe_and_time<S: Steps>(
     built: Built<S>,
     args: &CheckArgs,
 ) -> Result<(), Failure> {
-    answer(describe(loaded, &built).trim_end())?;
+    answer(describe(loaded, &built, !args.no_timing).trim_end())?;
     if !args.no_timing {
         let time = &loaded.case.time;
         let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
@@ -57,7 +58,7 @@ fn describe_and_time<S: Steps>(
     Ok(())
 }
 
-fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
+fn describe<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> String {
     let (case, s) = (&loaded.case, &built.simulation);
     let mut out = format!("{}: {}\n", loaded.path.display(), clean(&case.name));
     let mut line = |label: &str, value: String| {
@@ -72,7 +73,7 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
             case.time.step, case.time.theta
         ),
     );
-    let largest = bodies(s, &mut line);
+    let largest = bodies(s, timed, &mut line);
     let solver = &s.options.solver;
     line(
         "solver",
@@ -122,8 +123,8 @@ fn describe<S: Space>(loaded: &Loaded, built: &Built<S>) -> String {
     out
 }
 
-/// Grains, first bodies and contacts; returns the largest radius of a grain (m).
-fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f64 {
+/// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the largest radius of a grain (m).
+fn bodies<S: Space>(s: &Simulation<S>, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
     let range = |radii: &mut dyn Iterator<Item = f64>| {
         let start = (0, f64::INFINITY, 0.0f64);
         radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
@@ -152,43 +153,8 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
             s.shapes.surfaces.len()
         ),
     );
-    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
-    let (grains, systems): (Vec<_>, Vec<_>) = systems.partition(|system| system.is_grain());
-    if !grains.is_empty() {
-        let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
-        let points = s.shapes.balls.iter().filter(|b| b.point_size > 0.0).count();
-        line(
-            "deformable grains",
-            format!(
-                "{}: {coordinates} coordinates; {points} points of surfaces",
-                grains.len()
-            ),
-        );
-    }
-    for system in systems {
-        let Some(mesh) = system.deformed_mesh() else {
-            line(
-                "half-space",
-                format!(
-                    "{}: {} coordinates; {} contactors",
-                    system.name(),
-                    system.freedoms(),
-                    system.contactors().len()
-                ),
-            );
-            continue;
-        };
-        line(
-            "deformable body",
-            format!(
-                "{}: {} points, {} elements, {} coordinates; {} contactors",
-                system.name(),
-                mesh.points.len(),
-                mesh.elements.len() / (S::D + 1),
-                system.freedoms(),
-                system.contactors().len()
-            ),
-        );
+    for (label, text) in deformable::lines(s, timed) {
+        line(label, text);
     }
     let contacts = s.state.network.contacts.len();
     line("contacts at start", contacts.to_string());

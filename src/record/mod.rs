@@ -5,11 +5,13 @@ pub mod run;
 pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
     biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops,
-    measure, observer, output, placement, scars, scatter, solving, statistics, steady, strain,
-    stress,
+    measure, mesh_fields, observer, output, placement, scars, scatter, solving, statistics, steady,
+    strain, stress, tractions,
 };
 pub use fretwork_plot::picture;
-pub use fretwork_store::{checkpoint, fclib, results, series, shapes, summary, views, warnings};
+pub use fretwork_store::{
+    checkpoint, fclib, meshes, results, series, shapes, summary, views, warnings,
+};
 
 pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};

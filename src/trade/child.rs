@@ -253,8 +253,12 @@ impl Launcher {
             }
         };
         // Only the numbers are kept; states and pictures of every setting would fill the disk.
-        for file in ["results.h5", "contacts.vtkhdf", "bodies.vtkhdf"] {
-            let _ = std::fs::remove_file(place.join(file));
+        for file in std::fs::read_dir(&place).into_iter().flatten().flatten() {
+            let path = file.path();
+            let of_states = path.extension().is_some_and(|e| e == "vtkhdf");
+            if of_states || path.ends_with("results.h5") {
+                let _ = std::fs::remove_file(path);
+            }
         }
         let _ = std::fs::remove_dir_all(place.join("frames"));
         Ok(Ended::Finished(finished))

@@ -336,3 +336,28 @@ fn grains_of_different_size_are_weighed_in_pairs() {
         );
     }
 }
+
+/// Their numbers are compared with what is allocated in `cargo test -p fretwork-elastic --test memory`.
+#[test]
+fn the_memory_and_cost_of_deformable_bodies_are_told() {
+    let (_, _, text) = check("cylinder_on_flat_fretting", &[]);
+    for told in [
+        "flat: 9657 points, 19008 elements",
+        "19096 unknowns; memory: matrix 4.4 MB, factor 9.7 MB, compliance of the surface 3.5 kB a point",
+        "factorised once, 44 million operations",
+        "MB of deformable bodies",
+        "run time             about",
+    ] {
+        assert!(text.contains(told), "no `{told}` in {text}");
+    }
+    let (_, _, text) = check("sphere_on_flat_fretting", &[]);
+    assert!(
+        text.contains("768 unknowns; memory: tables of influences 221 kB"),
+        "{text}"
+    );
+    let (_, _, text) = check("verification/rubber_block", &[]);
+    assert!(
+        text.contains("each iteration of a step: one factorisation of"),
+        "{text}"
+    );
+}

@@ -21,8 +21,8 @@ use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
 use fretwork_core::bodies::{
-    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemStep,
-    SystemWork, compliance_by_solving,
+    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemSize,
+    SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -495,6 +495,33 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 .collect(),
             stress: self.stresses(),
         })
+    }
+
+    fn mesh_velocity(&self) -> Vec<S::Vector> {
+        let all = 0..self.model.mesh.points().len() as u32;
+        all.map(|p| self.model.of(&self.velocity, p)).collect()
+    }
+
+    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+        let part = self.model.part.as_ref()?;
+        let finite = self.model.large.is_some();
+        let rest = |p: u32| self.model.mesh.points()[p as usize];
+        // In small strain a force acts on the surface as it is without load.
+        let place = |p: u32| rest(p) + self.displacement(p) * f64::from(u8::from(finite));
+        Some(TouchingSurface {
+            nodes: part.points.clone(),
+            points: part.points.iter().map(|p| rest(*p)).collect(),
+            facets: part
+                .facets
+                .iter()
+                .flat_map(|f| f[..S::D].to_vec())
+                .collect(),
+            areas: part.areas::<S>(place),
+        })
+    }
+
+    fn size(&self) -> Option<SystemSize> {
+        Some(self.model.size())
     }
 
     fn small_strain(&self) -> Option<[f64; 2]> {

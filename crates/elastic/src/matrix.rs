@@ -1,6 +1,7 @@
 //! Symmetric sparse matrices, and their Cholesky factors by `faer`.
 
 use faer::linalg::solvers::SolveCore;
+use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Side};
@@ -73,6 +74,13 @@ impl Sparse {
     /// All entries, row by row.
     pub fn values(&self) -> &[f64] {
         &self.values
+    }
+
+    /// Its memory (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.starts[..])
+            + size_of_val(&self.columns[..])
+            + size_of_val(&self.values[..])
     }
 
     /// The first `n` rows and columns times `scale`, plus a diagonal.
@@ -152,6 +160,59 @@ impl Pattern {
         let factor = Llt::try_new_with_symbolic(symbolic.clone(), matrix, Side::Lower).ok()?;
         Some(Factor {
             factor: Some(factor),
+        })
+    }
+}
+
+/// What a factor takes, known without factorising.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FactorSize {
+    /// Memory of its values and of its pattern (bytes).
+    pub bytes: usize,
+    /// Floating-point operations of a factorisation.
+    pub factorise: f64,
+    /// Those of a solution.
+    pub solve: f64,
+}
+
+impl FactorSize {
+    /// Of a matrix, in the order of elimination that [`Pattern::of`] takes; `None` where it has too many entries.
+    pub fn of(a: &Sparse) -> Option<Self> {
+        let n = a.starts.len() - 1;
+        if n == 0 {
+            return Some(Self::default());
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
+        let (order, params) = Default::default();
+        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, params).ok()?;
+        let values = symbolic.len_val();
+        let mut factorise = 0.0;
+        // A column with k entries on and below the diagonal takes k^2.
+        let indices = match symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(columns) => {
+                for ends in columns.col_ptr().windows(2) {
+                    factorise += ((ends[1] - ends[0]) as f64).powi(2);
+                }
+                columns.row_idx().len() + columns.col_ptr().len()
+            }
+            SymbolicCholeskyRaw::Supernodal(blocks) => {
+                for k in 0..blocks.n_supernodes() {
+                    let below = blocks.supernode(k).pattern().len();
+                    let columns = blocks.supernode_end()[k] - blocks.supernode_begin()[k];
+                    for c in 1..=columns {
+                        factorise += ((c + below) as f64).powi(2);
+                    }
+                }
+                // Rows of all blocks, the blocks of all rows, and for each block where it begins and ends.
+                2 * blocks.row_idx().len() + 6 * blocks.n_supernodes()
+            }
+        };
+        // And the order of elimination with its inverse.
+        let indices = indices + 2 * n;
+        Some(Self {
+            bytes: values * size_of::<f64>() + indices * size_of::<usize>(),
+            factorise,
+            solve: 4.0 * values as f64,
         })
     }
 }

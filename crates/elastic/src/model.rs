@@ -6,12 +6,12 @@ use crate::error::BodyError;
 use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
 use crate::material::Elasticity;
-use crate::matrix::{Factor, Sparse};
+use crate::matrix::{Factor, FactorSize, Sparse};
 use crate::mesh::Mesh;
 use crate::spec::Touching;
 use crate::support::Rayleigh;
 use crate::surface::SurfacePart;
-use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
+use fretwork_core::bodies::{Contactor, ContactorShape, Nodes, SystemSize};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::OnceLock;
 
@@ -111,6 +111,29 @@ impl<S: Space> Model<S> {
         let scale = step * self.damping.stiffness + step * step;
         let a = self.stiffness.leading(free, scale, &diagonal);
         self.formed([h, theta], Factor::new(&a))
+    }
+
+    /// What its solutions need.
+    pub fn size(&self) -> SystemSize {
+        let free = self.freedoms.free;
+        let a = self.stiffness.leading(free, 1.0, &self.mass);
+        let factor = FactorSize::of(&a).unwrap_or_default();
+        let kept = if self.surface.len() <= MAX_SURFACE {
+            self.surface.len() * size_of::<f64>()
+        } else {
+            0
+        };
+        let large = self.large.is_some();
+        SystemSize {
+            unknowns: free,
+            // In large strain the tangent is kept beside the stiffness.
+            matrix: self.stiffness.bytes() * (1 + usize::from(large)),
+            factor: factor.bytes,
+            surface: self.surface.len() * kept,
+            point: S::D * kept,
+            operations: [factor.factorise, factor.solve],
+            refactorised: large,
+        }
     }
 
     /// With a factor of A.

@@ -102,6 +102,23 @@ impl SurfacePart {
         Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
     }
 
+    /// Area (m^2; length in the plane, m) that each point stands for: an equal share of each facet at it.
+    pub fn areas<S: Space>(&self, position: impl Fn(u32) -> S::Vector) -> Vec<f64> {
+        let mut out = vec![0.0; self.points.len()];
+        for facet in &self.facets {
+            let [a, b, c] = facet.map(|k| position(self.points[k as usize]));
+            let (u, v) = (b - a, c - a);
+            let area = match self.dimension {
+                2 => u.norm(),
+                _ => 0.5 * (u.dot(&u) * v.dot(&v) - u.dot(&v).powi(2)).max(0.0).sqrt(),
+            };
+            for k in &facet[..self.dimension] {
+                out[*k as usize] += area / self.dimension as f64;
+            }
+        }
+        out
+    }
+
     /// The segment of a chain that is nearest to a place, with its weights.
     fn nearest_segment<S: Space>(
         &self,
@@ -201,5 +218,7 @@ mod tests {
                 .fold(Vector3::zeros(), |s, (p, w)| s + position(p) * w);
             assert!((sum - at).norm() < 1e-14, "{at}: {sum}");
         }
+        let area: f64 = part.areas::<Dim3>(position).iter().sum();
+        assert!((area - 1.0).abs() < 1e-14, "{area}");
     }
 }

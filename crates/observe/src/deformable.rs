@@ -2,11 +2,13 @@
 //! and the tractions along what touches.
 
 use super::chart::{Axis, Chart, Series, Style};
+use super::map::of_contact;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
 use super::summary::Summary;
+use super::tractions::{SurfaceState, loaded, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -169,7 +171,16 @@ impl<S: Space> Observer<S> for Deformable {
         charts
             .iter_mut()
             .for_each(|c| c.subtitle = Some(end.title.to_owned()));
-        vec![Output::charts("deformable.png".to_owned(), charts, 2)]
+        let mut out = vec![Output::charts("deformable.png".to_owned(), charts, 2)];
+        for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 3) {
+            if let Some(state) = SurfaceState::of(end.simulation, k) {
+                out.push(Output::Maps {
+                    file: format!("{name}_slip.png"),
+                    maps: of_contact(name, &state, has_tractions(end.simulation, k), end.title),
+                });
+            }
+        }
+        out
     }
 
     fn columns(&self) -> Vec<Column> {
@@ -196,15 +207,28 @@ impl<S: Space> Observer<S> for Deformable {
         holders.flat_map(|h| [h.displacement, h.force]).collect()
     }
 
-    fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        if S::D == 2 {
+            return vec![Picture {
+                name: "stress",
+                shows: Shows::Stress,
+            }];
+        }
+        let systems = self.bodies.iter().enumerate();
+        // What sticks and slips, and the pressure.
+        let maps = systems.flat_map(|(k, name)| {
+            let state = SurfaceState::of(s, k);
+            let maps = state.map(|state| of_contact(name, &state, has_tractions(s, k), ""));
+            maps.into_iter().flatten().take(2)
+        });
         vec![Picture {
-            name: "stress",
-            shows: Shows::Stress,
+            name: "slip",
+            shows: Shows::Maps(maps.collect()),
         }]
     }
 
     fn picture_names(&self) -> Vec<&'static str> {
-        vec!["stress"]
+        vec!["stress", "slip"]
     }
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
@@ -272,7 +296,16 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn file_names(&self) -> Vec<String> {
-        let of = |name: &String| [format!("{name}.vtk"), format!("{name}_tractions.csv")];
+        // Links to the results are of the program; without these names they would outlive the bodies that they show.
+        let of = |name: &String| {
+            [
+                format!("{name}.vtk"),
+                format!("{name}_tractions.csv"),
+                format!("{name}_slip.png"),
+                format!("mesh_{name}.vtkhdf"),
+                format!("surface_{name}.vtkhdf"),
+            ]
+        };
         let grains = self.grains.map(|_| GRAINS.to_owned());
         self.bodies.iter().flat_map(of).chain(grains).collect()
     }
@@ -375,30 +408,14 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     let bodies = &s.state.bodies;
     let even = has_tractions(s, system);
     let mut out: Vec<Traction<S>> = Vec::new();
-    for contact in &s.state.network.contacts {
-        let side = contact.bodies.iter().position(|b| {
-            let carrier = bodies.carrier(*b as usize);
-            carrier.is_some_and(|c| c.system as usize == system)
-        });
-        let Some(side) = side.filter(|_| contact.impulse != S::Vector::zero()) else {
-            continue;
-        };
-        let body = contact.bodies[side] as usize;
-        let sign = if side == 0 { 1.0 } else { -1.0 };
-        let force = contact.impulse * (1.0 / s.options.scheme.h);
-        let normal = force.dot(&contact.normal);
-        let along = force - contact.normal * normal;
-        // In the plane with its sign: positive along +x on the body.
-        let size = match S::D {
-            2 if along[0] * sign < 0.0 => -along.norm(),
-            _ => along.norm(),
-        };
+    for acting in loaded(s, system) {
+        let (contact, side) = (acting.contact, acting.side);
         let point = contact.key.ball().and_then(|k| s.shapes.balls.get(k));
         let point = point.filter(|ball| ball.radius == 0.0 && side == 0);
         out.push(Traction {
-            place: bodies.position[body] + contact.arms[side],
-            force: force * sign,
-            parts: [normal, size],
+            place: bodies.position[contact.bodies[side] as usize] + contact.arms[side],
+            force: acting.force,
+            parts: [acting.normal, signed::<S>(&acting.along)],
             area: point.filter(|_| even).map(|_| match S::D {
                 2 => 2.0 * contact.radius,
                 _ => std::f64::consts::PI * contact.radius * contact.radius,

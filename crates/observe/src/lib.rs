@@ -23,7 +23,9 @@ pub mod friction_test;
 pub mod jump;
 pub mod layer;
 pub mod loops;
+pub mod map;
 pub mod measure;
+pub mod mesh_fields;
 pub mod observer;
 pub mod output;
 pub mod picture;
@@ -40,6 +42,7 @@ pub mod steady;
 pub mod strain;
 pub mod stress;
 pub mod summary;
+pub mod tractions;
 pub mod warning;
 pub mod wear;
 

@@ -2,6 +2,7 @@
 //! draws them.
 
 use crate::chart::Chart;
+use crate::map::Map;
 
 /// An output file of an observer.
 #[derive(Clone, Debug)]
@@ -21,6 +22,13 @@ pub enum Output {
         charts: Vec<Chart>,
         /// Number of columns on the page.
         columns: usize,
+    },
+    /// Maps of a contact on one page, in two columns.
+    Maps {
+        /// Name of the PNG file.
+        file: String,
+        /// The maps; without any there is no file.
+        maps: Vec<Map>,
     },
 }
 

@@ -1,5 +1,6 @@
 //! What an observer shows in pictures of a moment, as data: who draws it is above this layer.
 
+use super::map::Map;
 use serde::{Deserialize, Serialize};
 
 /// What the colour of a grain says.
@@ -36,8 +37,10 @@ pub enum Shows {
     Paints(Vec<Paint>),
     /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first. In the plane only.
     Chains(Vec<[u32; 2]>),
-    /// The von Mises stress of deformable bodies. In the plane only.
+    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces. In the plane only.
     Stress,
+    /// Maps of contacts, on a page of their own.
+    Maps(Vec<Map>),
     /// A value of each ball.
     Values {
         /// The values.

@@ -10,6 +10,7 @@ use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
 use super::paint::{self, Coloured, DAMAGED, SOUND, Scale};
 use super::scene::{Place, Scene};
+use super::zone::{self, ZoneLine};
 use fretwork_observe::picture::Paint;
 
 /// A first body (rail, wheel), or a grain with corners.
@@ -99,6 +100,8 @@ pub struct Frame<'a> {
     pub disks: &'a [Disk],
     /// Interactions, drawn over the grains.
     pub links: &'a [Link],
+    /// What sticks and slips, drawn over all others.
+    pub zones: &'a [ZoneLine],
     /// Loads and motions.
     pub arrows: &'a [Arrow],
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
@@ -165,7 +168,8 @@ impl Frame<'_> {
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
         // Under the field: the colour bar and the scale bar, then the legend of the links.
         let bar = if self.scale.is_some() { 96.0 * u } else { 0.0 };
-        let line = if self.scale.is_none() || !self.links.is_empty() {
+        let marked = !(self.links.is_empty() && self.zones.is_empty());
+        let line = if self.scale.is_none() || marked {
             62.0 * u
         } else {
             0.0
@@ -185,6 +189,7 @@ impl Frame<'_> {
         self.draw_disks(&mut field, &map, u);
         self.draw_links(&mut field, &map, u);
         self.draw_labels(&mut field, &map, u);
+        zone::draw(&mut field, self.zones, |p| map.point(p), u);
         page.paste(&field, side as usize, top as usize);
         let edge = [side, top, field_width, field_height];
         page.frame(edge, 1.5 * u, STEEL_EDGE);
@@ -201,10 +206,11 @@ impl Frame<'_> {
         }
         let under = top + field_height;
         if let Some(scale) = &self.scale {
-            paint::scale(&mut page, scale, [side, under + 40.0 * u], u)?;
+            paint::scale(&mut page, scale, [side, under + 40.0 * u], 360.0, u)?;
         }
         let closest_point = under + bar + 38.0 * u;
-        furniture::legend(&mut page, self.links, [side, closest_point], u);
+        let end = furniture::legend(&mut page, self.links, [side, closest_point], u);
+        zone::legend(&mut page, self.zones, [end, closest_point], u);
         let right = side + field_width;
         let row = if self.scale.is_some() {
             under + 40.0 * u
@@ -390,6 +396,7 @@ mod tests {
             bodies,
             disks,
             links,
+            zones: &[],
             arrows: &[],
             scale: None,
             scene: None,

@@ -8,8 +8,8 @@ use super::font::{Anchor, TextStyle, text_width};
 use super::frame::{BROKEN, CHAIN, Link, LinkState, PLAIN};
 use super::paint::{DAMAGED, SOUND};
 
-/// Draws the legend of the link colours that are present, from a point on the middle of the line.
-pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) {
+/// Draws the legend of the link colours that are present, from a point on the middle of the line; gives where it ends.
+pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) -> f32 {
     let em = TEXT * u;
     let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));
     let damaged = has(|s| matches!(s, LinkState::Intact { damage } if *damage > 0.0));
@@ -55,6 +55,7 @@ pub(super) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2]
         page.text(label, [x, middle + 0.34 * em], &TextStyle::new(em, INK));
         x = (x + text_width(label, em) + 40.0 * u).round();
     }
+    x
 }
 
 /// Draws a scale bar of round length that ends at a point; `scale` in pixels per metre.

@@ -69,17 +69,18 @@ fn value(v: f64) -> Rgb {
     mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
-/// Draws a colour bar with its ticks and name, from a point on the middle of the bar; the ticks are below.
+/// Draws a colour bar of a length in layout units with its ticks and name, from a point on the middle of the bar; the ticks are below.
 pub(super) fn scale(
     page: &mut Canvas,
     scale: &Scale,
     [left, middle]: [f32; 2],
+    length: f32,
     u: f32,
 ) -> Result<(), ReportError> {
     let em = 0.9 * TEXT * u;
     let axis = Axis::new(scale.label.clone(), scale.unit.clone());
     let fitted = super::axis::Scale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
-    let (length, thick) = ((360.0 * u).round(), (22.0 * u).round());
+    let (length, thick) = ((length * u).round(), (22.0 * u).round());
     let (left, top) = ((left + 0.5 * em).round(), (middle - thick / 2.0).round());
     for i in 0..length as i32 {
         let share = f64::from(i) / f64::from(length);

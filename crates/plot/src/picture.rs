@@ -4,6 +4,7 @@ mod links;
 mod mesh;
 mod quantity;
 mod space;
+mod zones;
 
 pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
@@ -41,7 +42,7 @@ pub enum Subject<'a> {
     /// The contacts that carry force, with force chains highlighted: sorted pairs of bodies, the lower index
     /// first.
     Chains(&'a [[u32; 2]]),
-    /// The von Mises stress of deformable bodies (2D).
+    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces (2D).
     Stress,
     /// A value of each ball, from 0 to `top`.
     Values {
@@ -204,10 +205,15 @@ impl Camera {
         let flat = S::D == 2;
         let scene = (!flat).then(|| space::scene(simulation, paints));
         let (mut disks, mut links, mut bodies) = (Vec::new(), Vec::new(), Vec::new());
+        let mut along = Vec::new();
         if flat {
             disks = self::disks(simulation, self.window, paints);
             links = self.lines(simulation, subject);
             bodies = outlines(simulation, self.window);
+            bodies.extend(zones::solids(simulation, self.window));
+            if matches!(subject, Subject::Stress) {
+                along = zones::lines(simulation, self.window);
+            }
             let shown = scale
                 .as_ref()
                 .filter(|_| matches!(subject, Subject::Stress));
@@ -225,6 +231,7 @@ impl Camera {
             bodies: &bodies,
             disks: &disks,
             links: &links,
+            zones: &along,
             arrows: &[],
             scale,
             scene: scene.as_ref(),

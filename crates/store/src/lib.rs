@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub mod fclib;
+pub mod meshes;
 pub mod results;
 pub mod shapes;
 pub mod views;

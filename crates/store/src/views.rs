@@ -1,8 +1,8 @@
 //! Converts the state of a simulation to the views of `results.h5`.
 
 use super::results::{Header, Part, Results, ResultsError};
-use super::shapes;
 use super::summary::Summary;
+use super::{meshes, shapes};
 use fretwork_core::fields::{FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Kind;
@@ -49,6 +49,7 @@ pub fn header<S: Space>(
         seed: loaded.case.seed,
         dimension: S::D,
         shapes: shapes::of(built.simulation, built.densities),
+        meshes: meshes::of(&loaded.case, built.simulation),
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
@@ -210,6 +211,7 @@ fn append_in<S: Space>(
         column.resize(count, f64::NAN);
         column
     }));
+    results.append_meshes(s.state.time, &meshes::values(&loaded.case, s))?;
     results.append_views(s.state.time, &[grains, contacts(s, &fields), bodies(s)])
 }
 

@@ -11,6 +11,9 @@ use std::time::{Duration, Instant};
 /// Wall time for which steps are timed.
 const WATCHED: Duration = Duration::from_millis(500);
 
+/// Wall time that the first step of a scene with deformable bodies may take before: it forms what later steps keep.
+const FIRST: Duration = Duration::from_secs(4);
+
 /// Limit on the number of timed steps.
 const STEPS: u64 = 2000;
 
@@ -53,6 +56,7 @@ impl Trial {
     /// so that even the largest scene does not block the program.
     pub fn of<S: Steps>(mut simulation: Simulation<S>, steps: u64) -> Self {
         let (sender, receiver) = channel::<Result<Timed, String>>();
+        let deformable = !simulation.state.systems.is_empty();
         let watched = steps.min(STEPS);
         let work = move || {
             for _ in 0..watched {
@@ -76,17 +80,28 @@ impl Trial {
             out.failure = Some(format!("cannot start a thread to time steps ({e})"));
             return out;
         }
+        let mut end = begun + if deformable { FIRST } else { WATCHED };
         loop {
-            let left = WATCHED.saturating_sub(begun.elapsed());
+            let left = end.saturating_duration_since(Instant::now());
             match receiver.recv_timeout(left) {
                 Ok(Ok(step)) => {
-                    out.timed.push(step);
                     last = Instant::now();
+                    if deformable && out.timed.is_empty() {
+                        end = last + WATCHED;
+                    }
+                    out.timed.push(step);
                 }
                 Ok(Err(e)) => {
                     let step = out.timed.len() + 1;
                     out.failure = Some(format!(
                         "step {step} of a trial FAILED, and a run will too: {e}"
+                    ));
+                    break;
+                }
+                Err(RecvTimeoutError::Timeout) if deformable && out.timed.is_empty() => {
+                    out.failure = Some(format!(
+                        "the first step, which forms what later steps keep of deformable bodies, takes more than {}",
+                        amount(FIRST.as_secs_f64())
                     ));
                     break;
                 }

@@ -6,7 +6,7 @@ use crate::geometry::shape::Ball;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::laws::demand::{LawRequirements, Requirement};
-use crate::record::views;
+use crate::record::{meshes, views};
 use crate::scene::build::Built;
 use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
@@ -275,11 +275,15 @@ impl Features {
             (o.frames > 0).then(|| format!("{} of {} pixels", o.frames, o.width)),
         );
         let [grain, contact] = views::bytes(s, case.circuit.is_some());
-        self.say(
-            "views",
-            (o.views > 0)
-                .then(|| format!("{}, {grain} bytes a grain, {contact} a contact", o.views)),
-        );
+        let meshes = match meshes::bytes(case, s) {
+            0 => String::new(),
+            bytes => format!(", {:.2} MB of deformable bodies", bytes as f64 / 1e6),
+        };
+        let views = || {
+            let count = o.views;
+            format!("{count}, {grain} bytes a grain, {contact} a contact{meshes}")
+        };
+        self.say("views", (o.views > 0).then(views));
         self.say("figures", o.figures.then(|| "at the end".to_owned()));
         let every = format!("every {} steps", o.fclib);
         self.say("FCLIB problems", (o.fclib > 0).then_some(every));

@@ -5,7 +5,7 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
-use crate::report::{draw_panels, noted};
+use crate::report::{draw_maps, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::standard::Observed;
 use std::path::Path;
@@ -100,6 +100,7 @@ pub fn write_outputs(folder: &Path, outputs: &[Output]) -> Result<(), RunError> 
             charts,
             columns,
         } => Ok(draw_panels(charts, *columns, &folder.join(file))?),
+        Output::Maps { file, maps } => Ok(draw_maps(maps, &folder.join(file))?),
     })
 }
 

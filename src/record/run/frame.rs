@@ -2,10 +2,11 @@
 
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
-use crate::report::{noted, quantity};
+use crate::report::{draw_maps, noted, quantity};
 use fretwork_observe::picture::{Picture, Shows};
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::Observed;
+use std::path::PathBuf;
 
 /// Name prefixes of pictures: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
@@ -44,11 +45,19 @@ impl<S: Observed> Recorder<'_, S> {
                 .filter_map(|p| Some((p.name, subject::<S>(p)?))),
         );
         let notice = self.notice();
+        for picture in &pictures {
+            let Shows::Maps(maps) = &picture.shows else {
+                continue;
+            };
+            let heading = [&[self.loaded.case.name.clone()][..], &caption].concat();
+            let mut maps = maps.clone();
+            maps.iter_mut()
+                .for_each(|m| m.subtitle = Some(heading.join("   ·   ")));
+            let path = self.picture_path(picture.name, step);
+            noted(notice.clone(), || draw_maps(&maps, &path))?;
+        }
         for (name, subject) in subjects {
-            let path = self
-                .out
-                .join("frames")
-                .join(format!("{name}_{step:08}.png"));
+            let path = self.picture_path(name, step);
             let title = &self.loaded.case.name;
             let caption = caption.clone();
             noted(notice.clone(), || {
@@ -58,15 +67,20 @@ impl<S: Observed> Recorder<'_, S> {
         }
         Ok(())
     }
+
+    fn picture_path(&self, name: &str, step: u64) -> PathBuf {
+        let frames = self.out.join("frames");
+        frames.join(format!("{name}_{step:08}.png"))
+    }
 }
 
-/// How a picture of an observer is drawn; none where the dimension has no such picture.
+/// How a picture of an observer is drawn; none where the dimension has no such picture, and of maps, which have a page of their own.
 fn subject<S: Observed>(picture: &Picture) -> Option<Subject<'_>> {
     Some(match &picture.shows {
         Shows::Paints(paints) => Subject::Painted(paints),
         Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),
         Shows::Stress if S::D == 2 => Subject::Stress,
-        Shows::Chains(_) | Shows::Stress => return None,
+        Shows::Chains(_) | Shows::Stress | Shows::Maps(_) => return None,
         Shows::Values { values, label, top } => Subject::Values {
             values,
             label,

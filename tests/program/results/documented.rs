@@ -4,6 +4,7 @@ use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::Observed;
+use fretwork::record::mesh_fields::{of_bodies, of_surfaces};
 use fretwork::record::{Summary, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
@@ -85,7 +86,10 @@ fn every_field_of_the_views_is_documented() {
         more.for_each(|f| fields.grains.add(f));
         let grains = fields.grains.iter().map(|f| (f.name, f.unit));
         let contacts = fields.contacts.iter().map(|f| (f.name, f.unit));
-        let missing = undocumented(grains.chain(contacts));
+        let meshes = of_bodies::<S>().map(|f| (f.name, f.unit));
+        let surfaces = of_surfaces::<S>().map(|f| (f.name, f.unit));
+        let of_bodies = meshes.into_iter().chain(surfaces);
+        let missing = undocumented(grains.chain(contacts).chain(of_bodies));
         missing.into_iter().map(str::to_owned).collect()
     }
     for missing in [missing::<Dim2>(), missing::<Dim3>()] {

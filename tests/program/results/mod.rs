@@ -4,6 +4,7 @@ mod contacts;
 mod documented;
 mod fields;
 mod ledger;
+mod meshes;
 mod streams;
 
 use serde_json::Value;

@@ -171,6 +171,7 @@ fn deformable_bodies() {
         "time.end=0.024",
         "output.checkpoint=Steps(4)",
         "output.frames=2",
+        "output.views=20",
         "output.figures=false",
     ];
     let job = Job {

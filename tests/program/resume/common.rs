@@ -187,6 +187,7 @@ fn datasets(path: &Path) -> BTreeMap<String, (Vec<usize>, Vec<u8>)> {
                 .collect(),
             Err(_) => match set.read_raw::<i64>() {
                 Ok(values) => values.iter().flat_map(|x| x.to_le_bytes()).collect(),
+                Err(_) if name.ends_with("/Types") => set.read_raw::<u8>().unwrap(),
                 Err(_) => set.read_strings().unwrap().join("\0").into_bytes(),
             },
         };

@@ -27,12 +27,24 @@ fn kills_at_random_moments_lose_nothing_of_a_file_that_grows_in_place() {
     kill_at_random("kills-on-the-way", 22, Some("2500000"));
 }
 
-fn kill_at_random(name: &str, seed: u64, in_place: Option<&str>) {
-    let kills = if in_place.is_some() {
-        kills() / 2
-    } else {
-        kills()
+/// The same of fields inside deformable bodies, which are most of such a file.
+#[test]
+fn kills_at_random_moments_lose_no_fields_of_deformable_bodies() {
+    let sets = [
+        "time.end=0.012",
+        "output.checkpoint=Steps(3)",
+        "output.views=24",
+        "output.frames=0",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "cylinder_on_flat_fretting",
+        sets: &sets,
     };
+    kill_job(job, "kills-meshes", 23, Some("4000000"));
+}
+
+fn kill_at_random(name: &str, seed: u64, in_place: Option<&str>) {
     // Checkpoints and flushes as often as can be, so that many kills meet one.
     let sets = [
         "time.end=0.012",
@@ -44,6 +56,15 @@ fn kill_at_random(name: &str, seed: u64, in_place: Option<&str>) {
     let job = Job {
         case: "shear_cell_3d",
         sets: &sets,
+    };
+    kill_job(job, name, seed, in_place);
+}
+
+fn kill_job(job: Job<'_>, name: &str, seed: u64, in_place: Option<&str>) {
+    let kills = if in_place.is_some() {
+        kills() / 2
+    } else {
+        kills()
     };
     let whole = Folder::new(&format!("{name}-whole"));
     let begun = Instant::now();

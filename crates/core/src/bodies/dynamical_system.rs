@@ -18,6 +18,7 @@
 //! Sources: J. J. Moreau, "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999); M. Jean,
 //! "The non-smooth contact dynamics method", same volume.
 
+use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::cmp::Ordering;
@@ -389,6 +390,22 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// Its mesh as it is now; none of systems that have no mesh.
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+        None
+    }
+
+    /// Velocities of the points of that mesh (m/s); none where they are not known.
+    fn mesh_velocity(&self) -> Vec<S::Vector> {
+        Vec::new()
+    }
+
+    /// The surface that touches, for tractions along it; none of systems of which tractions are not known. Its points and facets stay
+    /// the same over a run.
+    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+        None
+    }
+
+    /// What its solutions need; none where it is not known.
+    fn size(&self) -> Option<SystemSize> {
         None
     }
 

@@ -8,6 +8,7 @@ pub mod path;
 pub mod pressure;
 pub mod stages;
 pub mod state;
+pub mod system_report;
 pub mod systems;
 pub mod tensor;
 
@@ -18,4 +19,5 @@ pub use dynamical_system::{
 };
 pub use stages::Stage;
 pub use state::Bodies;
+pub use system_report::{SystemSize, TouchingSurface};
 pub use systems::{Carrier, Systems};

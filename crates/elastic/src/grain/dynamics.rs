@@ -6,7 +6,8 @@ use crate::compiled::Deformable;
 use crate::element::Symmetric;
 use crate::small_strain;
 use fretwork_core::bodies::{
-    Contactor, ContactorMotion, DeformedMesh, DynamicalSystem, Nodes, SystemStep, SystemWork,
+    Contactor, ContactorMotion, DeformedMesh, DynamicalSystem, Nodes, SystemSize, SystemStep,
+    SystemWork,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -336,6 +337,20 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         let over = 1.0 / self.model.size;
         let of = |p: u32| displacements[p as usize] * over;
         Some(small_strain::largest(self.model.shape.mesh(), of))
+    }
+
+    fn size(&self) -> Option<SystemSize> {
+        let (unknowns, points) = (self.state.velocity.len(), self.vertices.len());
+        let point = S::D * S::D * points * size_of::<f64>();
+        Some(SystemSize {
+            unknowns,
+            matrix: self.model.rates.len() * size_of::<f64>(),
+            factor: 0,
+            surface: points * point,
+            point,
+            operations: [0.0, 2.0 * unknowns as f64],
+            refactorised: false,
+        })
     }
 
     fn save(&self) -> Vec<u8> {

@@ -3,7 +3,8 @@
 use super::{Cells, HalfSpace};
 use crate::compiled::Deformable;
 use fretwork_core::bodies::{
-    Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemStep, SystemWork,
+    Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemSize, SystemStep,
+    SystemWork, TouchingSurface,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, VectorLike};
@@ -326,6 +327,35 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
             }
         }
         Some(if most > 0.0 { border / most } else { 0.0 })
+    }
+
+    fn touching_surface(&self) -> Option<TouchingSurface<S>> {
+        let cells = self.fixed.grid.len() as u32;
+        // The image of the first cell of a surface that repeats is no cell of its own.
+        let mut facets = Vec::new();
+        for facet in self.fixed.facets.iter().map(|f| &f[..S::D]) {
+            let at = |k: &u32| self.fixed.vertices[*k as usize];
+            if facet.iter().all(|k| at(k) < cells) {
+                facets.extend(facet.iter().map(at));
+            }
+        }
+        Some(TouchingSurface {
+            nodes: (0..cells).collect(),
+            points: self.fixed.places.clone(),
+            facets,
+            areas: vec![self.fixed.grid.area(S::D); cells as usize],
+        })
+    }
+
+    fn size(&self) -> Option<SystemSize> {
+        // A surface that rolls has a second table, of the material behind.
+        let tables = 1 + usize::from(self.fixed.rolling.is_some());
+        Some(SystemSize {
+            unknowns: self.held(),
+            matrix: tables * self.fixed.kernel.bytes(),
+            operations: [0.0, self.fixed.kernel.operations()],
+            ..SystemSize::default()
+        })
     }
 
     fn has_equal_points(&self) -> bool {

@@ -159,6 +159,17 @@ impl Kernel {
         out
     }
 
+    /// Memory of the tables, by distance and by wave number (bytes).
+    pub fn bytes(&self) -> usize {
+        self.influence.len() * (size_of::<Influence>() + size_of::<[[Complex64; 3]; 3]>())
+    }
+
+    /// Floating-point operations of a convolution: a transform of n numbers takes some 5 n log2(n).
+    pub fn operations(&self) -> f64 {
+        let (n, d) = (self.influence.len() as f64, self.dimension as f64);
+        n * (10.0 * d * n.log2().max(1.0) + 8.0 * d * d)
+    }
+
     /// Whether cells repeat.
     pub fn is_periodic(&self) -> bool {
         self.periodic

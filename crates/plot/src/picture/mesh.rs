@@ -99,7 +99,8 @@ pub(super) fn elements<S: Space>(
     let outline = |(points, stress): (Vec<[f64; 2]>, f64)| Outline {
         points,
         label: String::new(),
-        shade: Some(0.5),
+        // Colours of a scale are those of its bar.
+        shade: Some(if scale.is_some() { 0.0 } else { 0.5 }),
         paint: paint(stress),
         element: true,
     };

@@ -123,6 +123,24 @@ impl Store {
         self.named(describe(&dataset, unit, doc))
     }
 
+    /// Writes a column of pure numbers of one byte each, as VTK requires of kinds of cells.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn small_numbers(
+        &mut self,
+        path: &str,
+        values: &[u8],
+        doc: &str,
+    ) -> Result<(), ResultsError> {
+        let (parent, name) = split(path);
+        let group = self.declared_group(parent)?;
+        let made = group.new_dataset::<u8>().shape([values.len()]).create(name);
+        let dataset = self.named(made)?;
+        self.named(dataset.write_raw(values))?;
+        self.named(describe(&dataset, "", doc))
+    }
+
     /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and description,
     /// and its chunk size in rows ([`MANY`], [`FEW`]).
     ///

@@ -8,14 +8,16 @@
 //! /events/broken/NAME  one value per broken bond           /events/debris/NAME  one value per debris piece
 //! /events/debris/grains  identities of their grains, piece after piece
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
+//! /views/meshes/NAME, /views/surfaces/NAME                temporal VTKHDF UnstructuredGrid of deformable bodies
 //! /checkpoints/even, /checkpoints/odd                    states for `--resume`, see [`crate::checkpoint`]
-//! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf, bodies.vtkhdf: links to the others
+//! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf and others: links to the other views
 //! ```
 
 mod dataset;
 mod declare;
 mod events;
 mod growth;
+mod mesh_view;
 mod previous;
 mod reader;
 pub mod shapes;
@@ -23,6 +25,7 @@ pub mod state;
 mod store;
 mod view;
 
+pub use mesh_view::{Field, Mesh};
 pub use previous::PreviousResults;
 pub use reader::Reader;
 pub use store::ResultsError;
@@ -34,6 +37,7 @@ use declare::MANY;
 use events::Events;
 use fretwork_observe::observer::Event;
 use fretwork_observe::statistics::Column;
+use mesh_view::MeshView;
 use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -69,6 +73,8 @@ pub struct Header {
     pub debris: Vec<Column>,
     /// Shapes of grains other than single balls.
     pub shapes: Shaped,
+    /// Meshes and surfaces of deformable bodies.
+    pub meshes: Vec<Mesh>,
 }
 
 /// Limit on buffered rows of statistics, or events, regardless of time.
@@ -98,6 +104,9 @@ pub struct Results {
     debris_grains: Option<Growing>,
     buffered_grains: Vec<f64>,
     views: Vec<View>,
+    meshes: Vec<MeshView>,
+    /// Names of the companion files, and the views that they link to.
+    companions: Vec<[String; 2]>,
     checkpoints: Vec<Slot>,
     /// Time and duration of the last flush.
     flushed: Option<(Instant, Duration)>,
@@ -129,6 +138,7 @@ impl Results {
             false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
         };
         let views = declare_views(&mut store, header)?;
+        let meshes = declare_meshes(&mut store, &header.meshes)?;
         store.link("/VTKHDF", "/views/grains")?;
         store.group("/checkpoints")?;
         let doc = "a checkpoint of the run; see docs/checkpoints.md";
@@ -144,6 +154,8 @@ impl Results {
             debris_grains,
             buffered_grains: Vec::new(),
             views,
+            meshes,
+            companions: companions(&header.meshes),
             checkpoints,
             flushed: Some((Instant::now(), Duration::ZERO)),
         })
@@ -270,6 +282,22 @@ impl Results {
         self.debris.write(store)
     }
 
+    /// Appends the same state of the meshes: the values of each field of each. To be called before [`Results::append_views`].
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append_meshes(
+        &mut self,
+        time: f64,
+        values: &[Vec<Vec<f64>>],
+    ) -> Result<(), ResultsError> {
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        let mut pairs = self.meshes.iter_mut().zip(values);
+        pairs.try_for_each(|(mesh, values)| mesh.append(store, time, values))
+    }
+
     /// Appends a state: grains, contacts, bodies.
     ///
     /// # Errors
@@ -294,9 +322,8 @@ impl Results {
             return Ok(());
         };
         store.close()?;
-        for name in ["contacts", "bodies"] {
-            let path = folder.join(format!("{name}.vtkhdf"));
-            store::companion(&path, "results.h5", &format!("/views/{name}"))?;
+        for [name, view] in &self.companions {
+            store::companion(&folder.join(name), "results.h5", view)?;
         }
         Ok(())
     }
@@ -339,6 +366,32 @@ fn write_origin(store: &mut Store, header: &Header) -> Result<(), ResultsError> 
         }
     }
     Ok(())
+}
+
+/// Declares the meshes of deformable bodies; no group is created without them.
+fn declare_meshes(store: &mut Store, meshes: &[Mesh]) -> Result<Vec<MeshView>, ResultsError> {
+    for group in ["meshes", "surfaces"] {
+        let inside = |m: &Mesh| m.group.split('/').next() == Some(group);
+        if meshes.iter().any(inside) {
+            store.group(&format!("/views/{group}"))?;
+        }
+    }
+    let declared = meshes.iter().map(|mesh| MeshView::declare(store, mesh));
+    declared.collect()
+}
+
+/// Names of the files that link to the views, for ParaView, and these views.
+fn companions(meshes: &[Mesh]) -> Vec<[String; 2]> {
+    let always = ["contacts", "bodies"].map(|name| name.to_owned());
+    let of_meshes = meshes.iter().map(|mesh| mesh.group.clone());
+    let names = always.into_iter().chain(of_meshes);
+    names
+        .map(|group| {
+            let name = group.replacen("meshes/", "mesh_", 1);
+            let name = name.replacen("surfaces/", "surface_", 1);
+            [format!("{name}.vtkhdf"), format!("/views/{group}")]
+        })
+        .collect()
 }
 
 /// Declares the views of grains, contacts and bodies.

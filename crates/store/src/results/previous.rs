@@ -175,6 +175,9 @@ impl Results {
         for view in &mut self.views {
             view.resume(store);
         }
+        for mesh in &mut self.meshes {
+            mesh.resume(store);
+        }
         Ok(())
     }
 }

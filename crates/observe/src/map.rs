@@ -1,0 +1,278 @@
+//! Maps of a contact in space as data: cells of a surface seen along its normal, with colours and arrows. A higher layer draws them.
+
+use super::chart::Axis;
+use super::tractions::{FacetTraction, SurfaceState, Zone};
+use fretwork_core::geometry::space::{Space, VectorLike};
+
+/// A map of a part of a surface.
+#[derive(Clone, Debug)]
+pub struct Map {
+    /// Heading.
+    pub title: String,
+    /// Second line of the page, common to its maps.
+    pub subtitle: Option<String>,
+    /// Horizontal and vertical axis, to the same scale.
+    pub axes: [Axis; 2],
+    /// xmin, xmax, ymin, ymax (m).
+    pub window: [f64; 4],
+    /// Corners of each cell (m).
+    pub cells: Vec<Vec<[f64; 2]>>,
+    /// What the colours say.
+    pub shows: Colours,
+    /// Arrows from a place (m), and their length as a share of the longest, along both axes.
+    pub arrows: Vec<([f64; 2], [f64; 2])>,
+    /// Entry of the arrows in the legend: what the longest is.
+    pub arrow_label: String,
+}
+
+/// What the colours of the cells of a map say.
+#[derive(Clone, Debug)]
+pub enum Colours {
+    /// Whether they stick or slip.
+    Zones(Vec<Zone>),
+    /// A value of each, from zero up.
+    Values {
+        /// The values; not a number where there is none.
+        values: Vec<f64>,
+        /// What they are.
+        scale: Axis,
+    },
+}
+
+/// The maps of the contact of a surface: what sticks and slips with the tractions along the surface, pressure, shear, and their ratio;
+/// none where nothing is loaded. Tractions are those of its points where these stand for equal areas, or else those of its facets.
+pub fn of_contact<S: Space>(
+    name: &str,
+    state: &SurfaceState<S>,
+    equal: bool,
+    title: &str,
+) -> Vec<Map> {
+    let touching = |k: &usize| state.zone[*k] != Zone::Open;
+    let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
+    let Some(axes) = plane(state, &loaded).filter(|_| S::D == 3) else {
+        return Vec::new();
+    };
+    let view = View {
+        state,
+        axes,
+        window: window(state, axes, &loaded),
+    };
+    let (cells, points) = view.points();
+    let (shapes, tractions) = match equal {
+        true => (cells.clone(), view.at_points(&points)),
+        false => view.at_facets(),
+    };
+    let map = |what: &str, cells: &[Vec<[f64; 2]>], shows: Colours| Map {
+        title: format!("{what}, {name}"),
+        subtitle: Some(title.to_owned()),
+        axes: axes.map(|axis| Axis::new(format!("position {}", ["x", "y", "z"][axis]), "m")),
+        window: view.window,
+        cells: cells.to_vec(),
+        shows,
+        arrows: Vec::new(),
+        arrow_label: String::new(),
+    };
+    let zones = points.iter().map(|k| state.zone[*k]).collect();
+    let mut out = vec![map("Stick and slip", &cells, Colours::Zones(zones))];
+    let longest = tractions.iter().fold(0.0, |most: f64, t| most.max(t.shear));
+    let arrow = |(k, along): (usize, [f64; 2])| (view.at(k), along.map(|x| x / longest));
+    let drawn = view.around(&loaded, equal).into_iter();
+    out[0].arrows = drawn.filter(|_| longest > 0.0).map(arrow).collect();
+    out[0].arrow_label = format!(
+        "shear, longest {}",
+        super::chart::quantity(longest, "Pa", 3)
+    );
+    let ratio = |t: &Local| match t.pressure > 0.0 {
+        true => t.shear / t.pressure,
+        false => f64::NAN,
+    };
+    let mut add = |what: &str, unit: &str, of: &dyn Fn(&Local) -> f64| {
+        let value = |t: &Local| if t.loaded { of(t) } else { f64::NAN };
+        let values: Vec<f64> = tractions.iter().map(value).collect();
+        if values.iter().any(|v| *v > 0.0) {
+            let scale = Axis::new(what.to_lowercase(), unit);
+            out.push(map(what, &shapes, Colours::Values { values, scale }));
+        }
+    };
+    add("Pressure", "Pa", &|t| t.pressure);
+    add("Shear", "Pa", &|t| t.shear);
+    add("Shear over pressure", "", &ratio);
+    out
+}
+
+/// Tractions on a cell of a map.
+struct Local {
+    loaded: bool,
+    pressure: f64,
+    /// Size of the traction along the surface (Pa).
+    shear: f64,
+}
+
+/// The two axes across the one that is nearest to the normal of the loaded part.
+fn plane<S: Space>(state: &SurfaceState<S>, loaded: &[usize]) -> Option<[usize; 2]> {
+    let mut normal = S::Vector::zero();
+    for k in loaded {
+        normal += (state.traction[*k] - state.tangential[*k]) * state.surface.areas[*k];
+    }
+    let normal = normal.padded().map(f64::abs);
+    let across = (0..3).max_by(|a, b| normal[*a].total_cmp(&normal[*b]));
+    match across.filter(|_| !loaded.is_empty())? {
+        0 => Some([1, 2]),
+        1 => Some([0, 2]),
+        _ => Some([0, 1]),
+    }
+}
+
+impl Local {
+    fn new<S: Space>(loaded: bool, pressure: f64, tangential: &S::Vector) -> Self {
+        Self {
+            loaded,
+            pressure,
+            shear: tangential.norm(),
+        }
+    }
+}
+
+/// A square around some points with a margin: xmin, xmax, ymin, ymax (m).
+fn window<S: Space>(state: &SurfaceState<S>, axes: [usize; 2], loaded: &[usize]) -> [f64; 4] {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    let mut area = 0.0f64;
+    for k in loaded {
+        let place = state.place(*k);
+        for (a, axis) in axes.into_iter().enumerate() {
+            (low[a], high[a]) = (low[a].min(place[axis]), high[a].max(place[axis]));
+        }
+        area = area.max(state.surface.areas[*k]);
+    }
+    let side = (high[0] - low[0]).max(high[1] - low[1]) + 2.0 * area.sqrt();
+    let [x, y] = [0, 1].map(|a| 0.5 * (low[a] + high[a]));
+    let half = 0.65 * side;
+    [x - half, x + half, y - half, y + half]
+}
+
+/// A surface seen along an axis, in a window (m).
+struct View<'a, S: Space> {
+    state: &'a SurfaceState<S>,
+    axes: [usize; 2],
+    window: [f64; 4],
+}
+
+/// Corners of polygons (m).
+type Shapes = Vec<Vec<[f64; 2]>>;
+
+impl<S: Space> View<'_, S> {
+    fn at(&self, point: usize) -> [f64; 2] {
+        let place = self.state.place(point);
+        self.axes.map(|axis| place[axis])
+    }
+
+    fn shows(&self, corners: &[[f64; 2]]) -> bool {
+        let [xmin, xmax, ymin, ymax] = self.window;
+        let inside = |[x, y]: &[f64; 2]| *x > xmin && *x < xmax && *y > ymin && *y < ymax;
+        corners.iter().any(inside)
+    }
+
+    /// Facets in the window: index, points, and corners.
+    fn facets(&self) -> impl Iterator<Item = (usize, &[u32; 3], [[f64; 2]; 3])> {
+        let facets = self.state.surface.facets.as_chunks::<3>().0.iter();
+        let all = facets.enumerate();
+        all.map(|(f, points)| (f, points, points.map(|k| self.at(k as usize))))
+            .filter(|(_, _, corners)| self.shows(corners))
+    }
+
+    /// What belongs to each point, in pieces of which a point has several, and the point of each piece.
+    fn points(&self) -> (Shapes, Vec<usize>) {
+        let (mut cells, mut seen) = (Vec::new(), Vec::new());
+        for (_, points, corners) in self.facets() {
+            let centre = centre(&corners);
+            for (i, k) in points.iter().enumerate() {
+                let between = |j: usize| [0, 1].map(|a| 0.5 * (corners[i][a] + corners[j][a]));
+                let quad = [
+                    corners[i],
+                    between((i + 1) % 3),
+                    centre,
+                    between((i + 2) % 3),
+                ];
+                cells.push(quad.to_vec());
+                seen.push(*k as usize);
+            }
+        }
+        (cells, seen)
+    }
+
+    /// Tractions along the surface at some points, along both axes (Pa): their own, or means of the facets around them.
+    fn around(&self, points: &[usize], own: bool) -> Vec<(usize, [f64; 2])> {
+        let state = self.state;
+        let mut sums = vec![(S::Vector::zero(), 0.0); state.zone.len()];
+        for (facet, traction) in state.surface.facets.chunks_exact(S::D).zip(state.facets()) {
+            for k in facet {
+                let sum = &mut sums[*k as usize];
+                *sum = (sum.0 + traction.tangential, sum.1 + 1.0);
+            }
+        }
+        let mean = |k: &usize| {
+            let (sum, count) = sums[*k];
+            let traction = if own {
+                state.tangential[*k]
+            } else {
+                sum * (1.0 / count)
+            };
+            (*k, self.axes.map(|axis| traction[axis]))
+        };
+        points.iter().map(mean).collect()
+    }
+
+    fn at_points(&self, points: &[usize]) -> Vec<Local> {
+        let state = self.state;
+        let local = |k: &usize| {
+            let loaded = state.zone[*k] != Zone::Open;
+            Local::new::<S>(loaded, state.pressure[*k], &state.tangential[*k])
+        };
+        points.iter().map(local).collect()
+    }
+
+    fn at_facets(&self) -> (Shapes, Vec<Local>) {
+        let tractions = self.state.facets();
+        let facet = |(f, points, corners): (usize, &[u32; 3], [[f64; 2]; 3])| {
+            let open = |k: &u32| self.state.zone[*k as usize] == Zone::Open;
+            let FacetTraction {
+                pressure,
+                tangential,
+            } = &tractions[f];
+            let loaded = !points.iter().all(open);
+            let local = Local::new::<S>(loaded, *pressure, tangential);
+            (corners.to_vec(), local)
+        };
+        self.facets().map(facet).unzip()
+    }
+}
+
+/// Where the cells around the corners of a triangle meet: the centre of its circumcircle, which gives squares on a grid, or the middle of
+/// its longest edge where that lies outside.
+fn centre(corners: &[[f64; 2]; 3]) -> [f64; 2] {
+    let squared = |i: usize, j: usize| {
+        let [dx, dy] = [0, 1].map(|a| corners[i][a] - corners[j][a]);
+        dx * dx + dy * dy
+    };
+    // Edges opposite to the corners.
+    let edges = [squared(1, 2), squared(2, 0), squared(0, 1)];
+    let total: f64 = edges.iter().sum();
+    let mut weights = [0, 1, 2].map(|k| (edges[k] * (total - 2.0 * edges[k])).max(0.0));
+    if weights.iter().all(|w| *w == 0.0) {
+        weights = [1.0; 3];
+    }
+    let sum: f64 = weights.iter().sum();
+    [0, 1].map(|a| (0..3).map(|k| weights[k] * corners[k][a]).sum::<f64>() / sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_of_a_grid_are_squares_and_blunt_triangles_keep_their_cells_inside() {
+        assert_eq!(centre(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0]]), [1.0, 1.0]);
+        let blunt = centre(&[[0.0, 0.0], [4.0, 0.0], [2.0, 0.5]]);
+        assert!((blunt[0] - 2.0).abs() < 1e-12 && blunt[1].abs() < 1e-12);
+    }
+}

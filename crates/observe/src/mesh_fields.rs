@@ -1,0 +1,175 @@
+//! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line of explanation: inside a body of
+//! finite elements, and along the surface of every body that touches.
+
+use super::tractions::{SurfaceState, Zone, signed};
+use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
+use fretwork_core::geometry::space::{Space, VectorLike};
+
+/// What the values of a field stand at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// Points of the mesh.
+    Points,
+    /// Its elements.
+    Cells,
+}
+
+/// A field on a mesh; `T` is what its values are taken from.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshField<T> {
+    /// Name: a-z, 0-9 and _.
+    pub name: &'static str,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static str,
+    /// One line.
+    pub doc: &'static str,
+    /// Where its values stand.
+    pub at: At,
+    /// Numbers of a value.
+    pub width: usize,
+    /// All values, one after the other.
+    pub values: fn(&T) -> Vec<f64>,
+}
+
+/// A body with a mesh as it is now.
+#[derive(Clone, Debug)]
+pub struct BodyState<S: Space> {
+    mesh: DeformedMesh<S>,
+    velocity: Vec<S::Vector>,
+}
+
+impl<S: Space> BodyState<S> {
+    /// Of a system; none where it has no mesh.
+    pub fn of(system: &dyn DynamicalSystem<S>) -> Option<Self> {
+        let mesh = system.deformed_mesh()?;
+        let mut velocity = system.mesh_velocity();
+        velocity.resize(mesh.points.len(), S::Vector::zero());
+        Some(Self { mesh, velocity })
+    }
+
+    /// Its mesh.
+    pub fn mesh(&self) -> &DeformedMesh<S> {
+        &self.mesh
+    }
+}
+
+/// Numbers of vectors, three each.
+pub fn triples<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
+    vectors.iter().flat_map(V::padded).collect()
+}
+
+/// Fields inside a body of finite elements.
+pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
+    [
+        MeshField {
+            name: "displacement",
+            unit: "m",
+            doc: "displacement from the place without load",
+            at: At::Points,
+            width: 3,
+            values: |b| triples(&b.mesh.displacement),
+        },
+        MeshField {
+            name: "velocity",
+            unit: "m/s",
+            doc: "velocity",
+            at: At::Points,
+            width: 3,
+            values: |b| triples(&b.velocity),
+        },
+        MeshField {
+            name: "stress",
+            unit: "Pa",
+            doc: "stress (Cauchy): XX, YY, ZZ, XY, YZ, XZ; in plane strain ZZ is along the depth",
+            at: At::Cells,
+            width: 6,
+            values: |b| {
+                let order = |[xx, yy, zz, yz, xz, xy]: &[f64; 6]| [*xx, *yy, *zz, *xy, *yz, *xz];
+                b.mesh.stress.iter().flat_map(order).collect()
+            },
+        },
+        MeshField {
+            name: "von_mises",
+            unit: "Pa",
+            doc: "von Mises stress",
+            at: At::Cells,
+            width: 1,
+            values: |b| b.mesh.stress.iter().map(von_mises).collect(),
+        },
+    ]
+}
+
+/// Fields along a surface that touches.
+pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
+    [
+        MeshField {
+            name: "displacement",
+            unit: "m",
+            doc: "displacement from the place without load",
+            at: At::Points,
+            width: 3,
+            values: |s| triples(&s.displacement),
+        },
+        MeshField {
+            name: "traction",
+            unit: "Pa",
+            doc: "force of contacts on the body over the area of the point",
+            at: At::Points,
+            width: 3,
+            values: |s| triples(&s.traction),
+        },
+        MeshField {
+            name: "pressure",
+            unit: "Pa",
+            doc: "part of the traction along the normals of contacts, positive in compression",
+            at: At::Points,
+            width: 1,
+            values: |s| s.pressure.clone(),
+        },
+        MeshField {
+            name: "shear",
+            unit: "Pa",
+            doc: "part of the traction along the surface; in 2D positive along +x",
+            at: At::Points,
+            width: 1,
+            values: |s| s.shear.clone(),
+        },
+        MeshField {
+            name: "area",
+            unit: if S::D == 2 { "m" } else { "m^2" },
+            doc: "area (length in 2D) that the point stands for: pressure times area sums up to the force",
+            at: At::Points,
+            width: 1,
+            values: |s| s.surface.areas.clone(),
+        },
+        MeshField {
+            name: "status",
+            unit: "",
+            doc: "0 no force (less than a tenth of that of one contact), 1 stick, 2 slip",
+            at: At::Points,
+            width: 1,
+            values: |s| s.zone.iter().copied().map(Zone::status).collect(),
+        },
+        MeshField {
+            name: "facet_pressure",
+            unit: "Pa",
+            doc: "mean of the pressure of the points of each facet",
+            at: At::Cells,
+            width: 1,
+            values: |s| s.facets().iter().map(|f| f.pressure).collect(),
+        },
+        MeshField {
+            name: "facet_shear",
+            unit: "Pa",
+            doc: "size of the mean traction along the surface of the points of each facet; in 2D positive along +x",
+            at: At::Cells,
+            width: 1,
+            values: |s| {
+                s.facets()
+                    .iter()
+                    .map(|f| signed::<S>(&f.tangential))
+                    .collect()
+            },
+        },
+    ]
+}

@@ -1,0 +1,194 @@
+//! Tractions along the surface of a deformable body, and where it sticks and slips: forces of contacts shared out to the points of the
+//! surface by its shape functions, over the areas that these stand for. The sum of pressure times area is the normal force of all contacts.
+
+use fretwork_core::bodies::{Carrier, TouchingSurface};
+use fretwork_core::contact::Contact;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+use std::collections::HashMap;
+
+/// What a point of a surface does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Zone {
+    /// It carries no force, or less than a tenth of that of one contact.
+    #[default]
+    Open,
+    /// Most of its force is of contacts that stick.
+    Stick,
+    /// At least half of its force is of contacts that slip.
+    Slip,
+}
+
+impl Zone {
+    /// As the field `status` of contacts.
+    pub fn status(self) -> f64 {
+        match self {
+            Self::Open => 0.0,
+            Self::Stick => 1.0,
+            Self::Slip => 2.0,
+        }
+    }
+}
+
+/// Share of one contact below which a point counts as open: where points of two surfaces almost coincide, the next point of the one that is
+/// touched gets a trace of the force.
+const TRACE: f64 = 0.1;
+
+/// The surface of a deformable body that touches, with what acts on it.
+#[derive(Clone, Debug)]
+pub struct SurfaceState<S: Space> {
+    /// Its points and facets.
+    pub surface: TouchingSurface<S>,
+    /// Displacement of each point (m).
+    pub displacement: Vec<S::Vector>,
+    /// Traction on each point, force over area in world axes (Pa).
+    pub traction: Vec<S::Vector>,
+    /// Its part along the normals of the contacts (Pa), positive in compression.
+    pub pressure: Vec<f64>,
+    /// Its part along the surface (Pa): in the plane positive along +x, in space its size.
+    pub shear: Vec<f64>,
+    /// The vector of that part (Pa).
+    pub tangential: Vec<S::Vector>,
+    /// What each point does.
+    pub zone: Vec<Zone>,
+}
+
+/// Tractions on a facet: means of its points, which sum up to the same force. Where points have more and fewer facets in turn, pressures of
+/// points alternate, and those of facets do not.
+#[derive(Clone, Copy, Debug)]
+pub struct FacetTraction<S: Space> {
+    /// Pressure (Pa).
+    pub pressure: f64,
+    /// Traction along the surface (Pa).
+    pub tangential: S::Vector,
+}
+
+impl<S: Space> SurfaceState<S> {
+    /// Of a system of a simulation, over its last step; none where the system has no such surface.
+    pub fn of(s: &Simulation<S>, system: usize) -> Option<Self> {
+        let body = s.state.systems.get(system)?;
+        let surface = body.touching_surface()?;
+        let count = surface.points.len();
+        let place = surface.points.iter().zip(&surface.nodes);
+        let displacement = place.map(|(rest, node)| body.node_position(*node) - *rest);
+        let displacement = displacement.collect();
+        let at: HashMap<u32, usize> = surface.nodes.iter().copied().zip(0..).collect();
+        let zero = S::Vector::zero();
+        let (mut force, mut tangential) = (vec![zero; count], vec![zero; count]);
+        let (mut pressure, mut share) = (vec![0.0; count], vec![0.0; count]);
+        let mut slipping = vec![[0.0; 2]; count];
+        for acting in loaded(s, system) {
+            for (node, weight) in acting.nodes(s).terms() {
+                let Some(&k) = at.get(&node) else { continue };
+                force[k] += acting.force * weight;
+                tangential[k] += acting.along * weight;
+                pressure[k] += acting.normal * weight / surface.areas[k];
+                share[k] += weight;
+                slipping[k][usize::from(acting.contact.slides)] += acting.force.norm() * weight;
+            }
+        }
+        let over = |v: &S::Vector, k: usize| *v * (1.0 / surface.areas[k]);
+        let traction = force.iter().enumerate().map(|(k, f)| over(f, k));
+        let along = tangential.iter().enumerate().map(|(k, f)| over(f, k));
+        let tangential: Vec<S::Vector> = along.collect();
+        let zone = |([sticks, slips], share): (&[f64; 2], &f64)| match () {
+            () if *share < TRACE => Zone::Open,
+            () if slips >= sticks => Zone::Slip,
+            () => Zone::Stick,
+        };
+        Some(Self {
+            traction: traction.collect(),
+            shear: tangential.iter().map(signed::<S>).collect(),
+            tangential,
+            zone: slipping.iter().zip(&share).map(zone).collect(),
+            pressure,
+            displacement,
+            surface,
+        })
+    }
+
+    /// Tractions on the facets, in their order.
+    pub fn facets(&self) -> Vec<FacetTraction<S>> {
+        let mean = |points: &[u32]| {
+            let share = 1.0 / points.len() as f64;
+            let mut out = FacetTraction {
+                pressure: 0.0,
+                tangential: S::Vector::zero(),
+            };
+            for k in points.iter().map(|k| *k as usize) {
+                out.pressure += self.pressure[k] * share;
+                out.tangential += self.tangential[k] * share;
+            }
+            out
+        };
+        self.surface.facets.chunks_exact(S::D).map(mean).collect()
+    }
+
+    /// Where a point is now (m).
+    pub fn place(&self, point: usize) -> S::Vector {
+        self.surface.points[point] + self.displacement[point]
+    }
+}
+
+/// Size of a vector along a surface: in the plane positive along +x.
+pub fn signed<S: Space>(along: &S::Vector) -> f64 {
+    match S::D {
+        2 if along[0] < 0.0 => -along.norm(),
+        _ => along.norm(),
+    }
+}
+
+/// A contact that presses or pulls on a system, over the last step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Acting<'a, S: Space> {
+    pub contact: &'a Contact<S>,
+    /// Which of the bodies of the contact is the system's.
+    pub side: usize,
+    carrier: Carrier,
+    /// Force on the system (N; N/m in 2D).
+    pub force: S::Vector,
+    /// Its part along the normal, positive in compression, and its part along the surface.
+    pub normal: f64,
+    pub along: S::Vector,
+}
+
+impl<S: Space> Acting<'_, S> {
+    fn nodes(&self, s: &Simulation<S>) -> fretwork_core::bodies::Nodes {
+        let arm = &self.contact.arms[self.side];
+        s.state.systems.contact_nodes(self.carrier, arm)
+    }
+}
+
+/// The contacts of a system that carry force.
+pub(crate) fn loaded<S: Space>(
+    s: &Simulation<S>,
+    system: usize,
+) -> impl Iterator<Item = Acting<'_, S>> {
+    let h = s.options.scheme.h;
+    s.state.network.contacts.iter().filter_map(move |contact| {
+        if contact.impulse == S::Vector::zero() {
+            return None;
+        }
+        let carrier = |b: u32| {
+            let carrier = s.state.bodies.carrier(b as usize);
+            carrier.filter(|c| c.system as usize == system)
+        };
+        let [first, second] = contact.bodies.map(carrier);
+        let (side, carrier) = match (first, second) {
+            (Some(carrier), _) => (0, carrier),
+            (None, Some(carrier)) => (1, carrier),
+            (None, None) => return None,
+        };
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        let force = contact.impulse * (1.0 / h);
+        let normal = force.dot(&contact.normal);
+        Some(Acting {
+            contact,
+            side,
+            carrier,
+            force: force * sign,
+            normal,
+            along: (force - contact.normal * normal) * sign,
+        })
+    })
+}

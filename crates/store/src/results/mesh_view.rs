@@ -1,0 +1,177 @@
+//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: points and cells stand in the file once, without
+//! load, and every state points at them; what changes is the data. A reader moves the points by the field `displacement`.
+//!
+//! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
+
+use super::dataset::Growing;
+use super::declare::{FEW, MANY};
+use super::store::{ResultsError, Store};
+
+/// Kinds of cells of VTK by their number of corners: a line, a triangle, a tetrahedron.
+const KINDS: [(usize, u8); 3] = [(2, 3), (3, 5), (4, 10)];
+
+/// A mesh, and the fields that it carries.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Its group in `/views`: `meshes/NAME` or `surfaces/NAME`.
+    pub group: String,
+    /// Coordinates without load, three per point (m).
+    pub points: Vec<f64>,
+    /// Points of all cells, one cell after another.
+    pub cells: Vec<i64>,
+    /// Corners of a cell: 2, 3 or 4.
+    pub corners: usize,
+    /// Fields, in the order of their values.
+    pub fields: Vec<Field>,
+}
+
+/// A field of a mesh.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Name.
+    pub name: &'static str,
+    /// SI unit, empty for a pure number.
+    pub unit: &'static str,
+    /// One line.
+    pub doc: &'static str,
+    /// Numbers of a value.
+    pub width: usize,
+    /// Whether a value stands at a cell, or at a point.
+    pub of_cells: bool,
+}
+
+impl Mesh {
+    /// Its group in the file.
+    pub fn path(&self) -> String {
+        format!("/views/{}", self.group)
+    }
+}
+
+/// A mesh in the file.
+#[derive(Debug)]
+pub struct MeshView {
+    values: Growing,
+    /// Of each state: first part, number of parts, first point, first cell, first corner.
+    steps: [Growing; 5],
+    data: Vec<Growing>,
+    data_offsets: Vec<Growing>,
+    count: i64,
+    path: String,
+}
+
+impl MeshView {
+    /// Declares a mesh in its own group, and writes its points and cells.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn declare(store: &mut Store, mesh: &Mesh) -> Result<Self, ResultsError> {
+        let path = mesh.path();
+        store.group(&path)?;
+        store.integer_attribute(&path, "Version", &[2, 0])?;
+        store.ascii_attribute(&path, "Type", "UnstructuredGrid")?;
+        write_topology(store, &path, mesh)?;
+        for group in [
+            "PointData",
+            "CellData",
+            "Steps",
+            "Steps/PointDataOffsets",
+            "Steps/CellDataOffsets",
+        ] {
+            store.group(&format!("{path}/{group}"))?;
+        }
+        store.integer_attribute(&format!("{path}/Steps"), "NSteps", &[0])?;
+        let doc = ("s", "time of the state");
+        let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
+        let mut whole = |name: &str, doc: &str| {
+            store.growing::<i64>(&format!("{path}/Steps/{name}"), 1, ("", doc), FEW)
+        };
+        let steps = [
+            whole("PartOffsets", "number of the first part of each state; 0")?,
+            whole("NumberOfParts", "parts of each state; 1")?,
+            whole("PointOffsets", "first point of each state; 0")?,
+            whole("CellOffsets", "first cell of each state; 0")?,
+            whole("ConnectivityIdOffsets", "first corner of each state; 0")?,
+        ];
+        let (mut data, mut data_offsets) = (Vec::new(), Vec::new());
+        for field in &mesh.fields {
+            let place = if field.of_cells {
+                "CellData"
+            } else {
+                "PointData"
+            };
+            let name = format!("{path}/{place}/{}", field.name);
+            let doc = (field.unit, field.doc);
+            data.push(store.growing::<f64>(&name, field.width as u64, doc, MANY)?);
+            let name = format!("{path}/Steps/{place}Offsets/{}", field.name);
+            let doc = ("", "first value of each state");
+            data_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+        }
+        Ok(Self {
+            values,
+            steps,
+            data,
+            data_offsets,
+            count: 0,
+            path,
+        })
+    }
+
+    /// Appends a state: the values of each field.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn append(
+        &mut self,
+        store: &mut Store,
+        time: f64,
+        values: &[Vec<f64>],
+    ) -> Result<(), ResultsError> {
+        let columns = self.data.iter().zip(&self.data_offsets);
+        for ((column, offsets), values) in columns.zip(values) {
+            let first = store.rows(*column) as i64;
+            store.append(*offsets, &[first])?;
+            store.append(*column, values)?;
+        }
+        for (column, value) in self.steps.iter().zip([0i64, 1, 0, 0, 0]) {
+            store.append(*column, &[value])?;
+        }
+        store.append(self.values, &[time])?;
+        self.count += 1;
+        store.count(&self.steps_path(), "NSteps", self.count);
+        Ok(())
+    }
+
+    /// Continues after the states that the file already has.
+    pub fn resume(&mut self, store: &mut Store) {
+        self.count = store.rows(self.values) as i64;
+        store.count(&self.steps_path(), "NSteps", self.count);
+    }
+
+    fn steps_path(&self) -> String {
+        format!("{}/Steps", self.path)
+    }
+}
+
+/// Writes points and cells, the one part of all states.
+fn write_topology(store: &mut Store, path: &str, mesh: &Mesh) -> Result<(), ResultsError> {
+    let cells = mesh.cells.len() / mesh.corners;
+    let mut whole = |name: &str, values: &[i64], doc: &str| {
+        store.numbers(&format!("{path}/{name}"), 1, values, ("", doc))
+    };
+    let points = [mesh.points.len() as i64 / 3];
+    whole("NumberOfPoints", &points, "points of the mesh")?;
+    whole("NumberOfCells", &[cells as i64], "its cells")?;
+    let doc = "corners of all cells";
+    whole("NumberOfConnectivityIds", &[mesh.cells.len() as i64], doc)?;
+    let doc = "points of the corners, counted from 0";
+    whole("Connectivity", &mesh.cells, doc)?;
+    let offsets: Vec<i64> = (0..=cells).map(|k| (k * mesh.corners) as i64).collect();
+    let doc = "where the corners of each cell begin, and where those of the last end";
+    whole("Offsets", &offsets, doc)?;
+    let kind = KINDS.iter().find(|(corners, _)| *corners == mesh.corners);
+    let kind = kind.map_or(0, |(_, kind)| *kind);
+    let doc = "kind of each cell: 3 line, 5 triangle, 10 tetrahedron";
+    store.small_numbers(&format!("{path}/Types"), &vec![kind; cells], doc)?;
+    let doc = ("m", "coordinates without load");
+    store.numbers(&format!("{path}/Points"), 3, &mesh.points, doc)
+}

@@ -1,0 +1,194 @@
+//! Deformable bodies: their size, what their solutions take in memory, and what these cost in a step.
+
+use crate::bodies::{DynamicalSystem, SystemSize};
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::Simulation;
+use cpu_time::ThreadTime;
+use fretwork_core::bodies::SystemStep;
+
+/// Operations of a factorisation above which it is not timed: it would take more than some tenths of a second.
+const MOST_TIMED: f64 = 5e8;
+
+/// The lines of all deformable bodies: label and text.
+pub(super) fn lines<S: Space>(s: &Simulation<S>, timed: bool) -> Vec<(&'static str, String)> {
+    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+    let (grains, systems): (Vec<_>, Vec<_>) = systems.partition(|system| system.is_grain());
+    let mut out = Vec::new();
+    if !grains.is_empty() {
+        let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
+        let points = s.shapes.balls.iter().filter(|b| b.point_size > 0.0);
+        let sizes = grains.iter().filter_map(|g| g.size());
+        let text = format!(
+            "{}: {coordinates} coordinates, {} points of surfaces; memory: compliance of surfaces up to {}; their modes were found once for each shape",
+            grains.len(),
+            points.count(),
+            bytes(sizes.map(|size| size.surface).sum())
+        );
+        out.push(("deformable grains", text));
+    }
+    for system in systems {
+        out.push(shape(system));
+        let Some(size) = system.size() else { continue };
+        out.push(("", memory(system, &size)));
+        let step = SystemStep {
+            time: s.state.time,
+            h: s.options.scheme.h,
+            theta: s.options.scheme.theta,
+            gravity: s.state.gravity,
+        };
+        let times = (timed && size.operations[0] < MOST_TIMED).then(|| clock(system, &step));
+        out.push(("", cost(&size, times)));
+    }
+    out
+}
+
+fn shape<S: Space>(system: &dyn DynamicalSystem<S>) -> (&'static str, String) {
+    let (name, contactors) = (system.name(), system.contactors().len());
+    match system.deformed_mesh() {
+        None => {
+            let coordinates = system.freedoms();
+            let text = format!("{name}: {coordinates} coordinates; {contactors} contactors");
+            ("half-space", text)
+        }
+        Some(mesh) => {
+            let text = format!(
+                "{name}: {} points, {} elements, {} coordinates; {contactors} contactors",
+                mesh.points.len(),
+                mesh.elements.len() / (S::D + 1),
+                system.freedoms(),
+            );
+            ("deformable body", text)
+        }
+    }
+}
+
+fn bytes(count: usize) -> String {
+    scaled(count as f64, [" B", " kB", " MB", " GB"])
+}
+
+/// A number with two digits or more, and the first of these units, each a thousand times the last, in which it is below a thousand.
+fn scaled(mut value: f64, units: [&str; 4]) -> String {
+    let mut units = units.into_iter();
+    let mut unit = units.next().unwrap_or_default();
+    for next in units {
+        if value < 999.5 {
+            break;
+        }
+        (value, unit) = (value / 1e3, next);
+    }
+    let digits = usize::from(value < 9.95 && value.fract() != 0.0);
+    format!("{value:.digits$}{unit}")
+}
+
+fn memory<S: Space>(system: &dyn DynamicalSystem<S>, size: &SystemSize) -> String {
+    let unknowns = size.unknowns;
+    if size.factor == 0 {
+        return format!(
+            "{unknowns} unknowns; memory: tables of influences {}",
+            bytes(size.matrix)
+        );
+    }
+    let points = system.touching_surface().map_or(0, |s| s.points.len());
+    let surface = match (points, size.surface) {
+        (0, _) => String::new(),
+        (_, 0) => format!(
+            "; the compliance of its {points} points on the surface is too large to be kept, and each touched point takes {} solutions a step",
+            S::D
+        ),
+        (_, all) => format!(
+            ", compliance of the surface {} a point that was touched, {} for all {points}",
+            bytes(size.point),
+            bytes(all)
+        ),
+    };
+    format!(
+        "{unknowns} unknowns; memory: matrix {}, factor {}{surface}",
+        bytes(size.matrix),
+        bytes(size.factor)
+    )
+}
+
+/// Processor times of a factorisation and of a solution (s).
+fn clock<S: Space>(system: &dyn DynamicalSystem<S>, step: &SystemStep<S>) -> [f64; 2] {
+    let mut copy = system.clone_box();
+    let begun = ThreadTime::now();
+    copy.begin_step(step);
+    copy.linearise(step);
+    let factorised = begun.elapsed().as_secs_f64();
+    let mut impulse = vec![0.0; copy.freedoms()];
+    for contactor in copy.contactors() {
+        for (node, _) in contactor.nodes.terms() {
+            let mut push = S::Vector::zero();
+            push[S::D - 1] = 1.0;
+            copy.add_impulse(node, &push, &mut impulse);
+        }
+    }
+    let begun = ThreadTime::now();
+    copy.solve(&mut impulse);
+    [factorised, begun.elapsed().as_secs_f64()]
+}
+
+fn cost(size: &SystemSize, times: Option<[f64; 2]>) -> String {
+    let took = |which: usize| match times {
+        Some(times) => {
+            let micro = [" us", " ms", " s", " ks"];
+            format!(" ({})", scaled(1e6 * times[which], micro))
+        }
+        None => String::new(),
+    };
+    let names = ["", " thousand", " million", " billion"];
+    let operations = |which: usize| scaled(size.operations[which], names);
+    let solution = format!("{} operations{}", operations(1), took(1));
+    if size.factor == 0 {
+        return format!("a step: two sums over all cells of {solution} each");
+    }
+    let factorisation = format!("{} operations{}", operations(0), took(0));
+    if size.refactorised {
+        format!(
+            "each iteration of a step: one factorisation of {factorisation}, two solutions of {solution} each, and one for each coordinate of what is touched"
+        )
+    } else {
+        format!(
+            "factorised once, {factorisation}; a step: two solutions of {solution} each, and one for each coordinate of a point that is touched for the first time"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_units_of_their_size() {
+        for (count, text) in [
+            (0, "0 B"),
+            (999, "999 B"),
+            (1500, "1.5 kB"),
+            (9_660_000, "9.7 MB"),
+            (999_600, "1.0 MB"),
+            (34_400_000_000, "34 GB"),
+        ] {
+            assert_eq!(bytes(count), text);
+        }
+    }
+
+    #[test]
+    fn what_is_formed_once_and_in_each_iteration_is_told_apart() {
+        let mut size = SystemSize {
+            factor: 1,
+            operations: [2e9, 4e6],
+            ..SystemSize::default()
+        };
+        let text = cost(&size, Some([1.5, 2e-3]));
+        assert!(
+            text.starts_with("factorised once, 2 billion operations (1.5 s)"),
+            "{text}"
+        );
+        size.refactorised = true;
+        let text = cost(&size, None);
+        assert!(
+            text.starts_with("each iteration of a step: one factorisation of 2 billion operations, two solutions of 4 million"),
+            "{text}"
+        );
+    }
+}
