@@ -273,7 +273,8 @@ impl Surface<Dim2> for Polyline {
             let at = b + Vector2::new(shift, 0.0);
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
             // With the solid on the right, a convex corner turns right.
-            if inside && normals[0].perp(&normals[1]) < -1e-9 {
+            let convex = normals[0].perp(&normals[1]) < -1e-9;
+            if inside && (convex || self.deforms()) {
                 let feature = 2 * k as u32 + 1;
                 out.push(Corner {
                     at,

@@ -54,7 +54,7 @@ pub struct ClosestPoint<V> {
     pub feature: u32,
 }
 
-/// A convex corner of a surface (2D).
+/// A convex corner of a surface, or any vertex of one that deforms (2D).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner<V> {
     /// Position (m).
@@ -73,7 +73,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
     /// Finds corners of the surface in the box from `low` to `high` (m) that a flat side may touch, in the
-    /// order of their features; none for a plane.
+    /// order of their features; none for a plane, all vertices of a surface that deforms.
     fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
     /// Finds triangles of the surface that intersect the box from `low` to `high` (m), and all that share
     /// their corners there (3D); none for surfaces that only corners of a body can touch: a plane, the
@@ -113,6 +113,11 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows each of them.
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
+    }
+    /// Returns whether it deforms. A flat side then touches every vertex below it: the one that is highest is so until it is loaded, and with
+    /// a contact on that alone the load would go from one vertex to the next and back in each step.
+    fn deforms(&self) -> bool {
+        !self.moving_vertices().is_empty()
     }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.

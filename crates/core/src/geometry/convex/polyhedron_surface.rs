@@ -7,7 +7,7 @@
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::is_between_normals;
-use super::{ContactPoint, ContactTolerances, DEEP};
+use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{ClosestPoint, Surface};
 use crate::geometry::space::Dim3;
@@ -44,7 +44,11 @@ pub fn contact_points(
     near.corners(surface, !facets.is_empty(), out);
     if !facets.is_empty() {
         let ridges = facets::ridges(&facets);
-        near.points(&facets, &ridges, out);
+        if surface.deforms() {
+            near.vertices(&facets, out);
+        } else {
+            near.points(&facets, &ridges, out);
+        }
         near.edges(&ridges, out);
     }
     out[first..].sort_by_key(|m| m.feature);
@@ -91,6 +95,39 @@ impl Near<'_> {
                     facing: self.core.faces(&touch.normal),
                 });
             }
+        }
+    }
+
+    /// Finds contacts of all vertices of a surface that deforms with the faces of the polyhedron.
+    fn vertices(&self, facets: &[Facet<V>], out: &mut Vec<ContactPoint<V>>) {
+        let mut places: Vec<(u64, V)> = facets
+            .iter()
+            .flat_map(|f| f.names.into_iter().zip(f.corners))
+            .collect();
+        places.sort_by_key(|(name, _)| *name);
+        places.dedup_by_key(|(name, _)| *name);
+        for (name, place) in places {
+            let (distance, outward) = self.core.distance(&(place - self.at));
+            if distance > self.reach || distance < -self.deep {
+                continue;
+            }
+            let face = |n: &V| (n - outward).norm() <= SAME;
+            let about = facets.iter().filter(|f| f.names.contains(&name));
+            let mean: V = about.map(Facet::normal).sum();
+            if !self.core.normals().iter().any(face)
+                || -outward.dot(&mean) <= STEEPEST * mean.norm()
+            {
+                continue;
+            }
+            out.push(ContactPoint {
+                on_candidate: place - outward * (distance - self.rounding),
+                on_antagonist: place,
+                normal: -outward,
+                gap: distance - self.rounding,
+                feature: 1 << 30 | (name & 0xfff_ffff),
+                share: 0.0,
+                facing: false,
+            });
         }
     }
 
