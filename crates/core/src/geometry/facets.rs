@@ -175,7 +175,7 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
         }
 }
 
-/// A convex edge of a surface: a sharp one, or one with a facet on one side only.
+/// A convex edge of a surface: a sharp one, or one with a facet on one side only; of a surface that deforms any edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridge {
     /// Its ends (m), in the direction of the side of its first facet.
@@ -200,10 +200,15 @@ impl Ridge {
         let [m, n] = &self.normals;
         m.cross(direction).dot(&along) >= 0.0 && direction.cross(n).dot(&along) >= 0.0
     }
+
+    /// Returns the sum of the normals of its facets; zero at an open border.
+    pub fn outward(&self) -> V {
+        self.normals[0] + self.normals[1]
+    }
 }
 
-/// Returns all convex edges.
-pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
+/// Returns all convex edges, or with `all` those of creases and planes too.
+pub fn ridges(facets: &[Facet<V>], all: bool) -> Vec<Ridge> {
     let mut out = Vec::new();
     let mut about: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
     let pair = |a: u64, b: u64| [a.min(b), a.max(b)];
@@ -224,7 +229,7 @@ pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
                 Some(g) => {
                     let n = facets[*g].normal();
                     let along = facet.corners[b] - facet.corners[a];
-                    if normal.cross(&n).dot(&along) <= BEHIND * along.norm() {
+                    if !all && normal.cross(&n).dot(&along) <= BEHIND * along.norm() {
                         continue;
                     }
                     n

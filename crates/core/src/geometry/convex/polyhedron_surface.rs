@@ -43,13 +43,14 @@ pub fn contact_points(
     };
     near.corners(surface, !facets.is_empty(), out);
     if !facets.is_empty() {
-        let ridges = facets::ridges(&facets);
-        if surface.deforms() {
+        let deforms = surface.deforms();
+        let ridges = facets::ridges(&facets, deforms);
+        if deforms {
             near.vertices(&facets, out);
         } else {
             near.points(&facets, &ridges, out);
         }
-        near.edges(&ridges, out);
+        near.edges(&ridges, deforms, out);
     }
     out[first..].sort_by_key(|m| m.feature);
 }
@@ -165,9 +166,17 @@ impl Near<'_> {
         }
     }
 
-    /// Finds contacts of sharp edges of the surface with edges of the polyhedron.
-    fn edges(&self, ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
+    /// Finds contacts of sharp edges of the surface with edges of the polyhedron; of all edges of a surface that deforms.
+    fn edges(&self, ridges: &[Ridge], deforms: bool, out: &mut Vec<ContactPoint<V>>) {
         for ridge in ridges {
+            let outward = ridge.outward();
+            let holds = |normal: &V| {
+                if deforms && outward != V::zeros() {
+                    normal.dot(&outward) > STEEPEST * outward.norm()
+                } else {
+                    ridge.holds(normal)
+                }
+            };
             let [p, q] = ridge.ends;
             let u = q - p;
             for e in 0..self.core.topology().edges.len() {
@@ -192,7 +201,7 @@ impl Near<'_> {
                     let gap = (a - p).dot(&normal);
                     if gap < self.reach
                         && gap > -self.deep
-                        && ridge.holds(&normal)
+                        && holds(&normal)
                         && is_between_normals(self.core, e, &-normal)
                     {
                         out.push(ContactPoint {
