@@ -139,6 +139,23 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
     out[start..].sort_by_key(|t| t.feature);
 }
 
+/// Calls a function with each corner of the facets, the mean normal there and its feature.
+pub fn vertices(facets: &[Facet<V>], mut call: impl FnMut(V, V, u32)) {
+    let mut places: Vec<(u64, V, usize)> = Vec::new();
+    for (k, facet) in facets.iter().enumerate() {
+        let named = facet.names.into_iter().zip(facet.corners);
+        places.extend(named.map(|(name, at)| (name, at, k)));
+    }
+    places.sort_by_key(|(name, _, k)| (*name, *k));
+    places.dedup_by_key(|(name, _, _)| *name);
+    for (name, at, first) in places {
+        let part = [name, u64::MAX, u64::MAX];
+        let about = facets.iter().filter(|f| f.has(&part));
+        let outward = pseudo_normal(about, &part, 1);
+        call(at, outward, feature(facets, first, &part, 1));
+    }
+}
+
 /// Returns the mean normal at a part, weighted by the angles of the facets, which determines inside or
 /// outside. Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
 /// TVCG 11 (2005).

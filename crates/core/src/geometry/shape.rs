@@ -1,6 +1,6 @@
 //! Collision shapes: balls, convex pieces, and surfaces of first bodies.
 
-use super::convex::ConvexCollider;
+use super::convex::{ConvexCollider, STEEPEST};
 use super::facets::Facet;
 use super::periodic::Periodic;
 use super::recede::Recede;
@@ -114,16 +114,44 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
     }
-    /// Returns whether it deforms. A flat side then touches every vertex below it: the one that is highest is so until it is loaded, and with
+    /// Returns whether it deforms. Flat sides and balls then touch every vertex within reach: the nearest one is so until it is loaded, and with
     /// a contact on that alone the load would go from one vertex to the next and back in each step.
     fn deforms(&self) -> bool {
         !self.moving_vertices().is_empty()
+    }
+    /// Finds all vertices within `reach` (m) of a ball's centre in front of a surface that deforms, with the features that
+    /// [`Surface::touches`] gives them; none of others.
+    fn vertices_within(
+        &self,
+        _centre: &S::Vector,
+        _reach: f64,
+        _out: &mut Vec<ClosestPoint<S::Vector>>,
+    ) {
     }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero()
     }
+}
+
+/// A vertex as the nearest point to a ball in front of it, where it is within `reach` (m).
+pub(super) fn at_vertex<V: VectorLike>(
+    vertex: V,
+    outward: &V,
+    centre: &V,
+    reach: f64,
+    feature: u32,
+) -> Option<ClosestPoint<V>> {
+    let arm = *centre - vertex;
+    let distance = arm.norm();
+    let faces = arm.dot(outward) > STEEPEST * distance * outward.norm();
+    (distance < reach && faces).then(|| ClosestPoint {
+        closest_point: vertex,
+        normal: arm * (1.0 / distance),
+        distance,
+        feature,
+    })
 }
 
 /// Returns whether a spin is about an axis, within the rounding of the rotation to body axes.

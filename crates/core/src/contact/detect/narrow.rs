@@ -182,6 +182,21 @@ impl<'a, S: Space> Narrow<'a, S> {
         surface
             .shape
             .touches(&local, ball.radius + margin, &mut touches);
+        if surface.shape.deforms() && ball.radius > 0.0 {
+            let found = touches.len();
+            let reach = ball.radius + margin;
+            surface.shape.vertices_within(&local, reach, &mut touches);
+            let (first, more) = touches.split_at_mut(found);
+            let mut kept = 0;
+            for k in 0..more.len() {
+                if first.iter().all(|t| t.feature != more[k].feature) {
+                    more[kept] = more[k];
+                    kept += 1;
+                }
+            }
+            touches.truncate(found + kept);
+            touches.sort_by_key(|t| t.feature);
+        }
         let Some(law) = self.laws.get(ball.material, surface.material) else {
             return;
         };

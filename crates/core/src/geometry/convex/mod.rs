@@ -49,7 +49,7 @@ pub struct ConvexCollider<S: Space> {
 pub const DEEP: f64 = 0.25;
 
 /// Least cosine of the angle between a side and a surface that deforms for the side to touch its vertices; a steeper side touches by its corners.
-const STEEPEST: f64 = 0.5;
+pub(super) const STEEPEST: f64 = 0.5;
 
 /// Shape and mass properties of a piece that is not yet part of a body.
 #[derive(Clone, Debug)]

@@ -101,35 +101,25 @@ impl Near<'_> {
 
     /// Finds contacts of all vertices of a surface that deforms with the faces of the polyhedron.
     fn vertices(&self, facets: &[Facet<V>], out: &mut Vec<ContactPoint<V>>) {
-        let mut places: Vec<(u64, V)> = facets
-            .iter()
-            .flat_map(|f| f.names.into_iter().zip(f.corners))
-            .collect();
-        places.sort_by_key(|(name, _)| *name);
-        places.dedup_by_key(|(name, _)| *name);
-        for (name, place) in places {
+        facets::vertices(facets, |place, mean, feature| {
             let (distance, outward) = self.core.distance(&(place - self.at));
             if distance > self.reach || distance < -self.deep {
-                continue;
+                return;
             }
             let face = |n: &V| (n - outward).norm() <= SAME;
-            let about = facets.iter().filter(|f| f.names.contains(&name));
-            let mean: V = about.map(Facet::normal).sum();
-            if !self.core.normals().iter().any(face)
-                || -outward.dot(&mean) <= STEEPEST * mean.norm()
-            {
-                continue;
+            if !self.core.normals().iter().any(face) || -outward.dot(&mean) <= STEEPEST {
+                return;
             }
             out.push(ContactPoint {
                 on_candidate: place - outward * (distance - self.rounding),
                 on_antagonist: place,
                 normal: -outward,
                 gap: distance - self.rounding,
-                feature: 1 << 30 | (name & 0xfff_ffff),
+                feature: u64::from(feature) << 32 | 1 << 30,
                 share: 0.0,
                 facing: false,
             });
-        }
+        });
     }
 
     /// Finds contacts of sharp corners of the surface with the faces and edges of the polyhedron.
