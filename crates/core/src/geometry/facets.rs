@@ -139,6 +139,23 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
     out[start..].sort_by_key(|t| t.feature);
 }
 
+/// Calls a function with each corner of the facets, the mean normal there and its feature.
+pub fn vertices(facets: &[Facet<V>], mut call: impl FnMut(V, V, u32)) {
+    let mut places: Vec<(u64, V, usize)> = Vec::new();
+    for (k, facet) in facets.iter().enumerate() {
+        let named = facet.names.into_iter().zip(facet.corners);
+        places.extend(named.map(|(name, at)| (name, at, k)));
+    }
+    places.sort_by_key(|(name, _, k)| (*name, *k));
+    places.dedup_by_key(|(name, _, _)| *name);
+    for (name, at, first) in places {
+        let part = [name, u64::MAX, u64::MAX];
+        let about = facets.iter().filter(|f| f.has(&part));
+        let outward = pseudo_normal(about, &part, 1);
+        call(at, outward, feature(facets, first, &part, 1));
+    }
+}
+
 /// Returns the mean normal at a part, weighted by the angles of the facets, which determines inside or
 /// outside. Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
 /// TVCG 11 (2005).
@@ -175,7 +192,7 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
         }
 }
 
-/// A convex edge of a surface: a sharp one, or one with a facet on one side only.
+/// A convex edge of a surface: a sharp one, or one with a facet on one side only; of a surface that deforms any edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridge {
     /// Its ends (m), in the direction of the side of its first facet.
@@ -200,10 +217,15 @@ impl Ridge {
         let [m, n] = &self.normals;
         m.cross(direction).dot(&along) >= 0.0 && direction.cross(n).dot(&along) >= 0.0
     }
+
+    /// Returns the sum of the normals of its facets; zero at an open border.
+    pub fn outward(&self) -> V {
+        self.normals[0] + self.normals[1]
+    }
 }
 
-/// Returns all convex edges.
-pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
+/// Returns all convex edges, or with `all` those of creases and planes too.
+pub fn ridges(facets: &[Facet<V>], all: bool) -> Vec<Ridge> {
     let mut out = Vec::new();
     let mut about: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
     let pair = |a: u64, b: u64| [a.min(b), a.max(b)];
@@ -224,7 +246,7 @@ pub fn ridges(facets: &[Facet<V>]) -> Vec<Ridge> {
                 Some(g) => {
                     let n = facets[*g].normal();
                     let along = facet.corners[b] - facet.corners[a];
-                    if normal.cross(&n).dot(&along) <= BEHIND * along.norm() {
+                    if !all && normal.cross(&n).dot(&along) <= BEHIND * along.norm() {
                         continue;
                     }
                     n

@@ -1,7 +1,7 @@
 //! A triangulated surface in 3D, solid behind it: a first body from a file.
 
 use super::facets::{self, Facet};
-use super::shape::{ClosestPoint, Surface};
+use super::shape::{ClosestPoint, Surface, at_vertex};
 use super::space::Dim3;
 use nalgebra::Vector3;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -164,6 +164,17 @@ impl Surface<Dim3> for Mesh {
 
     fn moving_vertices(&self) -> &[V] {
         if self.deforms { &self.points } else { &[] }
+    }
+
+    fn vertices_within(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
+        if !self.deforms {
+            return;
+        }
+        let (extent, mut near) = (V::repeat(reach), Vec::new());
+        self.facets(&(centre - extent), &(centre + extent), &mut near);
+        facets::vertices(&near, |vertex, outward, feature| {
+            out.extend(at_vertex(vertex, &outward, centre, reach, feature));
+        });
     }
 
     fn facets(&self, low: &V, high: &V, out: &mut Vec<Facet<V>>) {

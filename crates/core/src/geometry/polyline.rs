@@ -1,7 +1,7 @@
 //! The profile of a first body in 2D: a chain of segments, solid on its right-hand side.
 
 use super::recede::{Recede, Shares, Vertex};
-use super::shape::{ClosestPoint, Corner, Surface};
+use super::shape::{ClosestPoint, Corner, Surface, at_vertex};
 use super::space::Dim2;
 use nalgebra::Vector2;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -300,7 +300,8 @@ impl Surface<Dim2> for Polyline {
             let at = b + Vector2::new(shift, 0.0);
             let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
             // With the solid on the right, a convex corner turns right.
-            if inside && normals[0].perp(&normals[1]) < -1e-9 {
+            let convex = normals[0].perp(&normals[1]) < -1e-9;
+            if inside && (convex || self.deforms()) {
                 let feature = 2 * k as u32 + 1;
                 out.push(Corner {
                     at,
@@ -310,6 +311,23 @@ impl Surface<Dim2> for Polyline {
             }
         }
         out[first..].sort_by_key(|c| c.feature);
+    }
+
+    fn vertices_within(
+        &self,
+        centre: &Vector2<f64>,
+        reach: f64,
+        out: &mut Vec<ClosestPoint<Vector2<f64>>>,
+    ) {
+        if !self.deforms() {
+            return;
+        }
+        let (extent, mut corners) = (Vector2::repeat(reach), Vec::new());
+        self.corners(&(centre - extent), &(centre + extent), &mut corners);
+        out.extend(corners.iter().filter_map(|c| {
+            let outward = c.normals[0] + c.normals[1];
+            at_vertex(c.at, &outward, centre, reach, c.feature)
+        }));
     }
 
     fn outline(&self) -> Vec<Vec<Vector2<f64>>> {

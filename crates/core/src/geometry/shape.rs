@@ -1,6 +1,6 @@
 //! Collision shapes: balls, convex pieces, and surfaces of first bodies.
 
-use super::convex::ConvexCollider;
+use super::convex::{ConvexCollider, STEEPEST};
 use super::facets::Facet;
 use super::periodic::Periodic;
 use super::recede::Recede;
@@ -59,7 +59,7 @@ pub struct ClosestPoint<V> {
     pub feature: u32,
 }
 
-/// A convex corner of a surface (2D).
+/// A convex corner of a surface, or any vertex of one that deforms (2D).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner<V> {
     /// Position (m).
@@ -78,7 +78,7 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
     /// Finds corners of the surface in the box from `low` to `high` (m) that a flat side may touch, in the
-    /// order of their features; none for a plane.
+    /// order of their features; none for a plane, all vertices of a surface that deforms.
     fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
     /// Finds triangles of the surface that intersect the box from `low` to `high` (m), and all that share
     /// their corners there (3D); none for surfaces that only corners of a body can touch: a plane, the
@@ -141,11 +141,44 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
         nearest.filter(|touch| touch.distance < 0.0)
     }
+    /// Returns whether it deforms. Flat sides and balls then touch every vertex within reach: the nearest one is so until it is loaded, and with
+    /// a contact on that alone the load would go from one vertex to the next and back in each step.
+    fn deforms(&self) -> bool {
+        !self.moving_vertices().is_empty()
+    }
+    /// Finds all vertices within `reach` (m) of a ball's centre in front of a surface that deforms, with the features that
+    /// [`Surface::touches`] gives them; none of others.
+    fn vertices_within(
+        &self,
+        _centre: &S::Vector,
+        _reach: f64,
+        _out: &mut Vec<ClosestPoint<S::Vector>>,
+    ) {
+    }
     /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
     /// surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero()
     }
+}
+
+/// A vertex as the nearest point to a ball in front of it, where it is within `reach` (m).
+pub(super) fn at_vertex<V: VectorLike>(
+    vertex: V,
+    outward: &V,
+    centre: &V,
+    reach: f64,
+    feature: u32,
+) -> Option<ClosestPoint<V>> {
+    let arm = *centre - vertex;
+    let distance = arm.norm();
+    let faces = arm.dot(outward) > STEEPEST * distance * outward.norm();
+    (distance < reach && faces).then(|| ClosestPoint {
+        closest_point: vertex,
+        normal: arm * (1.0 / distance),
+        distance,
+        feature,
+    })
 }
 
 /// Returns whether a spin is about an axis, within the rounding of the rotation to body axes.

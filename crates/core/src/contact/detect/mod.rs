@@ -158,7 +158,7 @@ fn must_rebuild<S: Space>(
     if shapes.surfaces.iter().any(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-        !s.shape.keeps_place(&spin) && s.shape.moving_vertices().is_empty()
+        !s.shape.keeps_place(&spin) && !s.shape.deforms()
     }) {
         return true;
     }

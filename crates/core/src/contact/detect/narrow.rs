@@ -190,6 +190,21 @@ impl<'a, S: Space> Narrow<'a, S> {
             // A point that came too fast is pushed out of a grain from any depth.
             touches.extend(surface.shape.enclosing(&local));
         }
+        if surface.shape.deforms() && ball.radius > 0.0 {
+            let found = touches.len();
+            let reach = ball.radius + margin;
+            surface.shape.vertices_within(&local, reach, &mut touches);
+            let (first, more) = touches.split_at_mut(found);
+            let mut kept = 0;
+            for k in 0..more.len() {
+                if first.iter().all(|t| t.feature != more[k].feature) {
+                    more[kept] = more[k];
+                    kept += 1;
+                }
+            }
+            touches.truncate(found + kept);
+            touches.sort_by_key(|t| t.feature);
+        }
         let Some(law) = self.laws.get(ball.material, surface.material) else {
             return;
         };

@@ -109,7 +109,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
             let pivot = self.bodies.position[surface.body as usize];
             let spin = velocities[surface.body as usize].1;
-            let follows = !surface.shape.moving_vertices().is_empty();
+            let follows = surface.shape.deforms();
             let sweeps = !follows
                 && !surface
                     .shape

@@ -75,7 +75,7 @@ pub fn is_calm<S: Space>(
     let still = shapes.surfaces.iter().all(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-        s.shape.keeps_place(&spin) || !s.shape.moving_vertices().is_empty()
+        s.shape.keeps_place(&spin) || s.shape.deforms()
     });
     still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
 }
@@ -221,7 +221,7 @@ fn surfaces_turn_faster<S: Space>(
         let spin = motion.velocities[b].1;
         // A surface that is invariant under its rotation does not move.
         spin.norm() > *seen
-            && surface.shape.moving_vertices().is_empty()
+            && !surface.shape.deforms()
             && !surface
                 .shape
                 .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &spin))

@@ -48,6 +48,9 @@ pub struct ConvexCollider<S: Space> {
 /// of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another part of the surface.
 pub const DEEP: f64 = 0.25;
 
+/// Least cosine of the angle between a side and a surface that deforms for the side to touch its vertices; a steeper side touches by its corners.
+pub(super) const STEEPEST: f64 = 0.5;
+
 /// Shape and mass properties of a piece that is not yet part of a body.
 #[derive(Clone, Debug)]
 pub struct ConvexPart<S: Space> {

@@ -2,7 +2,7 @@
 //! and corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
-use super::{ContactPoint, ContactTolerances, DEEP};
+use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
 use crate::geometry::shape::{ClosestPoint, Surface};
 use crate::geometry::space::Dim2;
 use nalgebra::Vector2;
@@ -72,8 +72,14 @@ pub fn contact_points(
         }
         let normal = -outward;
         let [before, after] = corner.normals;
-        let inside = before.perp(&normal) <= CONE && normal.perp(&after) <= CONE;
-        if !inside || normal.dot(&(before + after)) <= 0.0 {
+        let mean = before + after;
+        let touches = if surface.deforms() {
+            normal.dot(&mean) > STEEPEST * mean.norm()
+        } else {
+            let inside = before.perp(&normal) <= CONE && normal.perp(&after) <= CONE;
+            inside && normal.dot(&mean) > 0.0
+        };
+        if !touches {
             continue;
         }
         out.push(ContactPoint {

@@ -7,7 +7,7 @@
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::is_between_normals;
-use super::{ContactPoint, ContactTolerances, DEEP};
+use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
 use crate::geometry::facets::{self, Facet, Ridge};
 use crate::geometry::shape::{ClosestPoint, Surface};
 use crate::geometry::space::Dim3;
@@ -43,9 +43,14 @@ pub fn contact_points(
     };
     near.corners(surface, !facets.is_empty(), out);
     if !facets.is_empty() {
-        let ridges = facets::ridges(&facets);
-        near.points(&facets, &ridges, out);
-        near.edges(&ridges, out);
+        let deforms = surface.deforms();
+        let ridges = facets::ridges(&facets, deforms);
+        if deforms {
+            near.vertices(&facets, out);
+        } else {
+            near.points(&facets, &ridges, out);
+        }
+        near.edges(&ridges, deforms, out);
     }
     out[first..].sort_by_key(|m| m.feature);
 }
@@ -94,6 +99,29 @@ impl Near<'_> {
         }
     }
 
+    /// Finds contacts of all vertices of a surface that deforms with the faces of the polyhedron.
+    fn vertices(&self, facets: &[Facet<V>], out: &mut Vec<ContactPoint<V>>) {
+        facets::vertices(facets, |place, mean, feature| {
+            let (distance, outward) = self.core.distance(&(place - self.at));
+            if distance > self.reach || distance < -self.deep {
+                return;
+            }
+            let face = |n: &V| (n - outward).norm() <= SAME;
+            if !self.core.normals().iter().any(face) || -outward.dot(&mean) <= STEEPEST {
+                return;
+            }
+            out.push(ContactPoint {
+                on_candidate: place - outward * (distance - self.rounding),
+                on_antagonist: place,
+                normal: -outward,
+                gap: distance - self.rounding,
+                feature: u64::from(feature) << 32 | 1 << 30,
+                share: 0.0,
+                facing: false,
+            });
+        });
+    }
+
     /// Finds contacts of sharp corners of the surface with the faces and edges of the polyhedron.
     fn points(&self, facets: &[Facet<V>], ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
         let mut seen: Vec<u64> = Vec::new();
@@ -128,9 +156,17 @@ impl Near<'_> {
         }
     }
 
-    /// Finds contacts of sharp edges of the surface with edges of the polyhedron.
-    fn edges(&self, ridges: &[Ridge], out: &mut Vec<ContactPoint<V>>) {
+    /// Finds contacts of sharp edges of the surface with edges of the polyhedron; of all edges of a surface that deforms.
+    fn edges(&self, ridges: &[Ridge], deforms: bool, out: &mut Vec<ContactPoint<V>>) {
         for ridge in ridges {
+            let outward = ridge.outward();
+            let holds = |normal: &V| {
+                if deforms && outward != V::zeros() {
+                    normal.dot(&outward) > STEEPEST * outward.norm()
+                } else {
+                    ridge.holds(normal)
+                }
+            };
             let [p, q] = ridge.ends;
             let u = q - p;
             for e in 0..self.core.topology().edges.len() {
@@ -155,7 +191,7 @@ impl Near<'_> {
                     let gap = (a - p).dot(&normal);
                     if gap < self.reach
                         && gap > -self.deep
-                        && ridge.holds(&normal)
+                        && holds(&normal)
                         && is_between_normals(self.core, e, &-normal)
                     {
                         out.push(ContactPoint {
