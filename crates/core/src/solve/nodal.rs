@@ -17,23 +17,26 @@ pub struct NodalSystem<S: Space> {
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
     /// Column by column: the responses of all nodes to an impulse on one are read in a row in each update of a contact.
-    compliance: Arc<[S::Matrix]>,
+    compliance: Arc<Vec<S::Matrix>>,
     pub(super) velocity: Vec<S::Vector>,
 }
 
 impl<S: Space> NodalSystem<S> {
     /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by row (1/kg).
-    pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: Vec<S::Matrix>) -> Self {
+    pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, mut compliance: Vec<S::Matrix>) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());
         let count = nodes.len();
-        let column = |b: usize| compliance.iter().skip(b).step_by(count).copied();
-        let columns = (0..count).flat_map(column).collect();
+        for a in 1..count {
+            for b in 0..a {
+                compliance.swap(a * count + b, b * count + a);
+            }
+        }
         Self {
             velocity: free.clone(),
             nodes,
             free,
-            compliance: columns,
+            compliance: Arc::new(compliance),
         }
     }
 
