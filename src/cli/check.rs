@@ -9,7 +9,7 @@ mod springs;
 use super::output::answer;
 use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::record::biaxial::Biaxial;
 use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
@@ -156,7 +156,12 @@ fn bodies<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) -> f
     let (grains, systems): (Vec<_>, Vec<_>) = systems.partition(|system| system.is_grain());
     if !grains.is_empty() {
         let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
-        let points = s.shapes.balls.iter().filter(|b| b.point_size > 0.0).count();
+        let points = s
+            .shapes
+            .balls
+            .iter()
+            .filter(|b| b.area != S::Vector::zero())
+            .count();
         line(
             "deformable grains",
             format!(
