@@ -16,7 +16,11 @@ pub(super) fn lines<S: Space>(s: &Simulation<S>, timed: bool) -> Vec<(&'static s
     let mut out = Vec::new();
     if !grains.is_empty() {
         let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
-        let points = s.shapes.balls.iter().filter(|b| b.point_size > 0.0);
+        let points = s
+            .shapes
+            .balls
+            .iter()
+            .filter(|b| b.area != S::Vector::zero());
         let sizes = grains.iter().filter_map(|g| g.size());
         let text = format!(
             "{}: {coordinates} coordinates, {} points of surfaces; memory: compliance of surfaces up to {}; their modes were found once for each shape",

@@ -15,6 +15,7 @@ mod line_contact;
 mod newton;
 mod point_contact;
 mod rotation;
+mod soft_grains;
 mod soft_strain;
 mod wear;
 

@@ -15,6 +15,7 @@ mod names;
 mod numbers;
 mod polygons;
 mod printed;
+mod soft_grains;
 mod spelling;
 mod stages;
 mod text;

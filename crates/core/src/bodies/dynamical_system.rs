@@ -75,7 +75,7 @@ pub enum ContactorShape {
     Point,
     /// A surface that deforms with the system, see [`DynamicalSystem::surface`].
     Surface,
-    /// A grain: a closed surface that deforms, and the vertices of it as points, see [`DynamicalSystem::point_sizes`].
+    /// A grain: a closed surface that deforms, and the vertices of it as points, see [`DynamicalSystem::point_areas`].
     Grain,
     /// Shapes that the caller gives to the body.
     Given,
@@ -337,8 +337,9 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Of a grain, by vertex of its surface: half the length that the vertex stands for, in space the radius of the disk of its area (m).
-    fn point_sizes(&self, _contactor: &Contactor) -> Vec<f64> {
+    /// Of a grain, by vertex of its surface: the length (m) or area (m^2) that the vertex stands for, the sum of the shares of its facets
+    /// along their outward normals.
+    fn point_areas(&self, _contactor: &Contactor) -> Vec<S::Vector> {
         Vec::new()
     }
 

@@ -67,11 +67,29 @@ struct Found {
 /// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach` (m),
 /// in the order of their features. `facets` are all that intersect the box of that size about it.
 pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
+    touches_within(facets, centre, reach, 0.0, out);
+}
+
+/// The same; a place that is nearer to a corner than this share of an edge is at the corner.
+pub fn touches_within(
+    facets: &[Facet<V>],
+    centre: &V,
+    reach: f64,
+    at_corner: f64,
+    out: &mut Vec<ClosestPoint<V>>,
+) {
     let start = out.len();
     let mut found: Vec<Found> = Vec::new();
     for (k, facet) in facets.iter().enumerate() {
         let [a, b, c] = facet.corners;
-        let (closest_point, used) = nearest(*centre, a, b, c);
+        let (closest_point, mut used) = nearest(*centre, a, b, c);
+        // In line with a corner rounding decides whether a facet finds that or an edge of it; the facets around it must agree.
+        for (k, corner) in facet.corners.iter().enumerate() {
+            let edge = (facet.corners[(k + 1) % 3] - corner).norm();
+            if at_corner > 0.0 && (closest_point - corner).norm() <= at_corner * edge {
+                used = std::array::from_fn(|i| i == k);
+            }
+        }
         if (closest_point - centre).norm() >= reach {
             continue;
         }

@@ -23,6 +23,9 @@ pub struct Mesh {
     closed: bool,
 }
 
+/// Share of an edge of a grain within which a place is at its end.
+const AT_CORNER: f64 = 1e-11;
+
 /// Reason why triangles do not form a surface.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum MeshError {
@@ -115,8 +118,10 @@ impl Mesh {
     /// Those of [`Self::new`].
     pub fn closed(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         let mesh = Self::new(points, triangles)?;
+        // It deforms from the start.
         Ok(Self {
             closed: true,
+            deforms: true,
             ..mesh
         })
     }
@@ -149,7 +154,9 @@ impl Surface<Dim3> for Mesh {
     fn touches(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
         let (extent, mut near) = (V::repeat(reach), Vec::new());
         self.facets(&(centre - extent), &(centre + extent), &mut near);
-        facets::touches(&near, centre, reach, out);
+        // Blocks stand on each other in line.
+        let at_corner = if self.closed { AT_CORNER } else { 0.0 };
+        facets::touches_within(&near, centre, reach, at_corner, out);
     }
 
     fn is_closed(&self) -> bool {

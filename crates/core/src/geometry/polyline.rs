@@ -12,6 +12,8 @@ type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, f64)>;
 
 /// Distance from a vertex, relative to its segment, up to which it is one of rounding.
 const AT_VERTEX: f64 = 1e-9;
+/// Points of a closed chain are one if they are closer than this share of the search distance.
+const SEAM: f64 = 1e-9;
 
 /// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it determines how
 /// often they are rebuilt.
@@ -81,8 +83,12 @@ impl Polyline {
     /// # Errors
     /// As [`Self::new`].
     pub fn closed(mut corners: Vec<Vector2<f64>>) -> Result<Self, ProfileError> {
+        let vertices = corners.clone();
         corners.extend(corners.first().copied());
-        Self::build(corners, None, true)
+        let mut out = Self::build(corners, None, true)?;
+        // It deforms from the start.
+        out.move_vertices(&vertices);
+        Ok(out)
     }
 
     fn build(
@@ -262,6 +268,20 @@ impl Surface<Dim2> for Polyline {
             }
         }
         out[start..].sort_by_key(|t| t.feature);
+        // A vertex on a vertex of another grain is found by both segments.
+        let mut k = start + 1;
+        while self.closed && k < out.len() {
+            let (before, here) = (&out[start..k], &out[k]);
+            let alike = |t: &ClosestPoint<Vector2<f64>>| {
+                (t.closest_point - here.closest_point).norm() <= SEAM * reach
+                    && t.normal.dot(&here.normal) > 0.5
+            };
+            if before.iter().any(alike) {
+                out.remove(k);
+            } else {
+                k += 1;
+            }
+        }
     }
 
     fn near(&self, centre: &Vector2<f64>, reach: f64) -> bool {

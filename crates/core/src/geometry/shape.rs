@@ -18,10 +18,13 @@ pub struct Ball<S: Space> {
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
-    /// Of a point of a surface half the length that it stands for, in space the radius of the disk of its area (m); zero where the
-    /// length of its body is that.
-    pub point_size: f64,
+    /// Of a vertex of a grain that deforms the length (m) or area (m^2) that it stands for, along its normals in the axes of the
+    /// body; zero otherwise.
+    pub area: S::Vector,
 }
+
+/// Share of its area that a vertex has at least in a contact: sizes are positive.
+const LEAST_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
     /// Its size in contacts (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
@@ -29,10 +32,28 @@ impl<S: Space> Ball<S> {
     pub fn size(&self, lengths: &[f64]) -> f64 {
         if self.radius > 0.0 {
             self.radius
-        } else if self.point_size > 0.0 {
-            self.point_size
-        } else {
+        } else if self.area == S::Vector::zero() {
             lengths[self.body as usize]
+        } else {
+            Self::point_size(self.area.norm())
+        }
+    }
+
+    /// Its size in a contact with a normal towards it, in the axes of its body. The vertex at a corner stands for a part of either
+    /// side, of which one touches.
+    pub fn size_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
+        if self.area == S::Vector::zero() {
+            return self.size(lengths);
+        }
+        let least = LEAST_SHARE * self.area.norm();
+        Self::point_size(least.max(-self.area.dot(normal)))
+    }
+
+    /// Half of a length, in space the radius of the disk of an area (m).
+    fn point_size(area: f64) -> f64 {
+        match S::D {
+            2 => 0.5 * area,
+            _ => (area / std::f64::consts::PI).sqrt(),
         }
     }
 }

@@ -53,6 +53,8 @@ impl<S: Space> Simulation<S> {
         let (kinetic, stored) = (system.kinetic_energy(), system.stored_energy());
         let contactors = system.contactors();
         let index = self.state.systems.add(system, &mut self.state.bodies);
+        // Contacts in the first move are looked for with the velocities at the start.
+        self.state.systems.carry(&mut self.state.bodies);
         let system = self.state.systems.get(index);
         let mut points = 0..0;
         for (contactor, body) in contactors.iter().zip(self.state.systems.bodies(index)) {
@@ -65,18 +67,18 @@ impl<S: Space> Simulation<S> {
                 });
             }
             if let (Some(system), ContactorShape::Grain) = (system, contactor.shape) {
-                let sizes = system.point_sizes(contactor);
+                let areas = system.point_areas(contactor);
                 let first = self.shapes.balls.len();
-                points = first..first + sizes.len();
+                points = first..first + areas.len();
                 let vertices = system.surface_vertices(contactor).into_iter();
-                let point = |(offset, point_size)| Ball {
+                let point = |(offset, area)| Ball {
                     body: *body,
                     radius: 0.0,
                     offset,
                     material: contactor.material,
-                    point_size,
+                    area,
                 };
-                self.shapes.balls.extend(vertices.zip(sizes).map(point));
+                self.shapes.balls.extend(vertices.zip(areas).map(point));
             }
             let radius = match contactor.shape {
                 ContactorShape::Ball => Some(contactor.radius),
@@ -89,7 +91,7 @@ impl<S: Space> Simulation<S> {
                     radius,
                     offset: S::Vector::zero(),
                     material: contactor.material,
-                    point_size: 0.0,
+                    area: S::Vector::zero(),
                 });
             }
         }

@@ -90,7 +90,18 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
     fn advance(&mut self, time: f64) {
         let (velocity, spin) = Self::of_frame(&self.state.velocity);
         self.state.position += velocity * time;
-        self.state.rotation = S::turned(&self.state.rotation, &(spin * time));
+        match &self.model.tensor {
+            Some(tensor) => {
+                let (rotation, spin) = tensor.free_rotation(&self.state.rotation, &spin, time);
+                self.state.rotation = rotation;
+                for k in 0..S::Spin::N {
+                    self.state.velocity[S::D + k] = spin[k];
+                }
+            }
+            None => {
+                self.state.rotation = S::turned(&self.state.rotation, &(spin * time));
+            }
+        }
         let rates = Self::of_modes(&self.state.velocity);
         for (q, v) in self.state.amplitudes.iter_mut().zip(rates) {
             *q += v * time;
@@ -143,9 +154,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         let SystemStep { h, theta, .. } = *step;
         let model = &self.model;
         let average = self.average(theta);
-        let (velocity, spin) = Self::of_frame(&average);
-        let (before, _) = Self::of_frame(&self.start.velocity);
-        let (after, spin_after) = Self::of_frame(&self.state.velocity);
+        let (velocity, _) = Self::of_frame(&average);
+        let (before, spin_before) = Self::of_frame(&self.start.velocity);
+        let (after, _) = Self::of_frame(&self.state.velocity);
         let alpha = model.damping.mass;
         let mut work = SystemWork {
             potential: -h * model.mass * step.gravity.dot(&velocity),
@@ -156,6 +167,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         // Contacts turned the grain with its inertia at q_m.
         let (rotation, free) = &self.middle;
         let inertia = S::turned_tensor(rotation, &model.inertia);
+        let spin_after = S::turned_tensor(rotation, &model.inverse).apply(&self.state.momentum);
+        let spin = spin_before + (spin_after - spin_before) * theta;
         let (_, spin_free) = Self::of_frame(free);
         let received = inertia.apply(&(spin_after - spin_free)) * (1.0 + h * theta * alpha);
         let braked = h * alpha * spin.dot(&inertia.apply(&spin));
@@ -248,12 +261,10 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         self.vertices.clone()
     }
 
-    fn point_sizes(&self, _contactor: &Contactor) -> Vec<f64> {
-        let size = |tributary: f64| match S::D {
-            2 => 0.5 * tributary * self.model.size,
-            _ => (tributary / std::f64::consts::PI).sqrt() * self.model.size,
-        };
-        self.model.shape.tributary().into_iter().map(size).collect()
+    fn point_areas(&self, _contactor: &Contactor) -> Vec<S::Vector> {
+        let unit = self.model.size.powi(S::D as i32 - 1);
+        let areas = self.model.shape.tributary().into_iter();
+        areas.map(|area| area * unit).collect()
     }
 
     fn contactor_velocity(&self, _contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {

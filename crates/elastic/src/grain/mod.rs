@@ -78,6 +78,8 @@ struct Model<S: Space> {
     /// Moments of inertia in the frame, and their inverse (kg m^2).
     inertia: S::Tensor,
     inverse: S::Tensor,
+    /// The same where moments differ by axis.
+    tensor: Option<Tensor<S>>,
     /// The displacement of a mode of the shape at an amplitude of 1 (m).
     scale: f64,
     /// lambda of each mode (1/s^2).
@@ -146,6 +148,7 @@ impl<S: Deformable> ElasticGrain<S> {
             mass,
             inertia,
             inverse,
+            tensor,
         };
         let mut velocity: Vec<f64> = (0..S::D).map(|k| spec.velocity[k]).collect();
         velocity.extend((0..S::Spin::N).map(|k| spec.spin[k]));

@@ -145,18 +145,20 @@ impl<S: Space> GrainShape<S> {
         out
     }
 
-    /// Length or area of the surface that belongs to each vertex.
-    pub fn tributary(&self) -> Vec<f64> {
+    /// Length or area of the surface that belongs to each vertex, along the outward normals of its facets.
+    pub fn tributary(&self) -> Vec<S::Vector> {
         let at: Vec<S::Vector> = self.vertices().collect();
-        let mut out = vec![0.0; at.len()];
+        let mut out = vec![S::Vector::zero(); at.len()];
         for facet in &self.facets {
             let [a, b, c] = facet.map(|v| at[v as usize]);
+            let (along, moment) = (b - a, S::moment(&(b - a), &(c - a)));
+            // Clockwise in the plane.
             let area = match S::D {
-                2 => (b - a).norm(),
-                _ => 0.5 * S::moment(&(b - a), &(c - a)).norm(),
+                2 => S::Vector::from_slice(&[-along[1], along[0]]),
+                _ => S::Vector::from_slice(&[moment[0], moment[1], moment[2]]) * 0.5,
             };
             for v in facet.iter().take(S::D) {
-                out[*v as usize] += area / S::D as f64;
+                out[*v as usize] += area * (1.0 / S::D as f64);
             }
         }
         out

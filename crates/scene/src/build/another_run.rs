@@ -134,7 +134,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 radius: ball.radius,
                 offset,
                 material,
-                point_size: 0.0,
+                area: S::Vector::zero(),
             });
         }
         for piece in grain.pieces {

@@ -10,7 +10,7 @@ use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_elastic::grain::mesh::{Triangles, disk, polygon, shells};
 use fretwork_elastic::{ElasticGrainSpec as Grain, Elasticity, GrainShape, Mesh};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
 /// Most elements along the radius of a grain, by dimension: modes of finer meshes take minutes to find.
@@ -35,8 +35,8 @@ impl<S: Dimensional> Builder<'_, S> {
         &mut self,
         properties: &[BTreeMap<String, Sourced>],
     ) -> Result<ElasticGrains<S>, InputError> {
-        let mut of_material: HashMap<u16, (String, &ElasticGrainSpec, Elasticity, usize)> =
-            HashMap::new();
+        let mut of_material: BTreeMap<u16, (String, &ElasticGrainSpec, Elasticity, usize)> =
+            BTreeMap::new();
         for (k, spec) in self.case.elastic_grains.iter().enumerate() {
             let here = format!("elastic_grains.{k}");
             let (elasticity, material) = self.elasticity(&here, &spec.material, properties)?;
@@ -89,6 +89,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let mut known: HashMap<ShapeKey, Arc<GrainShape<S>>> = HashMap::new();
         let mut out = Vec::new();
         let mut kept = vec![true; self.bodies.len()];
+        let mut used = BTreeSet::new();
         for (b, own) in shapes.iter().enumerate() {
             let ball = own.balls.first().map(|ball| ball.material);
             let material = ball.or_else(|| own.pieces.first().map(|piece| piece.material));
@@ -115,11 +116,12 @@ impl<S: Dimensional> Builder<'_, S> {
             };
             let system = S::elastic_grain(grain).map_err(|why| self.fail(here.as_str(), why))?;
             kept[b] = false;
+            used.insert(here.clone());
             out.push((system, origin));
         }
-        if out.is_empty() {
+        if let Some((here, ..)) = of_material.values().find(|entry| !used.contains(&entry.0)) {
             let message = "the case has no grains of this material; give the name of theirs";
-            return Err(self.fail("elastic_grains.0.material", message));
+            return Err(self.fail(format!("{here}.material"), message));
         }
         self.keep_bodies(&kept);
         Ok(out)

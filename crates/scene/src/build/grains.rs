@@ -206,7 +206,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 radius: seed.radius,
                 offset: S::Vector::zero(),
                 material,
-                point_size: 0.0,
+                area: S::Vector::zero(),
             });
         }
     }

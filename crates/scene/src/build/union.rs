@@ -195,7 +195,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 x - *centre
             },
             material,
-            point_size: 0.0,
+            area: S::Vector::zero(),
         });
         self.shapes.balls.extend(balls);
         for part in union.parts {

@@ -104,7 +104,12 @@ impl<S: Space> Narrow<'_, S> {
             );
             let law = self.laws.get(piece.material, surface.material)?;
             let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
-            let place = S::unrotate(&rotation, &(self.centres[balls + k] - origin));
+            let closed = surface.shape.is_closed();
+            let mut apart = self.centres[balls + k] - origin;
+            if closed {
+                apart = self.shapes.periodic.shortest(apart);
+            }
+            let place = S::unrotate(&rotation, &apart);
             // The core in the surface's axes.
             let core = self.cores[k].turned(&S::inverse(&rotation));
             core.contact_points_with_surface(
@@ -118,13 +123,18 @@ impl<S: Space> Narrow<'_, S> {
                 m.normal = S::rotate(&rotation, &m.normal);
                 m.on_candidate = S::rotate(&rotation, &m.on_candidate);
                 m.on_antagonist = S::rotate(&rotation, &m.on_antagonist);
+                // The vertices of a grain stand for its area.
+                m.facing &= !closed;
             }
             return Some(Pair {
                 name: (a, b),
                 bodies: [piece.body, surface.body],
                 law,
                 radius: piece.size,
-                origins: [origin - of(piece.body), origin - of(surface.body)],
+                origins: [
+                    self.centres[balls + k] - apart - of(piece.body),
+                    origin - of(surface.body),
+                ],
             });
         }
         let k = at(b);
@@ -141,7 +151,8 @@ impl<S: Space> Narrow<'_, S> {
             }
             bodies = [ball.body, other.body];
             law = self.laws.get(ball.material, other.material)?;
-            radius = ball.size(&self.bodies.length);
+            let own = S::unrotate(&self.bodies.rotation[ball.body as usize], &meeting.normal);
+            radius = ball.size_towards(&own, &self.bodies.length);
         } else {
             let piece = &self.shapes.pieces[at(a)];
             own_centre = self.centres[balls + at(a)];

@@ -218,7 +218,7 @@ impl<'a, S: Space> Narrow<'a, S> {
         } else {
             1.0
         };
-        let size = share * ball.size(&self.bodies.length);
+        let size = ball.size(&self.bodies.length);
         for touch in &touches {
             // The contact of the same feature, or else the nearest of those no longer found.
             let same = old.clone().find(|k| {
@@ -240,6 +240,8 @@ impl<'a, S: Space> Narrow<'a, S> {
                 taken[k - old.start] = true;
             }
             let normal = S::rotate(&rotation, &touch.normal);
+            let own = S::unrotate(&self.bodies.rotation[i], &normal);
+            let radius = share * ball.size_towards(&own, &self.bodies.length);
             let closest_point = origin + S::rotate(&rotation, &touch.closest_point);
             let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::zero();
             let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;
@@ -258,7 +260,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                         gap,
                         normal,
                         arms: [arm, closest_point - self.bodies.position[j]],
-                        radius: size,
+                        radius,
                     },
                     self.time,
                 )

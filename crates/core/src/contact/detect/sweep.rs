@@ -293,6 +293,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
         let mut met = Vec::new();
         let reach = match pair.shapes[1] {
+            // What passed through a grain is behind its surface by more than the alert distance.
+            Shape::Surface(s) if s.shape.is_closed() => self.alert.max(pair.half_thickness),
             Shape::Surface(_) => self.alert,
             _ => f64::INFINITY,
         };
