@@ -14,6 +14,7 @@ mod half_space;
 mod line_contact;
 mod newton;
 mod point_contact;
+mod profile;
 mod rotation;
 mod soft_grains;
 mod soft_strain;

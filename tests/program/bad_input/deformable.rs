@@ -193,3 +193,28 @@ fn files_of_gmsh() {
     );
     trial("solid\n", &["no file of Gmsh"]);
 }
+
+#[test]
+fn a_side_with_a_profile_that_cannot_be() {
+    let shaped = |more: &str| {
+        let mesh = MESH.replace("size: 0.05))", &format!("size: 0.05), {more})"));
+        block(&mesh, HELD)
+    };
+    let wave = "shape: Wave(amplitude: 0.01, x: 0.1)";
+    stiff_refused(
+        &shaped(&format!("profile: (side: {MARK}\"left\", {wave})")),
+        &["only `top` and `bottom` can have a profile"],
+    );
+    stiff_refused(
+        &shaped(&format!(
+            "profile: (side: \"top\", shape: {MARK}Wave(amplitude: 0.15, x: 0.1))"
+        )),
+        &["more than half of the height of the block", "make it smaller"],
+    );
+    stiff_refused(
+        &shaped(&format!(
+            "round: (side: \"top\", radius: 0.5), profile: {MARK}(side: \"top\", {wave})"
+        )),
+        &["leave one out"],
+    );
+}

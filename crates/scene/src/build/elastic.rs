@@ -280,7 +280,13 @@ impl<S: Dimensional> Builder<'_, S> {
         let spec = &owner.mesh;
         let wrong = |error: MeshError| self.fail(here, error.to_string());
         match spec {
-            MeshSpec::Block { x, y, z, round } => {
+            MeshSpec::Block {
+                x,
+                y,
+                z,
+                round,
+                profile,
+            } => {
                 let axes = match (S::D, z) {
                     (2, Some(_)) => {
                         let message = "a block in two dimensions has no z; leave it out";
@@ -308,9 +314,16 @@ impl<S: Dimensional> Builder<'_, S> {
                     );
                     return Err(self.fail(here, message));
                 }
-                match round {
-                    None => block::<S>(&lines).map_err(wrong),
-                    Some(round) => self.rounded(&format!("{here}.round"), &lines, round),
+                match (round, profile) {
+                    (None, None) => block::<S>(&lines).map_err(wrong),
+                    (Some(round), None) => self.rounded(&format!("{here}.round"), &lines, round),
+                    (None, Some(profile)) => {
+                        self.profiled(&format!("{here}.profile"), &lines, profile)
+                    }
+                    (Some(_), Some(_)) => {
+                        let message = "a block is `round` or has a `profile`; leave one out";
+                        Err(self.fail(format!("{here}.profile"), message))
+                    }
                 }
             }
             MeshSpec::Gmsh { file, scale } => {

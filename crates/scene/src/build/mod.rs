@@ -9,6 +9,7 @@ mod first_body;
 mod grains;
 mod half_space;
 mod load;
+mod mesh_profile;
 mod polygons;
 mod polyhedra;
 mod samples;

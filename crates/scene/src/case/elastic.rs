@@ -1,6 +1,7 @@
 //! Deformable bodies in a case.
 
 use super::WearSpec;
+use super::half_space::{hurst, straight};
 use fretwork_core::bodies::Dof;
 use fretwork_elastic::{Rayleigh, Strain};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -71,6 +72,13 @@ pub enum MeshSpec {
             skip_serializing_if = "Option::is_none"
         )]
         round: Option<RoundSpec>,
+        /// A side with a profile, in place of `round`.
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        profile: Option<MeshProfileSpec>,
     },
     /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra (3D); its parts are the named
     /// physical groups of lines or triangles.
@@ -116,6 +124,55 @@ pub struct RoundSpec {
     /// Whether a side in 3D is that of a cylinder along y, and not of a sphere.
     #[serde(default)]
     pub cylinder: bool,
+}
+
+/// A side of a block with heights over the flat side that it replaces.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeshProfileSpec {
+    /// `top` or `bottom`.
+    pub side: String,
+    /// Its heights, outward.
+    pub shape: ProfileShape,
+}
+
+/// Heights over a flat side.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub enum ProfileShape {
+    /// A wave with a crest at the origin of the mesh.
+    Wave {
+        /// Its amplitude (m).
+        amplitude: f64,
+        /// Its length along x (m).
+        #[serde(default = "straight")]
+        x: f64,
+        /// Its length along y (3D, m): a product of both waves.
+        #[serde(default = "straight")]
+        y: f64,
+    },
+    /// Self-affine roughness with random phases from the seed, over the length of the block (2D).
+    Rough {
+        /// Root mean square height (m).
+        rms: f64,
+        /// Hurst exponent.
+        #[serde(default = "hurst")]
+        hurst: f64,
+        /// Longest wave (m); the length of the block by default.
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        longest: Option<f64>,
+        /// Shortest wave (m).
+        shortest: f64,
+    },
+    /// A table of places `x` and heights `z` (m), straight between them (2D): a measured profile, or one that a run wrote.
+    Table {
+        /// The file, beside the case.
+        file: String,
+    },
 }
 
 /// A part of the boundary in a holder that does not turn, see [`fretwork_elastic::Support`].

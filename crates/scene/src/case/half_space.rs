@@ -172,10 +172,10 @@ fn below() -> Side {
     Side::Below
 }
 
-fn straight() -> f64 {
+pub(super) fn straight() -> f64 {
     f64::INFINITY
 }
 
-fn hurst() -> f64 {
+pub(super) fn hurst() -> f64 {
     0.8
 }

@@ -13,7 +13,10 @@ mod uncertainty;
 mod wear;
 
 pub use accuracy::{AccuracySpec, AccurateResult};
-pub use elastic::{ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
+pub use elastic::{
+    ElasticSpec, LineSpec, MeshProfileSpec, MeshSpec, ProfileShape, RoundSpec, SupportSpec,
+    TouchSpec,
+};
 pub use elastic_grain::ElasticGrainSpec;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use half_space::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, HolderSpec};
