@@ -93,7 +93,7 @@ fn neo_hookean(share: f64) -> f64 {
         !unit
             .facet(*f)
             .iter()
-            .all(|p| unit.points()[*p as usize].x > 0.99)
+            .all(|p| unit.points()[*p as usize].x > 0.98)
     };
     let boundary = (0..unit.facets()).filter(aside);
     let boundary = boundary.flat_map(|f| unit.facet(f).iter().copied());
