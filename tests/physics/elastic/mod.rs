@@ -17,6 +17,7 @@ mod point_contact;
 mod rotation;
 mod soft_strain;
 mod wear;
+mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
