@@ -198,7 +198,7 @@ fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
     // A cell may touch a face and vertices: its load is the sum.
     let mut loads: Vec<[f64; 3]> = Vec::new();
     for c in &s.state.network.contacts {
-        let force = c.impulse.dot(&c.normal).abs() / h;
+        let force = c.impulse.z.abs() / h;
         let at = s.state.bodies.position[c.bodies[0] as usize];
         match loads.iter_mut().find(|l| l[0] == at.x && l[1] == at.y) {
             Some(load) => load[2] += force,

@@ -378,13 +378,6 @@ fn wear() {
     };
     let ground = area("touches", "wears: (thickness: 1e-3), touches");
     runs(&worn(&ground));
-    refused(
-        &worn(&area(
-            "touches: Surface",
-            "touches: Points, wears: ‸(thickness: 1e-3)",
-        )),
-        &["`ground` touches by its points, which do not recede"],
-    );
 }
 
 /// Only a surface that has one height at each place recedes.
