@@ -98,7 +98,7 @@ impl Deformable for Dim3 {
         _period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String> {
         let mesh = Mesh::new(vertices, facets.to_vec()).map_err(|e| e.to_string())?;
-        Ok(Box::new(mesh))
+        Ok(Box::new(mesh.with_wear()))
     }
 
     fn closed_surface(

@@ -19,6 +19,7 @@ mod rotation;
 mod soft_grains;
 mod soft_strain;
 mod wear;
+mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};

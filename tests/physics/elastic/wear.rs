@@ -11,21 +11,17 @@ const MU: f64 = 0.3;
 /// Period (s).
 const PERIOD: f64 = 0.05;
 
-fn case(file: &Path, sets: &[String]) -> Simulation<Dim2> {
-    let loaded = load(file, sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+/// A repository's case with changes.
+pub fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"));
+    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
+    let loaded = load(&file, &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-/// A repository's case with changes.
-fn fretting(sets: &[&str]) -> Simulation<Dim2> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/fretting_wear_elastic.ron");
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    case(&file, &sets)
-}
-
-/// Normal force and slip of a contact in the last step (N/m, m): the slip is that of the points that touch over the step.
-fn rubbed(s: &Simulation<Dim2>, h: f64) -> Vec<[f64; 2]> {
+/// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of the points that touch over the step.
+pub fn rubbed<S: Space>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
     let contacts = s.state.network.contacts.iter();
     contacts
         .map(|c| {
@@ -34,7 +30,7 @@ fn rubbed(s: &Simulation<Dim2>, h: f64) -> Vec<[f64; 2]> {
                 let nodes = s.state.systems.contact_nodes(carrier, &c.arms[k]);
                 s.state.systems.velocity_at(carrier.system as usize, &nodes)
             };
-            let along = Dim2::tangential(&c.normal, &(of(0) - of(1)));
+            let along = S::tangential(&c.normal, &(of(0) - of(1)));
             [c.impulse.dot(&c.normal) / h, h * along.norm()]
         })
         .collect()
@@ -87,7 +83,7 @@ fn gone(s: &Simulation<Dim2>) -> f64 {
     under(&system.surface_vertices(&contactor)) - under(&carried.shape.outline()[0])
 }
 
-fn agree(what: &str, expected: f64, obtained: f64, tolerance: f64) {
+pub fn agree(what: &str, expected: f64, obtained: f64, tolerance: f64) {
     let off = obtained / expected - 1.0;
     println!("{what}: {obtained:e} of {expected:e}, {off:e} off");
     near(expected, obtained, tolerance);
@@ -125,7 +121,7 @@ const PRESSED_AND_LIFTED: &str = "Force(Table([(0.0, 0.0), (8e-3, -178.9e3), (0.
 #[test]
 fn archards_volume_is_gone_from_a_half_space() {
     let load = format!("half_spaces.1.dofs.y={PRESSED_AND_LIFTED}");
-    a_cycle(fretting(&[&load]), 5e-5);
+    a_cycle(case("fretting_wear_elastic", &[&load]), 5e-5);
 }
 
 /// The same of a flat of finite elements, that touches as a surface.
@@ -147,5 +143,5 @@ fn archards_volume_is_gone_from_a_body_of_finite_elements() {
             dofs: (x: Displacement(Sine(amplitude: 2e-5, frequency: 20.0, start: 0.01)), y: {PRESSED_AND_LIFTED}),
         )]"
     );
-    a_cycle(fretting(&[flat, &cylinder]), 1e-4);
+    a_cycle(case("fretting_wear_elastic", &[flat, &cylinder]), 1e-4);
 }

@@ -371,15 +371,57 @@ fn wear() {
         )),
         &["must be at least 1"],
     );
-    let solid = area("touches", "wears: ‸(thickness: 1e-3), touches");
-    refused(
-        &with(
-            &solid,
-            "contact: \"coulomb\")",
-            "contact: \"coulomb\", wear: \"archard\")",
-        ),
-        &["recedes in two dimensions alone"],
+    // In space too.
+    let worn = |case: &str| {
+        let law = "contact: \"coulomb\", wear: \"archard\")";
+        with(case, "contact: \"coulomb\")", law)
+    };
+    let ground = area("touches", "wears: (thickness: 1e-3), touches");
+    runs(&worn(&ground));
+}
+
+/// Only a surface that has one height at each place recedes.
+#[test]
+fn wear_of_walls() {
+    let line = "(from: 0.0, to: 0.2, size: 0.1)";
+    let block = |depth: &str, side: &str, mark: &str| {
+        format!(
+            "(name: \"block\", material: \"grain\", mesh: Block(x: {line}, y: {line}{depth}), position: [{}], \
+             supports: [(part: \"bottom\", x: Fixed, y: Fixed{})], touches: Surface(\"{side}\"), wears: {mark}(thickness: 1e-3))",
+            if depth.is_empty() {
+                "0.0, -0.5"
+            } else {
+                "0.0, 0.0, -0.5"
+            },
+            if depth.is_empty() { "" } else { ", z: Fixed" },
+        )
+    };
+    let words = &[
+        "what touches of `block` is vertical or overhangs at (",
+        "let a part touch that has one height at each place, as `Surface(\"top\")`",
+    ];
+    let time = "time: (step: 1e-3, end: 0.002";
+    let solid = with(SOLID, time, &format!("{time}, theta: 1.0"));
+    let law = [
+        "contact: \"coulomb\")",
+        "contact: \"coulomb\", wear: \"archard\")",
+    ];
+    let solid = with(&solid, law[0], law[1]);
+    let deep = format!(", z: {line}");
+    for side in ["left", "right", "front", "back"] {
+        refused(&added(&solid, "elastic", &block(&deep, side, "‸")), words);
+    }
+    for side in ["top", "bottom"] {
+        runs(&added(&solid, "elastic", &block(&deep, side, "")));
+    }
+    let plane = with(PLANE, "periodic: (x: 0.4),", "");
+    let plane = with(
+        &plane,
+        "contact: \"coulomb\",",
+        "contact: \"coulomb\", wear: \"archard\",",
     );
+    refused(&added(&plane, "elastic", &block("", "left", "‸")), words);
+    runs(&added(&plane, "elastic", &block("", "top", "")));
 }
 
 #[test]

@@ -77,6 +77,35 @@ fn a_surface_that_wears_goes_on_from_what_it_shows() {
     check("verification/worn_slide_3d", &[], 50, 60);
 }
 
+/// A sphere slips on a half-space that wears, and on a block of finite elements.
+#[test]
+fn a_deformable_body_that_wears_in_space_goes_on_with_the_same_bits() {
+    let law = "interfaces=[(name: \"contact\", between: (\"steel\", \"steel\"), contact: \"coulomb\", wear: \"archard\", \
+               parameters: (contact: {\"mu\": 0.6}, wear: {\"k\": 2e-10}))]";
+    let slides =
+        "half_spaces.1.dofs.x=Displacement(Sine(amplitude: 5e-6, frequency: 20.0, start: 0.01))";
+    let wears = "half_spaces.0.wears=(thickness: 1e-4, every: 3)";
+    check("sphere_on_flat_fretting", &[law, slides, wears], 25, 10);
+    let cells = "x: (from: -4e-4, to: 4e-4, size: 1e-4), y: (from: -4e-4, to: 4e-4, size: 1e-4)";
+    let block = "elastic=[(
+        name: \"flat\", material: \"steel\",
+        mesh: Block(x: (from: -1e-3, to: 1e-3, size: 2e-4), y: (from: -1e-3, to: 1e-3, size: 2e-4), z: (from: -1e-3, to: 0.0, size: 2e-4)),
+        supports: [(part: \"bottom\", x: Fixed, y: Fixed, z: Fixed)], touches: Surface(\"top\"), wears: (thickness: 1e-4),
+    )]";
+    let sphere = format!(
+        "half_spaces=[(
+            name: \"sphere\", material: \"steel\", side: Above, {cells}, profile: Summit(x: 0.05, y: 0.05), mass: 0.01, touches: Points,
+            dofs: (x: Displacement(Sine(amplitude: 5e-6, frequency: 20.0, start: 0.01)), z: Force(Ramp(from: 0.0, to: -99.52, start: 0.0, end: 8e-3))),
+        )]"
+    );
+    check(
+        "sphere_on_flat_fretting",
+        &[law, block, &sphere, "friction.body=sphere"],
+        25,
+        10,
+    );
+}
+
 /// A state has no tangent: it is formed again.
 #[test]
 fn a_body_in_large_strain_goes_on_with_the_same_bits() {

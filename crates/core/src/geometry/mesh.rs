@@ -1,26 +1,30 @@
-//! A triangulated surface in 3D, solid behind it: a first body from a file.
+//! A triangulated surface in 3D, solid behind it: a first body from a file, or a body that deforms.
 
 use super::facets::{self, Facet};
+use super::recede::Recede;
 use super::shape::{ClosestPoint, Surface, at_vertex};
 use super::space::Dim3;
+use super::worn_mesh::Worn;
 use nalgebra::Vector3;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use std::collections::HashMap;
 
 type V = Vector3<f64>;
-type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
+pub(super) type Placed = GeomWithData<Rectangle<[f64; 3]>, u32>;
 
 /// Triangles with shared corners, anticlockwise seen from the open side.
 #[derive(Debug)]
 pub struct Mesh {
-    points: Vec<V>,
-    triangles: Vec<[u32; 3]>,
-    tree: RTree<Placed>,
+    pub(super) points: Vec<V>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) tree: RTree<Placed>,
     /// Whether its points move.
-    deforms: bool,
+    pub(super) deforms: bool,
     /// Whether it encloses a grain.
     closed: bool,
+    /// Its wear, if it can recede.
+    pub(super) worn: Option<Worn>,
 }
 
 /// Share of an edge of a grain within which a place is at its end.
@@ -109,6 +113,7 @@ impl Mesh {
             tree,
             deforms: false,
             closed: false,
+            worn: None,
         })
     }
 
@@ -126,6 +131,18 @@ impl Mesh {
         })
     }
 
+    /// Lets it recede along z, if all of its triangles face up, or all down.
+    #[must_use]
+    pub fn with_wear(mut self) -> Self {
+        self.worn = Worn::new(&self.points, &self.triangles);
+        self
+    }
+
+    /// Builds the bounding boxes of the triangles where these are now.
+    pub(super) fn build_boxes(&mut self) {
+        self.tree = boxes(&self.points, &self.triangles);
+    }
+
     /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
@@ -136,7 +153,7 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    fn facet(&self, k: u32) -> Facet<V> {
+    pub(super) fn facet(&self, k: u32) -> Facet<V> {
         let t = self.triangles[k as usize];
         Facet {
             corners: t.map(|c| self.points[c as usize]),
@@ -165,8 +182,12 @@ impl Surface<Dim3> for Mesh {
 
     fn move_vertices(&mut self, vertices: &[V]) {
         self.points.copy_from_slice(vertices);
+        // The vertices are those of the body without wear.
+        if let Some(worn) = &mut self.worn {
+            worn.lower(&mut self.points);
+        }
         self.deforms = true;
-        self.tree = boxes(&self.points, &self.triangles);
+        self.build_boxes();
     }
 
     fn moving_vertices(&self) -> &[V] {
@@ -202,6 +223,18 @@ impl Surface<Dim3> for Mesh {
 
     fn bounded(&self) -> bool {
         true
+    }
+
+    fn receding(&self) -> Option<&dyn Recede<Dim3>> {
+        self.worn.as_ref().map(|_| self as &dyn Recede<Dim3>)
+    }
+
+    fn receding_mut(&mut self) -> Option<&mut dyn Recede<Dim3>> {
+        if self.worn.is_some() {
+            Some(self)
+        } else {
+            None
+        }
     }
 
     fn outline(&self) -> Vec<Vec<V>> {

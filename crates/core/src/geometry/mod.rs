@@ -13,3 +13,4 @@ pub mod polyline;
 pub mod recede;
 pub mod shape;
 pub mod space;
+pub mod worn_mesh;

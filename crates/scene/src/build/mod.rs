@@ -363,11 +363,10 @@ impl<S: Dimensional> Builder<'_, S> {
         for system in systems {
             let surface = simulation.shapes.surfaces.len();
             simulation.add_system(system);
-            let carried = simulation.shapes.surfaces.get(surface);
             // Grains come last and do not recede.
-            if let (Some(carried), Some((name, Some(wears)))) = (carried, wears.next()) {
-                let scar = Scar::new(name, surface, carried, wears.thickness, wears.every);
-                scars.extend(scar);
+            if let Some(Some(wears)) = wears.next() {
+                let scar = wears.scar(&simulation, surface);
+                scars.extend(scar.map_err(|f| source.locate(f))?);
             }
         }
         let service = Demands::of(&simulation).service(case.solver.method);

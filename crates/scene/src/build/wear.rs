@@ -2,9 +2,75 @@
 
 use super::{Builder, Dimensional};
 use crate::case::{BodySpec, CellTouch, InterfaceSpec, TouchSpec, WearSpec};
-use crate::source::InputError;
+use crate::source::{InputError, ValidationError};
+use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::worn_mesh::facing;
 use fretwork_core::laws::Kind;
+use fretwork_core::step::Simulation;
 use fretwork_core::wear::Scar;
+use nalgebra::Vector3;
+
+/// What a deformable body says of its wear.
+pub(super) struct DeformableWear {
+    /// Its place in the case.
+    here: String,
+    name: String,
+    wears: WearSpec,
+}
+
+impl DeformableWear {
+    /// The scar of a surface of a body that was added.
+    ///
+    /// # Errors
+    /// The surface is vertical or overhangs somewhere.
+    pub(super) fn scar<S: Dimensional>(
+        &self,
+        s: &Simulation<S>,
+        surface: usize,
+    ) -> Result<Option<Scar<S>>, ValidationError> {
+        let Some(carried) = s.shapes.surfaces.get(surface) else {
+            return Ok(None);
+        };
+        if let Some(place) = wall::<S>(&carried.shape.outline()) {
+            let at = s.state.bodies.position[carried.body as usize] + carried.offset + place;
+            let at: Vec<String> = (0..S::D).map(|k| format!("{:.4e}", at[k])).collect();
+            let message = format!(
+                "what touches of `{}` is vertical or overhangs at ({}) m, where it cannot recede along {}: let a part touch that has one height at each place, as `Surface(\"top\")` or `Surface(\"bottom\")`, or leave `wears` out",
+                self.name,
+                at.join(", "),
+                if S::D == 2 { "y" } else { "z" }
+            );
+            return Err(ValidationError::new(self.here.as_str(), message));
+        }
+        let WearSpec { thickness, every } = self.wears;
+        let name = self.name.clone();
+        Ok(Scar::new(name, surface, carried, thickness, every))
+    }
+}
+
+/// The first place of an outline that does not face the side that most of it faces, up or down.
+fn wall<S: Dimensional>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
+    let facing = |face: &[S::Vector]| {
+        if S::D == 2 {
+            let along = face[1] - face[0];
+            let upright = along[0].abs() <= 1e-9 * along.norm();
+            return if upright { 0.0 } else { along[0].signum() };
+        }
+        let [a, b, c] = [0, 1, 2].map(|k| Vector3::new(face[k][0], face[k][1], face[k][2]));
+        facing(a, b, c)
+    };
+    let size = if S::D == 2 { 2 } else { 3 };
+    let faces = || outline.iter().flat_map(|face| face.windows(size));
+    let most = if faces().map(facing).sum::<f64>() < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
+    faces().find(|face| facing(face) != most).map(|face| {
+        let sum = face.iter().fold(S::Vector::zero(), |sum, at| sum + *at);
+        sum * (1.0 / size as f64)
+    })
+}
 
 impl<S: Dimensional> Builder<'_, S> {
     /// Makes the scars of a body whose surfaces begin at index `first` of the list.
@@ -74,8 +140,8 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// What deformable bodies say of their wear: place in the case, name and words, in the order of the systems.
-    pub(super) fn deformable_wear(&self) -> Result<Vec<(String, Option<WearSpec>)>, InputError> {
+    /// What deformable bodies say of their wear, in the order of the systems.
+    pub(super) fn deformable_wear(&self) -> Result<Vec<Option<DeformableWear>>, InputError> {
         let elastic = self.case.elastic.iter().enumerate();
         let elastic = elastic.map(|(k, e)| {
             let surface = matches!(e.touches, TouchSpec::Surface(_));
@@ -101,15 +167,13 @@ impl<S: Dimensional> Builder<'_, S> {
         let mut out = Vec::new();
         for (here, name, material, wears, surface) in elastic.chain(half_spaces) {
             let here = format!("{here}.wears");
-            if let Some(words) = wears {
-                self.check_wears(&here, words)?;
+            if let Some(wears) = wears {
+                self.check_wears(&here, wears)?;
                 let law = |i: &InterfaceSpec| {
                     i.law(Kind::WEAR).is_some()
                         && (i.between.0 == *material || i.between.1 == *material)
                 };
-                let fault = if S::D == 3 {
-                    Some("the surface of a deformable body recedes in two dimensions alone; leave `wears` out".to_owned())
-                } else if !surface {
+                let fault = if !surface {
                     Some(format!(
                         "`{name}` touches by its points, which do not recede; let it touch as `Surface`, and the other body by its points"
                     ))
@@ -128,7 +192,11 @@ impl<S: Dimensional> Builder<'_, S> {
                     return Err(self.fail(here, message));
                 }
             }
-            out.push((name.clone(), wears.clone()));
+            out.push(wears.as_ref().map(|wears| DeformableWear {
+                here,
+                name: name.clone(),
+                wears: wears.clone(),
+            }));
         }
         Ok(out)
     }

@@ -35,7 +35,7 @@ pub struct ElasticSpec {
     /// What of it touches: `Surface("top")` or `Points("bottom")`; nothing by default.
     #[serde(default)]
     pub touches: TouchSpec,
-    /// Whether what touches as a surface recedes as it wears (2D); it does not by default.
+    /// Whether what touches as a surface recedes as it wears; it does not by default.
     #[serde(
         default,
         deserialize_with = "some",

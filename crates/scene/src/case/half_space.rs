@@ -57,7 +57,7 @@ pub struct HalfSpaceSpec {
     pub rolling: Option<TimeFunction>,
     /// How its cells touch.
     pub touches: CellTouch,
-    /// Whether its surface recedes as it wears (2D); it does not by default.
+    /// Whether its surface recedes as it wears; it does not by default.
     #[serde(
         default,
         deserialize_with = "some",
