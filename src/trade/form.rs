@@ -116,7 +116,7 @@ fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError
         };
         let text = b.or_else(|| {
             let empties = ["None", "[]", "{}", "()"];
-            empties.into_iter().find(|e| empty(&e)).map(str::to_owned)
+            empties.into_iter().find(empty).map(str::to_owned)
         });
         sets.extend(text.map(|text| format!("{name}={text}")));
     }
