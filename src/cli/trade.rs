@@ -1,5 +1,6 @@
 //! `fretwork trade`: studies of accuracy against cost.
 
+mod levels;
 mod refuse;
 
 use super::number::{not_negative, share};
@@ -17,7 +18,8 @@ use crate::trade::child::{Launcher, Limits, Status};
 use crate::trade::compare::Comparison;
 use crate::trade::offer::Offer;
 use crate::trade::output::Output;
-use crate::trade::parameters::{Solving, StudyParameter, openings, parameters};
+use crate::trade::parameters::{Solving, StudyParameter};
+use crate::trade::rung::Deformability;
 use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
 use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
@@ -42,13 +44,16 @@ pub struct TradeArgs {
     /// Exact value of an output, for example from a closed form; errors are then measured against it
     #[arg(long = "exact", value_name = "NAME=VALUE")]
     exact: Vec<String>,
-    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction, grains; by default all
-    /// but grains
+    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction; and, only where named,
+    /// accuracy, grains, rung (what deforms)
     #[arg(long = "knob", value_name = "NAME")]
     parameters: Vec<String>,
     /// Vary any value of the case; the first value is that of the reference
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
+    /// Compare another file as a form of the case, the finest first; the case itself may be one of them
+    #[arg(long = "variant", value_name = "NAME=FILE")]
+    variants: Vec<String>,
     /// Seeds per setting, from the case's own upwards; one run if nothing is random and contacts are not
     /// chaotic
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
@@ -119,8 +124,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let first = Facts::of(&loaded, &scene);
     let outputs = refuse::outputs(args, &first.offer)?;
     let random = seed_matters(args, &loaded, &search, &first)?;
-    let parameters = parameters(&loaded, &first.solving, &args.parameters, &args.vary)?;
-    check_varied_cases(args, &loaded, &search, &parameters)?;
+    let parameters = levels::parameters_of(args, &loaded, &search, &first)?;
     if parameters.is_empty() {
         return Err(Failure::Usage(
             "nothing to vary; name a --knob or --vary".into(),
@@ -193,22 +197,6 @@ fn seed_matters(
     })
 }
 
-/// Builds the case with each value of a `--vary`, so that a wrong one is refused before any run.
-fn check_varied_cases(
-    args: &TradeArgs,
-    loaded: &Loaded,
-    search: &SearchPath,
-    parameters: &[StudyParameter],
-) -> Result<(), Failure> {
-    let varied = |set: &&String| args.vary.iter().any(|v| same_key(set, v));
-    let levels = parameters.iter().flat_map(|k| &k.levels);
-    for set in levels.flat_map(|l| &l.sets).filter(varied) {
-        let sets = [args.case.sets.clone(), openings(loaded), vec![set.clone()]].concat();
-        load(&args.case.case, &sets)?.build(search)?;
-    }
-    Ok(())
-}
-
 /// The study before its first run, with the notes that its options call for.
 fn new_study(
     args: &TradeArgs,
@@ -227,6 +215,12 @@ fn new_study(
         notes.push("One seed gives no scatter: no error has an interval, and no conclusion can be drawn. Give --seeds 3 or more.".into());
     }
     notes.push("Precision is not varied: Fretwork computes and stores in f64 only.".into());
+    for k in &parameters {
+        let left_out = k.left_out.iter();
+        notes.extend(
+            left_out.map(|(level, why)| format!("{} {level} is not offered: {why}.", k.name)),
+        );
+    }
     if args.jobs > 1 {
         notes.push(format!("{} runs ran in parallel, which disturbs their timing; visits (contacts times iterations) do not depend on it.", args.jobs));
     }
@@ -245,6 +239,7 @@ fn new_study(
         forecast: Forecast {
             own: 1.0,
             power: 0.0,
+            forms: Vec::new(),
             measured: false,
         },
         reused: 0,
@@ -372,12 +367,6 @@ fn incomplete(study: &Study, interrupted: bool) -> String {
     format!("INCOMPLETE, {why}.{what} The same command continues from here.")
 }
 
-/// Whether a `--set` and a `--vary` have the same key.
-fn same_key(set: &str, vary: &str) -> bool {
-    let key = |t: &str| t.split('=').next().map(|k| k.trim().to_owned());
-    key(set) == key(vary)
-}
-
 /// Properties of a scene that a study needs.
 struct Facts {
     solving: Solving,
@@ -413,6 +402,7 @@ impl Facts {
             solving: Solving {
                 methods: Method::ALL.iter().copied().filter(serves).collect(),
                 tolerance: s.options.solver.tolerance,
+                deformability: Deformability::of(&loaded.case, built),
             },
             materials: built.materials.clone(),
             drawn: hash.0,

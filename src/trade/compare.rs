@@ -405,6 +405,7 @@ mod tests {
             levels: [1.0, 1.1, 2.0].map(level).into(),
             own: 0,
             reference: 0,
+            left_out: Vec::new(),
         };
         assert_eq!(neighbour(&parameter), Some(2));
         parameter.levels.pop();

@@ -268,6 +268,7 @@ mod tests {
             levels: vec![level(5e-5), level(1e-4)],
             own,
             reference: 0,
+            left_out: Vec::new(),
         };
         for own in [0, 1] {
             let parameters = [

@@ -9,20 +9,23 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Cost = own (h0/h) (tol0/tol)^power.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// Cost = own (h0/h) (tol0/tol)^power, times the factor of each other form of the case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     /// Duration of the case's own setting (s).
     pub own: f64,
     /// Exponent of the cost in the inverse of the tolerance.
     pub power: f64,
+    /// Cost of a form of the case over that of its own: parameter, level, factor.
+    #[serde(default)]
+    pub forms: Vec<(usize, usize, f64)>,
     /// Whether every probe measured a row of statistics or a whole run; otherwise the forecast is a guess,
     /// and not stored.
     pub measured: bool,
 }
 
 impl Forecast {
-    /// Runs the case's own setting and the finest for a short while each. A run that ends within that time
+    /// Runs the case's own setting, its other forms and the finest setting for a short while each. A run that ends within that time
     /// is added to `done`.
     ///
     /// # Errors
@@ -70,9 +73,17 @@ impl Forecast {
         };
         let (own, finest) = (Setting::own(parameters), Setting::reference(parameters));
         let base = seconds(&own)?;
+        let mut forms = Vec::new();
+        for (k, parameter) in parameters.iter().enumerate() {
+            let others = (0..parameter.levels.len()).filter(|l| *l != parameter.own);
+            for level in others.filter(|_| parameter.sense == Sense::Form) {
+                forms.push((k, level, seconds(&own.with(k, level))? / base.max(1e-3)));
+            }
+        }
         let fine = shrink(&finest, parameters, Sense::Tolerance);
         let power = if fine < 1.0 && own != finest {
-            let ratio = seconds(&finest)? / base * shrink(&finest, parameters, Sense::Step);
+            let other = factor(&forms, &finest);
+            let ratio = seconds(&finest)? / base * shrink(&finest, parameters, Sense::Step) / other;
             (ratio.ln() / (1.0 / fine).ln()).clamp(0.0, 1.0)
         } else {
             0.0
@@ -80,6 +91,7 @@ impl Forecast {
         Ok(Self {
             own: base,
             power,
+            forms,
             measured,
         })
     }
@@ -115,8 +127,16 @@ impl Forecast {
     pub fn law(&self, setting: &Setting, parameters: &[StudyParameter]) -> f64 {
         let step = shrink(setting, parameters, Sense::Step);
         let tolerance = shrink(setting, parameters, Sense::Tolerance);
-        self.own.max(1e-3) / step * tolerance.powf(-self.power)
+        self.own.max(1e-3) / step * tolerance.powf(-self.power) * factor(&self.forms, setting)
     }
+}
+
+/// Product of the cost factors of a setting's forms.
+fn factor(forms: &[(usize, usize, f64)], setting: &Setting) -> f64 {
+    let here = forms
+        .iter()
+        .filter(|(k, level, _)| setting.0.get(*k) == Some(level));
+    here.map(|(_, _, factor)| factor).product()
 }
 
 /// Ratio of the case's own step or tolerance to that of the setting; 1 if it is not varied.

@@ -1,7 +1,7 @@
 //! Studies of accuracy against cost: settings of a case are varied, and each is compared with a reference at
 //! the finest setting, over several seeds.
 //!
-//! [`parameters`] defines the varied parameters, [`study`] plans within a budget, [`child`] runs each setting in a
+//! [`parameters`] defines the varied parameters, [`rung`] and [`form`] those that change the model, [`study`] plans within a budget, [`child`] runs each setting in a
 //! separate process and stores its result, [`output`] reads the compared numbers, [`compare`] compares them
 //! with the reference, with Student [`interval`]s, [`frontier`] finds the non-dominated settings, [`verdict`]
 //! the cheapest one for a wanted error, and [`table`], [`files`] and [`figure`] report the result.
@@ -13,12 +13,14 @@ pub mod compare;
 pub mod figure;
 pub mod files;
 pub mod forecast;
+pub mod form;
 pub mod frontier;
 pub mod interval;
 pub mod lock;
 pub mod offer;
 pub mod output;
 pub mod parameters;
+pub mod rung;
 pub mod setting;
 pub mod study;
 pub mod table;

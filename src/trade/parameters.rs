@@ -6,6 +6,7 @@
 //! a correction is a choice, not a resolution.
 
 use super::TradeError;
+use super::rung::{Deformability, rungs};
 use crate::laws::Kind;
 use crate::scene::case::{Case, GrainSpec};
 use crate::scene::source::nearest;
@@ -35,6 +36,8 @@ pub enum Sense {
     Choice,
     /// From `--vary`: the first level is that of the reference.
     Listed,
+    /// Forms of the case, from the one that assumes least: the first is that of the reference, and costs are probed one by one.
+    Form,
 }
 
 /// A varied parameter. Levels of a step or tolerance are ordered from the finest to the coarsest.
@@ -50,6 +53,8 @@ pub struct StudyParameter {
     pub own: usize,
     /// Index of the reference's level.
     pub reference: usize,
+    /// Levels that are not offered, and why.
+    pub left_out: Vec<(String, String)>,
 }
 
 /// Names and descriptions of the presets.
@@ -68,21 +73,27 @@ pub const PRESETS: &[(&str, &str)] = &[
         "step and tolerance chosen by the run for 3 %, 1 %, 0.3 % and 0.1 %",
     ),
     ("grains", "half the grains of the first lattice or deposit"),
+    (
+        "rung",
+        "what deforms: nothing, contacts, first bodies, grains",
+    ),
 ];
 
 /// Whether a preset is varied by default; the number of grains changes the problem itself, not only the accuracy, and a run that
-/// chooses its settings is compared with them where that is asked for.
+/// chooses its settings is compared with them where that is asked for; another rung is another model.
 fn wanted_by_default(name: &str) -> bool {
-    !matches!(name, "grains" | "accuracy")
+    !matches!(name, "grains" | "accuracy" | "rung")
 }
 
-/// How the scene of a case is solved.
+/// What levels depend on beside the text of the case: how its scene is solved, and what may deform in it.
 #[derive(Debug)]
 pub struct Solving {
     /// The methods that serve it.
     pub methods: Vec<Method>,
     /// Its tolerance.
     pub tolerance: f64,
+    /// What its forms are made from.
+    pub deformability: Deformability,
 }
 
 /// The parameters requested by name, or the default ones of the case, and those of `--vary`.
@@ -178,6 +189,7 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<StudyParamet
         "test_every" => test_every_levels(case)?,
         "coupling" => coupling_levels(case)?,
         "accuracy" => accuracy_levels(case),
+        "rung" => return rungs(case, &solving.deformability),
         "correction" => {
             let own = case.solver.correction;
             let mut all = vec![0.0, 0.05, 0.2, own];
@@ -202,6 +214,7 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<StudyParamet
         levels,
         own,
         reference: own,
+        left_out: Vec::new(),
     })
 }
 
@@ -309,6 +322,7 @@ fn ordered(
         sense,
         own: values.iter().position(|v| *v == own).unwrap_or(0),
         reference: 0,
+        left_out: Vec::new(),
         levels: values.into_iter().map(level).collect(),
     }
 }
@@ -432,6 +446,7 @@ fn listed(
         levels,
         own,
         reference: 0,
+        left_out: Vec::new(),
     })
 }
 

@@ -1,6 +1,6 @@
 //! A setting: one level for every varied parameter.
 
-use super::parameters::StudyParameter;
+use super::parameters::{Sense, StudyParameter};
 
 /// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,10 +43,17 @@ impl Setting {
                 )
             })
             .collect();
-        if parts.is_empty() {
-            "the case's own".to_owned()
-        } else {
-            parts.join(", ")
+        if !parts.is_empty() {
+            return parts.join(", ");
+        }
+        // Beside its other forms the case's own is named too.
+        let forms = parameters.iter().filter(|k| k.sense == Sense::Form);
+        let forms: Vec<String> = forms
+            .map(|k| format!("{} {}", k.name, k.levels[k.own].label))
+            .collect();
+        match forms.is_empty() {
+            true => "the case's own".to_owned(),
+            false => format!("the case's own ({})", forms.join(", ")),
         }
     }
 

@@ -104,7 +104,7 @@ impl Study {
                 self.jobs
             ),
             reference: self.parameters.iter().map(|k| k.reference).collect(),
-            forecast: self.forecast,
+            forecast: self.forecast.clone(),
         }
     }
 
@@ -151,7 +151,9 @@ impl Study {
                 .filter(|&k| self.ordered(k) && coarser(&self.parameters[k]))
                 .collect();
             finest.sort_by_key(|&k| {
+                // Another form is the last to go: what it assumes is no question of accuracy.
                 (
+                    self.parameters[k].sense == Sense::Form,
                     self.parameters[k].reference,
                     self.parameters[k].sense == Sense::Step,
                 )
@@ -188,7 +190,8 @@ impl Study {
     }
 
     fn ordered(&self, k: usize) -> bool {
-        matches!(self.parameters[k].sense, Sense::Step | Sense::Tolerance)
+        let sense = self.parameters[k].sense;
+        matches!(sense, Sense::Step | Sense::Tolerance | Sense::Form)
     }
 
     /// Expected duration of the reference, its neighbours and the case's own setting over the seeds (s).
@@ -275,7 +278,10 @@ impl Study {
                 .filter(|&k| {
                     self.ordered(k) && self.parameters[k].reference < self.parameters[k].own
                 })
-                .max_by_key(|&k| (self.parameters[k].sense == Sense::Tolerance, k));
+                .max_by_key(|&k| {
+                    let sense = self.parameters[k].sense;
+                    (sense == Sense::Tolerance, sense != Sense::Form, k)
+                });
             let Some(k) = coarser else {
                 return Err(TradeError::Reference(format!(
                     "the reference ({name}) failed, so there is nothing to compare with: {why}"

@@ -43,8 +43,12 @@ pub fn forecast(study: &Study) -> String {
             )
         })
         .collect();
+    let left_out = study.parameters.iter().flat_map(|k| &k.left_out);
+    let left_out: String = left_out
+        .map(|(level, why)| format!("\n  not offered    {level}: {why}"))
+        .collect();
     format!(
-        "varied\n{}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and its neighbours {} ({}), \
+        "varied\n{}{left_out}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and its neighbours {} ({}), \
          one parameter at a time {} more ({}), combinations as time allows; budget {}",
         names.join("\n"),
         seconds(

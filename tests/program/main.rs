@@ -14,6 +14,7 @@ mod check_features;
 mod check_methods;
 mod fclib;
 mod grains;
+mod holders;
 mod law_drive;
 mod law_new;
 mod layers;

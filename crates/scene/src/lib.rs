@@ -14,6 +14,7 @@ pub mod check;
 pub mod circuit;
 mod deep;
 pub mod gmsh;
+mod holders;
 pub mod interfaces;
 pub mod jump;
 mod magnitudes;

@@ -1,6 +1,7 @@
 //! Phases of a case: what each changes and when it ends; checks them and converts them for the simulation.
 
 use super::case::{BodySpec, Case};
+use super::holders;
 use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
 use fretwork_core::bodies::pressure::Servo;
@@ -19,7 +20,8 @@ pub struct PhaseSpec {
     /// When it ends; only the last may have none, and lasts to the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
-    /// Drives of bodies, by their names. Functions run on the time since the phase began.
+    /// Drives of bodies, by their names, and of what holds deformable ones: half-spaces by their names, parts of bodies of finite
+    /// elements as `body.part`. Functions run on the time since the phase began.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub drives: BTreeMap<String, Redriven>,
     /// Gravity (m/s^2), one number an axis; ends any drive of gravity before.
@@ -79,7 +81,10 @@ pub struct Redriven {
 
 impl Redriven {
     /// The given drives, with their names and their indices in the order of the dimension.
-    fn given(&self, dimension: usize) -> impl Iterator<Item = (&'static str, Option<usize>, &Dof)> {
+    pub(super) fn given(
+        &self,
+        dimension: usize,
+    ) -> impl Iterator<Item = (&'static str, Option<usize>, &Dof)> {
         let all = [
             ("x", &self.x),
             ("y", &self.y),
@@ -94,6 +99,31 @@ impl Redriven {
             dof.as_ref().map(|d| (name, place, d))
         })
     }
+}
+
+/// The phases of a run, each as often as it is run.
+pub(super) fn in_order(case: &Case) -> impl Iterator<Item = &PhaseSpec> {
+    let rounds = groups(case).flat_map(|(group, times)| (0..times).map(move |_| group.clone()));
+    rounds.flat_map(|group| &case.phases[group])
+}
+
+/// All drives that the holder of a deformable body has during the run, along an axis: its own, then those of the phases.
+pub fn drives_of_holder<'a>(
+    case: &'a Case,
+    holder: &'a str,
+    axis: usize,
+    own: &'a Option<Dof>,
+) -> impl Iterator<Item = &'a Dof> {
+    let phases = case.phases.iter().filter_map(move |p| {
+        let given = p.drives.get(holder)?;
+        [&given.x, &given.y, &given.z][axis].as_ref()
+    });
+    own.iter().chain(phases)
+}
+
+/// The name in `drives` of a part of a body of finite elements.
+pub fn holder_name(body: &str, part: &str) -> String {
+    holders::name(body, part)
 }
 
 /// All drives that a body has during the run: its own, then those of the phases.
@@ -200,12 +230,13 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), ValidationError
     let dimension = case.dimension as usize;
     for (name, redriven) in &phase.drives {
         let path = format!("drives.{name}");
-        known(
-            &path,
-            "body",
-            name,
-            case.bodies.iter().map(|b| b.name.as_str()),
-        )?;
+        let holders: Vec<String> = holders::names(case).collect();
+        let bodies = case.bodies.iter().map(|b| b.name.as_str());
+        let all = bodies.clone().chain(holders.iter().map(String::as_str));
+        known(&path, "body", name, all)?;
+        if !bodies.clone().any(|b| b == name) {
+            holders::check(case, phase, name, redriven)?;
+        }
         for (dof, place, drive) in redriven.given(dimension) {
             if place.is_none() {
                 let message = format!("there is no {dof} in two dimensions");

@@ -2,6 +2,7 @@
 
 use super::case::Case;
 use super::circuit;
+use super::phases::{drives_of_holder, holder_name};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::circuit::{CircuitProcess, Intervals};
@@ -74,7 +75,12 @@ pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a 
     let held: Vec<(&str, &Dof)> = supports
         .filter_map(|s| Some((s.part.as_str(), [&s.x, &s.y, &s.z][along].as_ref()?)))
         .collect();
-    let driven = held.iter().find(|(_, dof)| !matches!(dof, Dof::Fixed));
+    let moves = |(part, dof): &&(&str, &Dof)| {
+        let name = holder_name(body, part);
+        let own = Some((*dof).clone());
+        drives_of_holder(case, &name, along, &own).any(|d| !matches!(d, Dof::Fixed))
+    };
+    let driven = held.iter().find(moves);
     driven.or(held.first()).copied()
 }
 

@@ -4,7 +4,7 @@
 //! evaluated once per step.
 
 use super::case::{BodySpec, Case};
-use super::phases::drives_of;
+use super::phases::{drives_of, drives_of_holder, holder_name};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use fretwork_core::step::control::GravityDrive;
 
@@ -58,15 +58,19 @@ pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     }
     let supports = case.elastic.iter().flat_map(|body| {
         let supports = body.supports.iter();
-        supports.map(move |s| (format!("`{}` {}", body.name, s.part), [&s.x, &s.y, &s.z]))
+        supports.map(move |s| {
+            let said = format!("`{}` {}", body.name, s.part);
+            (said, holder_name(&body.name, &s.part), [&s.x, &s.y, &s.z])
+        })
     });
     let half_spaces = case.half_spaces.iter().map(|body| {
         let dofs = &body.dofs;
-        (format!("`{}`", body.name), [&dofs.x, &dofs.y, &dofs.z])
+        let said = format!("`{}`", body.name);
+        (said, body.name.clone(), [&dofs.x, &dofs.y, &dofs.z])
     });
-    for (name, dofs) in supports.chain(half_spaces) {
-        for (axis, dof) in ["x", "y", "z"].iter().zip(dofs) {
-            for drive in dof.iter().flat_map(Dof::drives) {
+    for (name, holder, dofs) in supports.chain(half_spaces) {
+        for (k, (axis, dof)) in ["x", "y", "z"].iter().zip(dofs).enumerate() {
+            for drive in drives_of_holder(case, &holder, k, dof).flat_map(Dof::drives) {
                 if let Some(function) = drive.function() {
                     let moves = matches!(drive, Dof::Displacement(_));
                     say(format!("{name} along {axis}"), function, moves);

@@ -10,7 +10,7 @@ use crate::record::{meshes, views};
 use crate::scene::build::Built;
 use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
-use crate::scene::phases::drives_of;
+use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
 use crate::solve::Problem;
 use crate::step::Simulation;
 use crate::step::coupling::Coupling;
@@ -88,8 +88,10 @@ impl Features {
             }
             let half_spaces = case.half_spaces.iter();
             for (name, axes) in half_spaces.map(|b| (&b.name, &b.dofs)) {
-                for (axis, dof) in [("x", &axes.x), ("y", &axes.y), ("z", &axes.z)] {
-                    if dof.iter().flat_map(Dof::drives).any(which) {
+                let axes = [("x", &axes.x), ("y", &axes.y), ("z", &axes.z)];
+                for (k, (axis, dof)) in axes.into_iter().enumerate() {
+                    let mut drives = drives_of_holder(case, name, k, dof);
+                    if drives.any(|d| d.drives().any(which)) {
                         found.push(format!("{name} {axis}"));
                     }
                 }
@@ -97,8 +99,10 @@ impl Features {
             for body in &case.elastic {
                 for support in &body.supports {
                     let axes = [("x", &support.x), ("y", &support.y), ("z", &support.z)];
-                    for (axis, dof) in axes {
-                        if dof.iter().flat_map(Dof::drives).any(which) {
+                    let holder = holder_name(&body.name, &support.part);
+                    for (k, (axis, dof)) in axes.into_iter().enumerate() {
+                        let mut drives = drives_of_holder(case, &holder, k, dof);
+                        if drives.any(|d| d.drives().any(which)) {
                             found.push(format!("{} {} {axis}", body.name, support.part));
                         }
                     }

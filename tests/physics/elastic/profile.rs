@@ -23,7 +23,12 @@ fn a_wavy_block_is_pressed_as_westergaard_says() {
     let modulus = 209.92e9 / (1.0 - 0.28 * 0.28);
     let share = mean * length / (PI * modulus * 1e-6);
     let expected = length / PI * share.sqrt().asin();
-    let loaded = s.state.network.contacts.iter().filter(|c| c.impulse.norm() > 0.0);
+    let loaded = s
+        .state
+        .network
+        .contacts
+        .iter()
+        .filter(|c| c.impulse.norm() > 0.0);
     let places = loaded.map(|c| {
         let at = s.state.bodies.position[c.bodies[0] as usize] + c.arms[0];
         (at.x, c.impulse.norm() / (s.options.scheme.h * size))
@@ -33,6 +38,9 @@ fn a_wavy_block_is_pressed_as_westergaard_says() {
     let half = 0.5 * size * places.len() as f64;
     println!("half-width {half:e}, expected {expected:e}");
     assert!((half - expected).abs() < size, "{half:e}, {expected:e}");
-    let crest = places.iter().find(|p| p.0.abs() < 1e-9).map_or(0.0, |p| p.1);
+    let crest = places
+        .iter()
+        .find(|p| p.0.abs() < 1e-9)
+        .map_or(0.0, |p| p.1);
     near(2.0 * mean / share.sqrt(), crest, 0.01);
 }

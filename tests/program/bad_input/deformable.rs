@@ -209,7 +209,10 @@ fn a_side_with_a_profile_that_cannot_be() {
         &shaped(&format!(
             "profile: (side: \"top\", shape: {MARK}Wave(amplitude: 0.15, x: 0.1))"
         )),
-        &["more than half of the height of the block", "make it smaller"],
+        &[
+            "more than half of the height of the block",
+            "make it smaller",
+        ],
     );
     stiff_refused(
         &shaped(&format!(

@@ -5,6 +5,7 @@ mod accuracy;
 mod budget;
 mod errors;
 mod refusals;
+mod rung;
 mod scatter;
 
 use serde_json::Value;

@@ -3,6 +3,7 @@
 use super::{Builder, Dimensional, Origin};
 use crate::case::{CellTouch, ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
+use crate::holders;
 use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
@@ -205,7 +206,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let position = self.vector(&format!("{here}.position"), &spec.position)?;
         let velocity = self.vector(&format!("{here}.velocity"), &spec.velocity)?;
         let spin = self.spin(&format!("{here}.spin"), &spec.spin)?;
-        let supports = self.supports(here, &spec.supports)?;
+        let supports = self.supports(here, spec)?;
         let touching = match &spec.touches {
             TouchSpec::Nothing => Touching::Nothing,
             TouchSpec::Points(part) => Touching::Points(part),
@@ -244,7 +245,7 @@ impl<S: Dimensional> Builder<'_, S> {
         })
     }
 
-    fn supports(&self, here: &str, specs: &[SupportSpec]) -> Result<Vec<Support>, InputError> {
+    fn supports(&self, here: &str, body: &ElasticSpec) -> Result<Vec<Support>, InputError> {
         let one = |(j, spec): (usize, &SupportSpec)| {
             let axes = [&spec.x, &spec.y, &spec.z];
             for (axis, dof) in ["x", "y", "z"].iter().zip(axes) {
@@ -252,12 +253,17 @@ impl<S: Dimensional> Builder<'_, S> {
                 let Some(dof) = dof else { continue };
                 self.check_holder(&at, axis, dof)?;
             }
+            let holder = holders::name(&body.name, &spec.part);
+            let over_the_run = axes.iter().enumerate().map(|(axis, own)| {
+                let own = own.as_ref()?;
+                Some(holders::drive(self.case, &holder, axis, own))
+            });
             Ok(Support {
                 part: spec.part.clone(),
-                axes: axes.map(Clone::clone).to_vec(),
+                axes: over_the_run.collect(),
             })
         };
-        specs.iter().enumerate().map(one).collect()
+        body.supports.iter().enumerate().map(one).collect()
     }
 
     /// Checks the drive of a holder along an axis.
