@@ -7,7 +7,7 @@ use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize, Serializer};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Key of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
 /// antagonist (the same, or a surface with [`Key::SURFACE`] set), and the face, edge or vertex in contact.
@@ -186,6 +186,8 @@ pub struct Network<S: Space> {
     pub cycle_multiplier: f64,
     /// Worn volume of each surface so far, by index (m^3; m^3/m in 2D).
     pub worn: BTreeMap<usize, f64>,
+    /// Surfaces of grains that deform: what wears there is third body.
+    pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
     /// Number of rebuilds of the neighbour list.
@@ -254,6 +256,7 @@ impl<S: Space> Network<S> {
             losses: None,
             cycle_multiplier: 1.0,
             worn: BTreeMap::new(),
+            of_grains: BTreeSet::new(),
             step_size: StepSizeDiagnostics::default(),
             rebuilds: 0,
             fast: alert,

@@ -67,6 +67,8 @@ impl<S: Space> Simulation<S> {
                 });
             }
             if let (Some(system), ContactorShape::Grain) = (system, contactor.shape) {
+                let surface = self.shapes.surfaces.len() - 1;
+                self.state.network.of_grains.insert(surface);
                 let areas = system.point_areas(contactor);
                 let first = self.shapes.balls.len();
                 points = first..first + areas.len();

@@ -73,7 +73,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 most = most.max(over(&place).abs());
             }
         }
-        if !(most < DEEPEST * height) {
+        if most >= DEEPEST * height || most.is_nan() {
             let message = format!(
                 "the profile rises or falls by {most:.3e} m, more than half of the height of the block, {height:.3e} m; make it smaller or the block higher"
             );

@@ -53,7 +53,8 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
             network.cycle_multiplier
         };
         let volume = times * slot.evaluator.columns.out.volume[k];
-        if let Some(surface) = network.contacts[*at].key.surface() {
+        let surface = network.contacts[*at].key.surface();
+        if let Some(surface) = surface.filter(|s| !network.of_grains.contains(s)) {
             slot.totals.worn_first += volume;
             if volume > 0.0 {
                 *network.worn.entry(surface).or_default() += volume;
