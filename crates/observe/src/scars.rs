@@ -151,7 +151,11 @@ pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
     };
     let mut rows: Vec<(S::Vector, f64)> = scar.vertices().map(|(v, d)| (v.at, d)).collect();
     let repeated = rows.first().map(|r| r.1);
-    rows.extend(shape.end().zip(repeated));
+    // The scar of a surface that deforms is not in the frame of the surface.
+    let (scar_at, shape_at) = (rows.first().map(|r| r.0), shape.vertices());
+    let end = shape.end().zip(scar_at).zip(shape_at.first());
+    let end = end.map(|((end, first), v)| end + (first - v.at));
+    rows.extend(end.zip(repeated));
     // From left to right, independent of the orientation of the profile.
     if S::D == 2 && shape.sign() < 0.0 {
         rows.reverse();

@@ -77,6 +77,13 @@ impl<S: Space> Scar<S> {
         })
     }
 
+    /// Has its places shifted (m): the frame of a surface that deforms has its origin at one of its points.
+    #[must_use]
+    pub fn shifted(mut self, by: S::Vector) -> Self {
+        self.vertices.iter_mut().for_each(|v| v.at += by);
+        self
+    }
+
     /// Removes a volume (m^3; m^3/m in 2D) at a point of the surface, in its frame (m).
     ///
     /// # Errors

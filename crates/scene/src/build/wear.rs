@@ -31,8 +31,9 @@ impl DeformableWear {
         let Some(carried) = s.shapes.surfaces.get(surface) else {
             return Ok(None);
         };
+        let origin = s.state.bodies.position[carried.body as usize] + carried.offset;
         if let Some(place) = wall::<S>(&carried.shape.outline()) {
-            let at = s.state.bodies.position[carried.body as usize] + carried.offset + place;
+            let at = origin + place;
             let at: Vec<String> = (0..S::D).map(|k| format!("{:.4e}", at[k])).collect();
             let message = format!(
                 "what touches of `{}` is vertical or overhangs at ({}) m, where it cannot recede along {}: let a part touch that has one height at each place, as `Surface(\"top\")` or `Surface(\"bottom\")`, or leave `wears` out",
@@ -44,7 +45,8 @@ impl DeformableWear {
         }
         let WearSpec { thickness, every } = self.wears;
         let name = self.name.clone();
-        Ok(Scar::new(name, surface, carried, thickness, every))
+        let scar = Scar::new(name, surface, carried, thickness, every);
+        Ok(scar.map(|scar| scar.shifted(origin)))
     }
 }
 
