@@ -2,6 +2,7 @@
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
+use std::collections::HashSet;
 
 /// A contact counts if its normal force exceeds this fraction of the mean; smaller forces are within the
 /// solver's tolerance.
@@ -10,7 +11,8 @@ const FAINT: f64 = 1e-3;
 /// Coordination of the free grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coordination {
-    /// Mean number of contacts that carry force, over all grains; a contact with a wall counts once.
+    /// Mean number of contacts that carry force, over all grains; a contact with a wall counts once, and a neighbour of a grain that
+    /// deforms.
     pub mean: f64,
     /// The same for the grains and contacts that remain after removing rattlers.
     pub carried: f64,
@@ -40,7 +42,17 @@ fn bearing<S: Space>(s: &Simulation<S>) -> Vec<[u32; 2]> {
     let (sum, count) = carrying.fold((0.0, 0), |(f, n), c| (f + force(c), n + 1));
     let least = FAINT * sum / f64::from(count.max(1));
     let pairs = s.state.network.contacts.iter().filter(|c| force(c) > least);
-    pairs.map(|c| c.bodies).collect()
+    let deforms = |b: u32| {
+        let carrier = s.state.bodies.carrier(b as usize);
+        carrier.is_some_and(|c| c.grain)
+    };
+    // Points of grains that deform touch one by one: a neighbour counts once.
+    let mut seen = HashSet::new();
+    let once = |bodies: &[u32; 2]| {
+        let [a, b] = *bodies;
+        !(deforms(a) || deforms(b)) || seen.insert([a.min(b), a.max(b)])
+    };
+    pairs.map(|c| c.bodies).filter(once).collect()
 }
 
 fn count_pairs(free: &[bool], pairs: &[[u32; 2]]) -> Coordination {

@@ -35,7 +35,7 @@ pub struct Deformable {
 /// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
 /// per cent, and its forces act in directions that are off by the rotation, here two per cent.
 const LARGE: f64 = 0.02;
-/// The same of grains that deform: most of their strain is at contacts. The force of a disk between two plates is off by less than one per cent
+/// The same of grains that deform: most of their strain is at contacts. The force of a disk between two plates is off by less than 1.5 per cent
 /// up to there (`tests/physics/elastic/soft_strain.rs`); rotations are those against their frame.
 const LARGE_IN_GRAINS: f64 = 0.1;
 

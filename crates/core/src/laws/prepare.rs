@@ -320,7 +320,8 @@ fn apply_friction<S: Space>(
     form.friction = friction.mu;
     form.tension = info.h * area * friction.tension;
     form.cohesion = info.h * area * friction.cohesion;
-    if contact.beyond {
+    let aside = contact.vertex_contact && contact.key.ball().is_some();
+    if contact.beyond || aside {
         (form.tension, form.cohesion) = (0.0, 0.0);
     }
     // Newton's restitution acts on closed contacts and on those that would close and penetrate within the

@@ -38,6 +38,8 @@ pub struct ElasticGrainSpec<S: Space> {
     pub shape: Arc<GrainShape<S>>,
     /// Length of the unit of its shape (m).
     pub size: f64,
+    /// Radius of the ball (2D: disk) whose mass it has (m): of a ball that of it, of others the radius of the same volume.
+    pub radius: f64,
     /// Its material.
     pub material: Elasticity,
     /// Its damping.
@@ -120,9 +122,11 @@ impl<S: Deformable> ElasticGrain<S> {
     /// What of the material is out of range, or why the shape has no surface.
     pub fn new(spec: ElasticGrainSpec<S>) -> Result<Self, String> {
         spec.material.check().map_err(|e| e.to_string())?;
-        let Elasticity { young, density, .. } = spec.material;
         let (shape, size) = (&spec.shape, spec.size);
-        let mass = density * shape.volume() * size.powi(S::D as i32);
+        let Elasticity { young, density, .. } = spec.material;
+        let mass = density * S::ball_volume(spec.radius);
+        // A mesh within a ball has less volume.
+        let density = mass / (shape.volume() * size.powi(S::D as i32));
         let inertia = shape.inertia().scaled(density * size.powi(S::D as i32 + 2));
         let tensor = Tensor::<S>::new(inertia);
         let uniform = S::Tensor::uniform(fretwork_core::bodies::tensor::mean::<S>(&inertia));
@@ -134,7 +138,7 @@ impl<S: Deformable> ElasticGrain<S> {
         let model = Model {
             contactor: Contactor {
                 nodes: Nodes::one(0),
-                radius: S::ball_radius(shape.volume() * size.powi(S::D as i32)),
+                radius: spec.radius,
                 shape: ContactorShape::Grain,
                 material: spec.surface_material,
             },

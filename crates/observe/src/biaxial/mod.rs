@@ -87,8 +87,11 @@ impl Biaxial {
         };
         let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
         let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
+        let closed = s.shapes.surfaces.iter().filter(|f| f.shape.is_closed());
+        let deformable = closed.map(|f| (f.body, s.state.bodies.length[f.body as usize]));
         let grains = balls
             .chain(pieces)
+            .chain(deformable)
             .filter(|(body, _)| !s.state.bodies.driven.iter().any(|d| d.body == *body));
         let mut test = Self {
             axes,

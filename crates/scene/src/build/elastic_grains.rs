@@ -3,6 +3,7 @@
 use super::{Builder, Dimensional, Origin};
 use crate::case::ElasticGrainSpec;
 use crate::material::Sourced;
+use crate::measures::MeasureSpec;
 use crate::source::InputError;
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
@@ -26,6 +27,22 @@ type ShapeKey = (usize, Vec<u64>);
 struct Shapes<'a, S: Space> {
     balls: Vec<&'a Ball<S>>,
     pieces: Vec<&'a ConvexCollider<S>>,
+}
+
+impl<S: Space> Shapes<'_, S> {
+    /// Radius of the ball of its volume (m).
+    fn radius(&self) -> f64 {
+        let ball = self.balls.first().map(|ball| ball.radius);
+        let piece = self.pieces.first().map(|piece| piece.size);
+        ball.or(piece).unwrap_or_default()
+    }
+
+    /// Radius of the ball around it (m).
+    fn bound(&self) -> f64 {
+        let ball = self.balls.first().map(|ball| ball.radius);
+        let piece = self.pieces.first().map(|piece| piece.bound);
+        ball.or(piece).unwrap_or_default()
+    }
 }
 
 impl<S: Dimensional> Builder<'_, S> {
@@ -75,6 +92,15 @@ impl<S: Dimensional> Builder<'_, S> {
                 "grains that deform do not take part in a `circuit`; take one of the two away";
             return Err(self.fail("elastic_grains", message));
         }
+        let bands = self.case.measures.iter();
+        if bands.map(MeasureSpec::kind).any(|kind| kind == "Band") {
+            let message = "the measure `Band` does not follow grains that deform; take it away, or let the grains be rigid";
+            return Err(self.fail("elastic_grains", message));
+        }
+        if self.case.output.shear.is_some() {
+            let message = "local shear is not measured of grains that deform; take `shear` away";
+            return Err(self.fail("output.shear", message));
+        }
         let mut shapes: Vec<Shapes<'_, S>> = Vec::new();
         shapes.resize_with(self.bodies.len(), || Shapes {
             balls: Vec::new(),
@@ -106,6 +132,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 name: format!("grain_{}", out.len()),
                 shape,
                 size,
+                radius: own.radius(),
                 material: *elasticity,
                 damping: spec.damping,
                 surface_material: material.unwrap_or_default(),
@@ -114,6 +141,17 @@ impl<S: Dimensional> Builder<'_, S> {
                 velocity: self.bodies.velocity[b],
                 spin: self.bodies.spin[b],
             };
+            let bound = own.bound();
+            for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
+                let period = self.shapes.periodic.period[k];
+                if period.is_some_and(|p| p < 8.0 * bound) {
+                    let message = format!(
+                        "the period must be at least 4 diameters of the largest grain ({:e} m)",
+                        8.0 * bound
+                    );
+                    return Err(self.fail(format!("periodic.{name}"), message));
+                }
+            }
             let system = S::elastic_grain(grain).map_err(|why| self.fail(here.as_str(), why))?;
             kept[b] = false;
             used.insert(here.clone());

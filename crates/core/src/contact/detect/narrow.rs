@@ -190,8 +190,9 @@ impl<'a, S: Space> Narrow<'a, S> {
             // A point that came too fast is pushed out of a grain from any depth.
             touches.extend(surface.shape.enclosing(&local));
         }
+        let found = touches.len();
+        let mut alone = Vec::new();
         if surface.shape.deforms() && ball.radius > 0.0 {
-            let found = touches.len();
             let reach = ball.radius + margin;
             surface.shape.vertices_within(&local, reach, &mut touches);
             let (first, more) = touches.split_at_mut(found);
@@ -203,6 +204,11 @@ impl<'a, S: Space> Narrow<'a, S> {
                 }
             }
             touches.truncate(found + kept);
+            // Its area, with bonds and attraction, is that of a ball once: at the nearest point.
+            let nearest = touches.iter().map(|t| t.distance);
+            let nearest = nearest.fold(f64::INFINITY, f64::min);
+            let first = touches.iter().find(|t| t.distance == nearest);
+            alone.extend(first.map(|t| t.feature));
             touches.sort_by_key(|t| t.feature);
         }
         let Some(law) = self.laws.get(ball.material, surface.material) else {
@@ -248,6 +254,7 @@ impl<'a, S: Space> Narrow<'a, S> {
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
             let found = Contact {
                 central: still && centred && self.isotropic(i),
+                vertex_contact: alone.first().is_some_and(|f| *f != touch.feature),
                 ..Contact::new(
                     Key {
                         candidate: a,

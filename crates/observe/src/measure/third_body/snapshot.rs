@@ -253,6 +253,10 @@ fn loads<S: Space>(s: &Simulation<S>, grain: &[bool]) -> (Vec<Matrix3<f64>>, Vec
     for piece in &s.shapes.pieces {
         volume[piece.body as usize] += S::ball_volume(piece.size);
     }
+    for grain in s.shapes.surfaces.iter().filter(|f| f.shape.is_closed()) {
+        let body = grain.body as usize;
+        volume[body] += S::ball_volume(s.state.bodies.length[body]);
+    }
     let mut loads = vec![Matrix3::zeros(); s.state.bodies.len()];
     each_moment(s, |body, force, branch| {
         let (f, l) = (
