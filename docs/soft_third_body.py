@@ -41,9 +41,11 @@ for pressure in (2.5e5, 2.5e4):
         with open(f"{folder}/summary.json", encoding="utf-8") as file:
             s = json.load(file)
         layer = s["measures"]
+        scatter = s["uncertainty"]["friction_coefficient"]["scatter"]
+        scatter = "?" if scatter is None else f"{scatter:.3f}"
         strain = max(grain["strain"] for grain in s["small_strain"])
         print(
-            f"{E / pressure:5.0f}  {ratio:4g}  {s['friction_coefficient']:.3f} +- {s['uncertainty']['friction_coefficient']['scatter']:.3f}  {layer['layer_interior_shear']:10.2f}"
+            f"{E / pressure:5.0f}  {ratio:4g}  {s['friction_coefficient']:.3f} +- {scatter}  {layer['layer_interior_shear']:10.2f}"
             f"  {layer['layer_slip_first_share']:12.2f} {layer['layer_slip_second_share']:.2f}  {layer['layer_solid_fraction']:14.3f}"
             f"  {strain:.3f}  {'; '.join(s['reasons'])[:60]}",
             flush=True,

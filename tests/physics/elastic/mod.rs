@@ -1,5 +1,6 @@
 //! Bodies of finite elements against closed forms: impact of a bar, bending, Hertz, Cattaneo and Mindlin.
 
+mod ball_area;
 mod bar;
 mod bending;
 mod bonds;

@@ -142,8 +142,14 @@ impl<'a, S: Space> Narrow<'a, S> {
                 other - self.bodies.position[j],
             ]
         };
+        // A ball has its area where it touches the surface of a grain, not at the vertices beside that.
+        let vertex = |ball: &Ball<S>| {
+            let carrier = self.bodies.carrier(ball.body as usize);
+            ball.radius == 0.0 && carrier.is_some_and(|c| c.grain)
+        };
         let found = Contact {
             central,
+            vertex_contact: vertex(p) || vertex(q),
             ..Contact::new(
                 Key {
                     candidate: a,
@@ -190,20 +196,23 @@ impl<'a, S: Space> Narrow<'a, S> {
             // A point that came too fast is pushed out of a grain from any depth.
             touches.extend(surface.shape.enclosing(&local));
         }
-        let found = touches.len();
         let mut alone = Vec::new();
         if surface.shape.deforms() && ball.radius > 0.0 {
-            let reach = ball.radius + margin;
-            surface.shape.vertices_within(&local, reach, &mut touches);
-            let (first, more) = touches.split_at_mut(found);
-            let mut kept = 0;
-            for k in 0..more.len() {
-                if first.iter().all(|t| t.feature != more[k].feature) {
-                    more[kept] = more[k];
-                    kept += 1;
+            // The vertices of a grain are points of their own.
+            if !surface.shape.is_closed() {
+                let found = touches.len();
+                let reach = ball.radius + margin;
+                surface.shape.vertices_within(&local, reach, &mut touches);
+                let (first, more) = touches.split_at_mut(found);
+                let mut kept = 0;
+                for k in 0..more.len() {
+                    if first.iter().all(|t| t.feature != more[k].feature) {
+                        more[kept] = more[k];
+                        kept += 1;
+                    }
                 }
+                touches.truncate(found + kept);
             }
-            touches.truncate(found + kept);
             // Its area, with bonds and attraction, is that of a ball once: at the nearest point.
             let nearest = touches.iter().map(|t| t.distance);
             let nearest = nearest.fold(f64::INFINITY, f64::min);
