@@ -17,8 +17,8 @@ pub(crate) fn names(case: &Case) -> impl Iterator<Item = String> + Clone + '_ {
     half_spaces.chain(parts)
 }
 
-/// The name of a part of a body in `drives`.
-pub(crate) fn name(body: &str, part: &str) -> String {
+/// The name in `drives` of a part of a body of finite elements.
+pub fn name(body: &str, part: &str) -> String {
     format!("{body}.{part}")
 }
 

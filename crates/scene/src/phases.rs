@@ -1,5 +1,7 @@
 //! Phases of a case: what each changes and when it ends; checks them and converts them for the simulation.
 
+pub use super::holders::name as holder_name;
+
 use super::case::{BodySpec, Case};
 use super::holders;
 use super::source::{ValidationError, nearest};
@@ -119,11 +121,6 @@ pub fn drives_of_holder<'a>(
         [&given.x, &given.y, &given.z][axis].as_ref()
     });
     own.iter().chain(phases)
-}
-
-/// The name in `drives` of a part of a body of finite elements.
-pub fn holder_name(body: &str, part: &str) -> String {
-    holders::name(body, part)
 }
 
 /// All drives that a body has during the run: its own, then those of the phases.

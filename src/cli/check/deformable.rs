@@ -23,7 +23,7 @@ pub(super) fn lines<S: Space>(s: &Simulation<S>, timed: bool) -> Vec<(&'static s
             .filter(|b| b.area != S::Vector::zero());
         let sizes = grains.iter().filter_map(|g| g.size());
         let text = format!(
-            "{}: {coordinates} coordinates, {} points of surfaces; memory: compliance of surfaces up to {}; their modes were found once for each shape",
+            "{}: {coordinates} coordinates, {} points of surfaces; memory: compliance of surfaces up to {}; modes were found once for all balls, and for each polygon or polyhedron of its own",
             grains.len(),
             points.count(),
             bytes(sizes.map(|size| size.surface).sum())
