@@ -1,14 +1,14 @@
 //! Price of first bodies that deform: a step of a third body between two elastic bodies against the same step between rigid ones.
 //!
-//! `cargo bench --bench elastic` builds the same layer four times: 2,016 disks of oxide between two bodies of steel that are pressed
+//! `cargo bench --bench elastic` builds the same layer five times: 2,016 disks of oxide between two bodies of steel that are pressed
 //! together and sheared, with the step, inertia and solver of `cases/wheel_rail_fretting.ron` and its contact law, without bonds, which
 //! would add the same time to all. The first bodies are rigid profiles of 513 points, 500 of them along the layer; or elastic half-spaces with as many cells; or elastic bodies with
 //! the same points on their surfaces, as deep as the layer is long: once of triangles that grow in both directions
-//! with the depth (`graded`, read from a file as of a mesh generator), once as a `Block`, whose columns of cells reach from side to side.
+//! with the depth (read from a file as of a mesh generator; `graded` has two rows of cells of each size, `coarse` one), once as a `Block`, whose columns of cells reach from side to side.
 //! Steps of all scenes alternate in one process on one thread; medians of processor time are printed, and for the parts of a step medians
 //! by the clock, which are longer where other processes run.
 //!
-//! Names (`half-space`, `graded`, `block`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
+//! Names (`half-space`, `coarse`, `graded`, `block`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
 //! `cargo bench --bench elastic -- coulomb` has rigid contacts with Coulomb friction in place of springs. `STEPS` is the number of timed
 //! steps (200).
 
@@ -44,6 +44,7 @@ const WARM: f64 = 0.0215;
 enum First {
     Rigid,
     Graded,
+    Coarse,
     Block,
     HalfSpace,
 }
@@ -53,6 +54,7 @@ impl First {
         match self {
             Self::Rigid => "rigid",
             Self::Graded => "graded",
+            Self::Coarse => "coarse",
             Self::Block => "block",
             Self::HalfSpace => "half-space",
         }
@@ -60,8 +62,8 @@ impl First {
 }
 
 /// A body below y = 0 (m) as a file of Gmsh: each row of cells has as many columns as the one above or half of them, and each
-/// cell is cut in triangles by its centre. `up` turns it over.
-fn graded(up: bool) -> String {
+/// cell is cut in triangles by its centre. There are so many rows of the finest cells, and of the others of a size. `up` turns it over.
+fn graded(up: bool, [finest, others]: [usize; 2]) -> String {
     let (mut points, mut triangles): (Vec<[f64; 2]>, Vec<[usize; 3]>) = (Vec::new(), Vec::new());
     let row = |points: &mut Vec<[f64; 2]>, cells: usize, y: f64| -> Vec<usize> {
         let size = SIZE * (CELLS / cells) as f64;
@@ -74,9 +76,8 @@ fn graded(up: bool) -> String {
     let mut above = top.clone();
     let mut rows = 0;
     while y > -LENGTH {
-        // Three rows of the finest cells, then one or two of each size.
         rows += 1;
-        let halved = cells > 8 && if cells == CELLS { rows > 3 } else { rows > 2 };
+        let halved = cells > 8 && rows > if cells == CELLS { finest } else { others };
         let height = SIZE * (CELLS / cells) as f64;
         if halved {
             (cells, rows) = (cells / 2, 0);
@@ -137,9 +138,14 @@ fn number(name: &str, default: f64) -> f64 {
 /// Deformable first bodies: their meshes are in the folder.
 fn elastic(first: First, push: &str, shear: &str, folder: &Path) -> String {
     let bodies = [("rail", false), ("wheel", true)].map(|(name, up)| {
-        let (mesh, [touches, held]) = if first == First::Graded {
+        let rows = match first {
+            First::Graded => Some([3, 2]),
+            First::Coarse => Some([2, 1]),
+            _ => None,
+        };
+        let (mesh, [touches, held]) = if let Some(rows) = rows {
             let file = format!("{name}.msh");
-            std::fs::write(folder.join(&file), graded(up)).unwrap_or_else(|e| panic!("{e}"));
+            std::fs::write(folder.join(&file), graded(up, rows)).unwrap_or_else(|e| panic!("{e}"));
             (format!("Gmsh(file: \"{file}\")"), ["touches", "held"])
         } else {
             let (from, to) = if up { (0.0, LENGTH) } else { (-LENGTH, 0.0) };
@@ -310,13 +316,16 @@ struct Times {
     touching: Vec<f64>,
     pressure: Vec<f64>,
     unconverged: usize,
+    rebuilds: u64,
 }
 
 impl Times {
     fn step(&mut self, scene: &mut Scene) {
         let ms = |d: Duration| d.as_secs_f64() * 1e3;
         let clock = ThreadTime::now();
+        let rebuilds = scene.state.network.rebuilds;
         let report = scene.step().unwrap_or_else(|e| panic!("{e}"));
+        self.rebuilds += scene.state.network.rebuilds - rebuilds;
         self.total.push(ms(clock.elapsed()));
         self.detect.push(ms(report.timing.detect));
         self.laws.push(ms(report.timing.laws));
@@ -353,6 +362,7 @@ impl Times {
         ]
         .map(|v| median(v));
         let rest = total - detect - laws - solve;
+        println!("{name}: {} new neighbour lists", self.rebuilds);
         println!(
             "{name:<8} {contacts:>9.0} {touching:>9.0} {pressure:>6.2} {sweeps:>7.0} {total:>9.2} {detect:>9.2} {laws:>9.2} {solve:>9.2} {rest:>9.2}{}",
             match self.unconverged {
@@ -383,7 +393,13 @@ fn main() {
     let coulomb = std::env::args().skip(1).any(|a| a == "coulomb");
     let steps = number("STEPS", 200.0) as usize;
     let warm = number("WARM", WARM);
-    let all = [First::Rigid, First::HalfSpace, First::Graded, First::Block];
+    let all = [
+        First::Rigid,
+        First::HalfSpace,
+        First::Coarse,
+        First::Graded,
+        First::Block,
+    ];
     let named = |first: &First| std::env::args().any(|a| a == first.name());
     let any = all.iter().any(named);
     let scenes = all
@@ -453,11 +469,14 @@ fn parts(system: &dyn DynamicalSystem<Dim2>, time_now: f64) {
     for node in (0..vertices as u32).step_by(3) {
         system.add_impulse(node, &Vector2::new(0.0, 1.0), &mut impulses);
     }
+    let size = system.size().unwrap_or_default();
     println!(
-        "    {}: {} unknowns, {vertices} points of its surface; formed once in {form:.0} ms. Calls (ms): begin {:.2}, free velocity {:.2}, \
+        "    {}: {} unknowns, {vertices} points of its surface; matrix {:.1} MB, factor {:.1} MB; formed once in {form:.0} ms. Calls (ms): begin {:.2}, free velocity {:.2}, \
          response to impulses {:.2}, work {:.2}, energies {:.2}, vertices {:.3}",
         system.name(),
         system.freedoms(),
+        size.matrix as f64 / 1e6,
+        size.factor as f64 / 1e6,
         time(|| other.begin_step(&step)),
         time(|| {
             black_box(system.free_velocity(&step));

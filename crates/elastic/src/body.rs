@@ -21,8 +21,8 @@ use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
 use fretwork_core::bodies::{
-    Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes, SystemSize,
-    SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
+    Compliance, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes,
+    SystemSize, SystemStep, SystemWork, TouchingSurface, block_of, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -32,7 +32,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct ElasticBody<S: Space> {
     pub(crate) model: Arc<Model<S>>,
-    pub(crate) formed: Option<Arc<Formed>>,
+    pub(crate) formed: Option<Arc<Formed<S>>>,
     pub(crate) displacement: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
     /// Both at the start of the step.
@@ -81,20 +81,7 @@ impl<S: Deformable> ElasticBody<S> {
         let factor = damping.stiffness;
         let large = LargeStrain::new(strain, &material, factor, &mesh, &freedoms, &stiffness);
         let (part, contactors) = contactors(&mesh, touching, surface_material)?;
-        let points: &[u32] = part.as_ref().map_or(&[], |part| &part.points);
-        let coordinates = points
-            .iter()
-            .flat_map(|p| (0..S::D).map(|axis| freedoms.of(*p, axis) as u32));
-        let mut surface: Vec<u32> = coordinates
-            .filter(|c| (*c as usize) < freedoms.free)
-            .collect();
-        surface.sort_unstable();
-        surface.dedup();
         let total = freedoms.total();
-        let mut place = vec![u32::MAX; total];
-        for (k, coordinate) in surface.iter().enumerate() {
-            place[*coordinate as usize] = k as u32;
-        }
         let start = crate::rigid::velocities(&mesh, &freedoms, &velocity, &spin);
         let model = Model {
             name: name.to_owned(),
@@ -107,8 +94,6 @@ impl<S: Deformable> ElasticBody<S> {
             stiffness,
             contactors,
             part,
-            surface,
-            place,
         };
         Ok(Self {
             model: Arc::new(model),
@@ -311,7 +296,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 (viscous, h * dot(&elastic, &average) - stored)
             }
             None => {
-                let [stretched, viscous] = model.internal(&average, &average);
+                let stretched = model.stiffness.times(&model.strained(&average));
+                let viscous = model.viscous(&average, &stretched);
                 (viscous, (theta - 0.5) * h * h * dot(&stretched, &average))
             }
         };
@@ -418,44 +404,37 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let formed = self.formed.as_ref().filter(|f| !f.surface.is_empty());
-        let Some(formed) = formed else {
+        let Some(kept) = self.kept_compliance(nodes) else {
             return compliance_by_solving(self, nodes);
         };
-        let coordinates: Vec<[u32; 3]> = nodes
-            .iter()
-            .map(|node| {
-                let mut at = [u32::MAX; 3];
-                for (axis, at) in at.iter_mut().enumerate().take(S::D) {
-                    *at = self.model.place[self.model.freedoms.of(*node, axis)];
-                }
-                at
-            })
-            .collect();
-        let mut units = [S::Vector::zero(); 3];
-        for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
-            unit[axis] = 1.0;
-        }
+        let places: Option<Vec<usize>> = nodes.iter().map(|n| kept.place(*n)).collect();
+        let Some(places) = places else {
+            return compliance_by_solving(self, nodes);
+        };
         // Column by column, as they are kept.
         let count = nodes.len();
         let mut out = vec![S::Matrix::uniform(0.0); count * count];
-        for (of, b) in coordinates.iter().enumerate() {
-            for (j, unit) in units.iter().enumerate().take(S::D) {
-                if b[j] == u32::MAX {
-                    continue;
-                }
-                let column = self.model.column(formed, b[j]);
-                for (row, a) in coordinates.iter().enumerate() {
-                    let mut response = S::Vector::zero();
-                    for i in (0..S::D).filter(|i| a[*i] != u32::MAX) {
-                        response[i] = column[a[i] as usize];
-                    }
-                    let block = &mut out[row * count + of];
-                    *block = *block + S::Matrix::dyad(&response, unit);
-                }
+        for (of, b) in places.iter().enumerate() {
+            let column = kept.column(*b);
+            for (row, a) in places.iter().enumerate() {
+                out[row * count + of] = block_of::<S>(column, kept.nodes().len(), *a);
             }
         }
         out
+    }
+
+    fn kept_compliance(&self, touched: &[u32]) -> Option<Arc<Compliance<S>>> {
+        let formed = self.formed.as_ref()?;
+        let kept = formed.surface.as_ref()?;
+        for node in touched {
+            self.model.column(formed, kept.place(*node)?);
+        }
+        Some(Arc::clone(kept))
+    }
+
+    fn kept_nodes(&self) -> Option<usize> {
+        let kept = self.formed.as_ref()?.surface.as_ref()?;
+        Some(kept.nodes().len())
     }
 
     fn holders(&self) -> Vec<Holder> {

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 /// A symmetric matrix in compressed rows, both triangles stored, columns in increasing order.
 #[derive(Clone, Debug, Default)]
 pub struct Sparse {
-    starts: Vec<usize>,
-    columns: Vec<usize>,
+    starts: Vec<u32>,
+    columns: Vec<u32>,
     values: Vec<f64>,
 }
 
@@ -28,18 +28,23 @@ impl Sparse {
         };
         for row in by_row {
             for (column, value) in row {
-                out.columns.push(column);
+                out.columns.push(column as u32);
                 out.values.push(value);
             }
-            out.starts.push(out.columns.len());
+            out.starts.push(out.columns.len() as u32);
         }
         out
     }
 
+    /// Where the entries of a row are.
+    fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.starts[row] as usize..self.starts[row + 1] as usize
+    }
+
     /// Entries of a row, by column.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.starts[row]..self.starts[row + 1];
-        let columns = self.columns[range.clone()].iter().copied();
+        let range = self.range(row);
+        let columns = self.columns[range.clone()].iter().map(|c| *c as usize);
         columns.zip(self.values[range].iter().copied())
     }
 
@@ -57,8 +62,9 @@ impl Sparse {
 
     /// Where an entry stands among the values; none outside of the pattern.
     pub fn slot(&self, row: usize, column: usize) -> Option<usize> {
-        let range = self.starts[row]..self.starts[row + 1];
-        let within = self.columns[range.clone()].binary_search(&column).ok()?;
+        let range = self.range(row);
+        let within = self.columns[range.clone()].binary_search(&(column as u32));
+        let within = within.ok()?;
         Some(range.start + within)
     }
 
@@ -93,20 +99,20 @@ impl Sparse {
             let mut put = false;
             for (c, a) in self.row(r).filter(|(c, _)| *c < n) {
                 if c > r && !put {
-                    out.columns.push(r);
+                    out.columns.push(r as u32);
                     out.values.push(*added);
                     put = true;
                 }
-                out.columns.push(c);
+                out.columns.push(c as u32);
                 out.values
                     .push(scale * a + if c == r { *added } else { 0.0 });
                 put |= c == r;
             }
             if !put {
-                out.columns.push(r);
+                out.columns.push(r as u32);
                 out.values.push(*added);
             }
-            out.starts.push(out.columns.len());
+            out.starts.push(out.columns.len() as u32);
         }
         out
     }
@@ -115,7 +121,7 @@ impl Sparse {
 /// The Cholesky factor of a positive definite matrix; by default that of one without rows.
 #[derive(Clone, Default)]
 pub struct Factor {
-    factor: Option<Llt<usize, f64>>,
+    factor: Option<Llt<u32, f64>>,
 }
 
 impl std::fmt::Debug for Factor {
@@ -128,7 +134,7 @@ impl std::fmt::Debug for Factor {
 #[derive(Clone, Debug)]
 pub struct Pattern {
     /// None without rows.
-    symbolic: Option<SymbolicLlt<usize>>,
+    symbolic: Option<SymbolicLlt<u32>>,
 }
 
 impl Pattern {
@@ -200,7 +206,7 @@ impl FactorSize {
                     let below = blocks.supernode(k).pattern().len();
                     let columns = blocks.supernode_end()[k] - blocks.supernode_begin()[k];
                     for c in 1..=columns {
-                        factorise += ((c + below) as f64).powi(2);
+                        factorise += ((c as usize + below) as f64).powi(2);
                     }
                 }
                 // Rows of all blocks, the blocks of all rows, and for each block where it begins and ends.
@@ -210,7 +216,7 @@ impl FactorSize {
         // And the order of elimination with its inverse.
         let indices = indices + 2 * n;
         Some(Self {
-            bytes: values * size_of::<f64>() + indices * size_of::<usize>(),
+            bytes: values * size_of::<f64>() + indices * size_of::<u32>(),
             factorise,
             solve: 4.0 * values as f64,
         })

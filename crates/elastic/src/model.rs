@@ -11,25 +11,25 @@ use crate::mesh::Mesh;
 use crate::spec::Touching;
 use crate::support::Rayleigh;
 use crate::surface::SurfacePart;
-use fretwork_core::bodies::{Contactor, ContactorShape, Nodes, SystemSize};
+use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, Nodes, SystemSize};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use std::sync::OnceLock;
+use std::sync::Arc;
 
 /// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column has as many numbers, 160 kB.
 const MAX_SURFACE: usize = 20_000;
 
 /// What is formed for the length of a step.
 #[derive(Clone, Debug)]
-pub struct Formed {
+pub struct Formed<S: Space> {
     /// h and theta.
     pub of: [f64; 2],
     /// None where A is not positive definite in double precision: velocities are then not finite, and the step ends with an error.
     pub factor: Option<Factor>,
-    /// Compliance of the surface's coordinates, column by column as they are touched; empty where there are too many.
-    pub surface: Vec<OnceLock<Vec<f64>>>,
+    /// Compliance of the points of the surface, column by column as they are touched; none where there are too many.
+    pub surface: Option<Arc<Compliance<S>>>,
 }
 
-impl Formed {
+impl<S: Space> Formed<S> {
     pub fn solve(&self, x: &mut [f64]) {
         match &self.factor {
             Some(factor) => factor.solve(x, 1),
@@ -53,9 +53,6 @@ pub struct Model<S: Space> {
     pub contactors: Vec<Contactor>,
     /// The part that touches.
     pub part: Option<SurfacePart>,
-    /// Freely moving coordinates of touched points, and where each coordinate is among them.
-    pub surface: Vec<u32>,
-    pub place: Vec<u32>,
 }
 
 impl<S: Space> Model<S> {
@@ -86,14 +83,20 @@ impl<S: Space> Model<S> {
     /// K q and C v.
     pub fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
         let elastic = self.stiffness.times(&self.strained(q));
-        let mut viscous = vec![0.0; v.len()];
-        let Rayleigh { stiffness, .. } = self.damping;
-        if stiffness > 0.0 {
-            viscous = self.stiffness.times(&self.strained(v));
-            viscous.iter_mut().for_each(|f| *f *= stiffness);
-        }
+        let stretched = if self.damping.stiffness > 0.0 {
+            self.stiffness.times(&self.strained(v))
+        } else {
+            vec![0.0; v.len()]
+        };
+        [elastic, self.viscous(v, &stretched)]
+    }
+
+    /// C v, with K v.
+    pub fn viscous(&self, v: &[f64], stretched: &[f64]) -> Vec<f64> {
+        let factor = self.damping.stiffness;
+        let mut viscous = stretched.iter().map(|f| factor * f).collect::<Vec<_>>();
         self.add_mass_damping(v, &mut viscous);
-        [elastic, viscous]
+        viscous
     }
 
     /// Adds alpha M v.
@@ -103,7 +106,7 @@ impl<S: Space> Model<S> {
         }
     }
 
-    pub fn form(&self, h: f64, theta: f64) -> Formed {
+    pub fn form(&self, h: f64, theta: f64) -> Formed<S> {
         let step = h * theta;
         let free = self.freedoms.free;
         let inertia = 1.0 + step * self.damping.mass;
@@ -118,8 +121,10 @@ impl<S: Space> Model<S> {
         let free = self.freedoms.free;
         let a = self.stiffness.leading(free, 1.0, &self.mass);
         let factor = FactorSize::of(&a).unwrap_or_default();
-        let kept = if self.surface.len() <= MAX_SURFACE {
-            self.surface.len() * size_of::<f64>()
+        let points = self.part.as_ref().map_or(0, |part| part.points.len());
+        let coordinates = S::D * points;
+        let column = if coordinates <= MAX_SURFACE {
+            coordinates * S::D * size_of::<f64>()
         } else {
             0
         };
@@ -129,32 +134,46 @@ impl<S: Space> Model<S> {
             // In large strain the tangent is kept beside the stiffness.
             matrix: self.stiffness.bytes() * (1 + usize::from(large)),
             factor: factor.bytes,
-            surface: self.surface.len() * kept,
-            point: S::D * kept,
+            surface: points * column,
+            point: column,
             operations: [factor.factorise, factor.solve],
             refactorised: large,
         }
     }
 
     /// With a factor of A.
-    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> Formed {
-        let kept = self.surface.len() <= MAX_SURFACE;
-        let columns = if kept { self.surface.len() } else { 0 };
+    pub fn formed(&self, of: [f64; 2], factor: Option<Factor>) -> Formed<S> {
+        let points = self.part.as_ref().map(|part| &part.points);
+        let points = points.filter(|points| S::D * points.len() <= MAX_SURFACE);
+        let surface = points.map(|points| Arc::new(Compliance::new(points.clone())));
         Formed {
             of,
             factor,
-            surface: (0..columns).map(|_| OnceLock::new()).collect(),
+            surface,
         }
     }
 
-    /// The compliance of the surface's coordinates for an impulse on one of them.
-    pub fn column<'a>(&self, formed: &'a Formed, k: u32) -> &'a [f64] {
-        formed.surface[k as usize].get_or_init(|| {
+    /// The column of the compliance of a surface point, of which the place in the list of the kept compliance is given: of all surface
+    /// points for an impulse on it.
+    pub fn column<'a>(&self, formed: &'a Formed<S>, at: usize) -> &'a [f64] {
+        let Some(surface) = &formed.surface else {
+            return &[];
+        };
+        surface.column_or(at, |axis| {
             let mut response = vec![0.0; self.freedoms.free];
-            response[self.surface[k as usize] as usize] = 1.0;
-            formed.solve(&mut response);
-            let at = self.surface.iter().map(|c| response[*c as usize]);
-            at.collect()
+            let c = self.freedoms.of(surface.nodes()[at], axis);
+            if c < self.freedoms.free {
+                response[c] = 1.0;
+                formed.solve(&mut response);
+            }
+            move |seen| {
+                let mut velocity = S::Vector::zero();
+                for k in 0..S::D {
+                    let c = self.freedoms.of(surface.nodes()[seen], k);
+                    velocity[k] = response.get(c).copied().unwrap_or(0.0);
+                }
+                velocity
+            }
         })
     }
 }

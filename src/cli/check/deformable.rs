@@ -87,8 +87,12 @@ fn scaled(mut value: f64, units: [&str; 4]) -> String {
 fn memory<S: Space>(system: &dyn DynamicalSystem<S>, size: &SystemSize) -> String {
     let unknowns = size.unknowns;
     if size.factor == 0 {
+        let cells = match size.surface {
+            0 => String::new(),
+            all => format!(", compliance of its cells {} where all touch", bytes(all)),
+        };
         return format!(
-            "{unknowns} unknowns; memory: tables of influences {}",
+            "{unknowns} unknowns; memory: tables of influences {}{cells}",
             bytes(size.matrix)
         );
     }

@@ -18,11 +18,13 @@
 //! Sources: J. J. Moreau, "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999); M. Jean,
 //! "The non-smooth contact dynamics method", same volume.
 
+use super::compliance::Compliance;
 use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::cmp::Ordering;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// The step that a system is taken through.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -353,6 +355,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         (sum, S::Spin::zero())
     }
 
+    /// The velocity of a contactor's frame that contacts of the step are looked for with, at the velocities without contacts: here these.
+    /// A surface without inertia springs back to where it is without load, if nothing pushes it: it is expected to stay.
+    fn expected_velocity(&self, contactor: &Contactor, free: &[f64]) -> (S::Vector, S::Spin) {
+        self.contactor_velocity(contactor, free)
+    }
+
     /// Where a contactor stands and how it moves: as the nodes of its origin, without turning.
     fn contactor_motion(&self, contactor: &Contactor) -> ContactorMotion<S> {
         let (velocity, spin) = self.contactor_velocity(contactor, self.velocity());
@@ -382,6 +390,17 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// The same of points that are sums of nodes.
     fn point_compliance(&self, points: &[Nodes]) -> Vec<S::Matrix> {
         compliance_of_points(self, points)
+    }
+
+    /// The compliance of all nodes that contacts can act on, with the columns of those that are touched, where it is kept between steps:
+    /// the solver then reads it in place, and copies nothing. Here none.
+    fn kept_compliance(&self, _touched: &[u32]) -> Option<Arc<Compliance<S>>> {
+        None
+    }
+
+    /// How many nodes that compliance has; none where it is not kept.
+    fn kept_nodes(&self) -> Option<usize> {
+        None
     }
 
     /// What holds and drives it, always in the same order.

@@ -1,5 +1,6 @@
 //! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
 //! rigid.
+pub mod compliance;
 pub mod delay;
 pub mod drive;
 pub mod dynamical_system;
@@ -12,6 +13,7 @@ pub mod system_report;
 pub mod systems;
 pub mod tensor;
 
+pub use compliance::{Compliance, block_of, column_of};
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{
     Contactor, ContactorMotion, ContactorShape, DeformedMesh, DynamicalSystem, Holder, Nodes,

@@ -1,5 +1,6 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
+use super::compliance::Compliance;
 use super::dynamical_system::{
     Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork,
 };
@@ -9,6 +10,7 @@ use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Which contactor of which system a body stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -203,7 +205,7 @@ impl<S: Space> Systems<S> {
             entry.system.linearise(step);
             entry.free = entry.system.free_velocity(step);
             for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
-                free[*body as usize] = entry.system.contactor_velocity(contactor, &entry.free);
+                free[*body as usize] = entry.system.expected_velocity(contactor, &entry.free);
             }
         }
     }
@@ -233,6 +235,16 @@ impl<S: Space> Systems<S> {
     /// Compliance of nodes of a system, see [`DynamicalSystem::compliance`].
     pub fn compliance(&self, system: usize, nodes: &[u32]) -> Vec<S::Matrix> {
         self.entries[system].system.compliance(nodes)
+    }
+
+    /// The compliance that a system keeps, where at least a third of its nodes are touched: an impulse changes the velocities of all.
+    pub fn kept_compliance(&self, system: usize, touched: &[u32]) -> Option<Arc<Compliance<S>>> {
+        let system = &self.entries[system].system;
+        let nodes = system.kept_nodes()?;
+        if 3 * touched.len() < nodes {
+            return None;
+        }
+        system.kept_compliance(touched)
     }
 
     /// Compliance of points of a system, see [`DynamicalSystem::point_compliance`].

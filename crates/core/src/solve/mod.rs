@@ -14,6 +14,7 @@ pub mod cone;
 pub mod error;
 pub mod extrapolation;
 pub mod form;
+mod loaded;
 pub mod local;
 mod measure;
 pub mod nlgs;

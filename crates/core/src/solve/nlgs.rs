@@ -129,6 +129,8 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         let fresh = report.iterations <= every;
         if fresh {
             problem.reload(options.parallel);
+        } else {
+            problem.settle_systems();
         }
         let mut sums = measure(problem, options.parallel);
         if ended || sums.error(options.norm, &scale(problem, free)) <= options.tolerance {
@@ -176,6 +178,7 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
     for _ in 0..count {
         sweep(problem, relaxation, parallel);
     }
+    problem.settle_systems();
 }
 
 impl Report {
@@ -336,6 +339,7 @@ impl<S: Space> Problem<S> {
         for row in &self.of_systems {
             row.load(&mut self.solver_bodies, &mut self.systems);
         }
+        self.settle_systems();
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         for row in &self.moments {
             solver_bodies.alone(row.bodies, |a, b| row.load(a, b));

@@ -1,73 +1,161 @@
 //! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and their compliance.
 
 use super::form::{ContactForm, Mobility, Place, Problem};
+use super::loaded::{Loaded, add_response, vector};
 use super::row::{SystemRow, Term};
 use super::side::Side;
+use crate::bodies::{Compliance, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
 /// The nodes of a system that contacts of the step act on. The solver knows nothing else of it; the system finds the rest
 /// of its velocities from the impulses on these nodes once the problem is solved.
 ///
-/// Copies share the blocks: a step that is solved several times hands copies of one to the problem.
+/// Copies share the compliance: a step that is solved several times hands copies of one to the problem.
 #[derive(Clone, Debug)]
 pub struct NodalSystem<S: Space> {
     /// Ids of the nodes in the system, in increasing order.
     pub nodes: Vec<u32>,
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
-    /// Column by column: the responses of all nodes to an impulse on one are read in a row in each update of a contact.
-    compliance: Arc<Vec<S::Matrix>>,
-    pub(super) velocity: Vec<S::Vector>,
+    compliance: Columns<S>,
+    /// Velocities of all nodes, one after the other (m/s); of a large system those at the last [`Self::settle`].
+    velocity: Vec<f64>,
+    /// What sweeps follow of a large system.
+    loaded: Option<Loaded<S>>,
+}
+
+/// Fewest nodes of a large system, of which sweeps follow loaded nodes alone. Below that all columns fit in a cache.
+const LARGE: usize = 64;
+
+/// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an impulse on one are read in a row in each
+/// update of a contact.
+#[derive(Clone, Debug)]
+enum Columns<S: Space> {
+    /// Of the step, one after the other.
+    Own(Arc<Vec<f64>>),
+    /// That the system keeps, with the columns of touched nodes.
+    Kept(Arc<Compliance<S>>),
+}
+
+impl<S: Space> Columns<S> {
+    fn column(&self, at: usize, count: usize) -> &[f64] {
+        let size = S::D * S::D * count;
+        match self {
+            Self::Own(all) => &all[at * size..][..size],
+            Self::Kept(compliance) => compliance.column(at),
+        }
+    }
 }
 
 impl<S: Space> NodalSystem<S> {
+    /// Of all nodes of a compliance that the system keeps, with their free velocities (m/s). Contacts act on nodes whose columns are
+    /// there.
+    pub fn kept(compliance: Arc<Compliance<S>>, free: Vec<S::Vector>) -> Self {
+        let nodes = compliance.nodes().to_vec();
+        Self::with(nodes, free, Columns::Kept(compliance))
+    }
+
     /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by row (1/kg).
-    pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, mut compliance: Vec<S::Matrix>) -> Self {
+    pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: &[S::Matrix]) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());
         let count = nodes.len();
-        for a in 1..count {
-            for b in 0..a {
-                compliance.swap(a * count + b, b * count + a);
+        let mut columns = Vec::with_capacity(S::D * S::D * compliance.len());
+        for b in 0..count {
+            for axis in 0..S::D {
+                for a in 0..count {
+                    let block = &compliance[a * count + b];
+                    columns.extend((0..S::D).map(|k| block.entry(k, axis)));
+                }
             }
         }
-        Self {
-            velocity: free.clone(),
+        Self::with(nodes, free, Columns::Own(Arc::new(columns)))
+    }
+
+    fn with(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: Columns<S>) -> Self {
+        let mut system = Self {
+            loaded: (nodes.len() >= LARGE).then(|| Loaded::new(nodes.len())),
+            velocity: Vec::with_capacity(S::D * nodes.len()),
             nodes,
             free,
-            compliance: Arc::new(compliance),
-        }
+            compliance,
+        };
+        system.set_free();
+        system
     }
 
     /// Compliance P_a A^-1 P_b^T of two of its nodes, by their places in the list (1/kg).
-    pub(super) fn block(&self, a: u32, b: u32) -> &S::Matrix {
-        &self.column(b as usize)[a as usize]
+    pub(super) fn block(&self, a: u32, b: u32) -> S::Matrix {
+        block_of::<S>(self.column(b as usize), self.nodes.len(), a as usize)
     }
 
-    /// The blocks of all nodes for an impulse on one.
-    fn column(&self, at: usize) -> &[S::Matrix] {
-        let count = self.nodes.len();
-        &self.compliance[at * count..(at + 1) * count]
+    /// The responses of all nodes for an impulse on one.
+    fn column(&self, at: usize) -> &[f64] {
+        self.compliance.column(at, self.nodes.len())
     }
 
     /// The velocities that impulses on its nodes give.
     pub(super) fn response(&self, impulses: &[S::Vector]) -> Vec<S::Vector> {
-        let mut velocities = vec![S::Vector::zero(); impulses.len()];
+        let row = S::D * impulses.len();
+        let mut velocities = vec![0.0; row];
         for (at, p) in impulses.iter().enumerate() {
-            for (velocity, block) in velocities.iter_mut().zip(self.column(at)) {
-                *velocity += block.apply(p);
+            if *p != S::Vector::zero() {
+                let column = self.column(at);
+                add_response::<S>(&mut velocities, |axis| &column[axis * row..][..row], p);
             }
         }
-        velocities
+        let all = velocities.chunks_exact(S::D);
+        all.map(S::Vector::from_slice).collect()
     }
 
-    /// Adds what an impulse on a node does to the velocities of all.
+    /// The current velocity of a node (m/s). Of a large system it is exact for loaded nodes, and for the others after
+    /// [`Self::settle`].
+    #[inline]
+    pub(super) fn velocity(&self, at: u32) -> S::Vector {
+        let loaded = self.loaded.as_ref().and_then(|l| l.velocity(at));
+        loaded.unwrap_or_else(|| vector::<S>(&self.velocity, at as usize))
+    }
+
+    /// Adds what an impulse on a node does to velocities.
     pub(super) fn push(&mut self, at: u32, impulse: &S::Vector) {
-        let count = self.nodes.len();
-        let column = &self.compliance[at as usize * count..][..count];
-        for (velocity, block) in self.velocity.iter_mut().zip(column) {
-            *velocity += block.apply(impulse);
+        let (compliance, count) = (&self.compliance, self.nodes.len());
+        let column = |b: usize| compliance.column(b, count);
+        if let Some(loaded) = &mut self.loaded {
+            return loaded.push(at, impulse, &self.velocity, column);
+        }
+        let (column, row) = (column(at as usize), S::D * count);
+        add_response::<S>(
+            &mut self.velocity,
+            |axis| &column[axis * row..][..row],
+            impulse,
+        );
+    }
+
+    /// The same as one of many impulses: velocities are right after [`Self::settle`].
+    pub(super) fn load(&mut self, at: u32, impulse: &S::Vector) {
+        match &mut self.loaded {
+            Some(loaded) => loaded.load(at, impulse),
+            None => self.push(at, impulse),
+        }
+    }
+
+    /// Finds the velocities of all nodes.
+    pub(super) fn settle(&mut self) {
+        let (compliance, count) = (&self.compliance, self.nodes.len());
+        if let Some(loaded) = &mut self.loaded {
+            loaded.settle(&mut self.velocity, |b| compliance.column(b, count));
+        }
+    }
+
+    /// Gives all nodes their free velocities.
+    fn set_free(&mut self) {
+        self.velocity.clear();
+        for v in &self.free {
+            self.velocity.extend((0..S::D).map(|k| v[k]));
+        }
+        if let Some(loaded) = &mut self.loaded {
+            loaded.adopt(&self.velocity);
         }
     }
 }
@@ -144,9 +232,9 @@ impl<S: Space> Problem<S> {
     pub(super) fn work_on_systems(&self) -> f64 {
         let mut work = 0.0;
         for (system, impulses) in self.systems.iter().zip(self.node_impulses()) {
-            let velocities = system.velocity.iter().zip(&system.free);
+            let velocities = system.velocity.chunks_exact(S::D).zip(&system.free);
             for (p, (v, free)) in impulses.iter().zip(velocities) {
-                work += p.dot(&(*v - *free));
+                work += p.dot(&(S::Vector::from_slice(v) - *free));
             }
         }
         work
@@ -160,10 +248,15 @@ impl<S: Space> Problem<S> {
             .collect()
     }
 
+    /// Finds the velocities of all nodes of systems, after sweeps.
+    pub(super) fn settle_systems(&mut self) {
+        self.systems.iter_mut().for_each(NodalSystem::settle);
+    }
+
     /// Gives the nodes of systems their free velocities.
     pub(super) fn free_systems(&mut self) {
         for system in &mut self.systems {
-            system.velocity.clone_from(&system.free);
+            system.set_free();
         }
     }
 }
@@ -222,7 +315,11 @@ mod tests {
                 Matrix2::from_diagonal_element(inverse)
             });
             let free = (0..3).map(free).collect();
-            problem.push_system(NodalSystem::new(vec![4, 5, 7], free, blocks.collect()));
+            problem.push_system(NodalSystem::new(
+                vec![4, 5, 7],
+                free,
+                &blocks.collect::<Vec<_>>(),
+            ));
         }
         let node = |k: usize| match k {
             3 => Side::Rigid {
@@ -311,7 +408,7 @@ mod tests {
             });
             let free = (0..count).map(free).collect();
             let ids = (0..count as u32).collect();
-            problem.push_system(NodalSystem::new(ids, free, blocks.collect()));
+            problem.push_system(NodalSystem::new(ids, free, &blocks.collect::<Vec<_>>()));
         }
         assert_eq!(problem.systems[0].block(0, 2).entry(0, 1), -0.04);
         let side = |system: u32, terms: &[(u32, f64)]| Side::Nodes {

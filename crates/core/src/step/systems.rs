@@ -2,28 +2,38 @@
 //! those of rigid bodies.
 
 use super::{Simulation, StepError};
-use crate::bodies::{ContactorShape, DynamicalSystem, Nodes, SystemStep};
+use crate::bodies::{Compliance, ContactorShape, DynamicalSystem, Nodes, SystemStep};
 use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::{NodalSystem, Side};
+use std::sync::Arc;
 
 /// What the contacts of a step act on where dynamical systems take part, found once for the current contacts.
 #[derive(Debug)]
 pub(super) struct SystemContacts<S: Space> {
-    /// The sides of each contact, in the network's order; none where both are rigid, and empty without systems.
-    sides: Vec<Option<[Side<S>; 2]>>,
-    /// What the solver knows of each system: touched nodes, or points between them.
+    /// The sides of the contacts with systems, in the network's order.
+    sides: Vec<[Side<S>; 2]>,
+    /// Where each contact of the network stands among them, [`RIGID`] where both sides are rigid; empty without systems.
+    places: Vec<u32>,
+    /// The nodes of each system that are touched, in increasing order.
+    touched: Vec<Vec<u32>>,
+    /// What the solver knows of each system: nodes, or points between them.
     nodal: Vec<NodalSystem<S>>,
     /// By system the points that stand for nodes; empty where nodes stand for themselves.
     points: Vec<Vec<Nodes>>,
 }
 
+/// Of a contact without systems.
+const RIGID: u32 = u32::MAX;
+
 impl<S: Space> Default for SystemContacts<S> {
     fn default() -> Self {
         Self {
             sides: Vec::new(),
+            places: Vec::new(),
+            touched: Vec::new(),
             nodal: Vec::new(),
             points: Vec::new(),
         }
@@ -193,6 +203,8 @@ impl<S: Space> Simulation<S> {
     /// Forgets what the step before found of systems, whose compliance is that of its A.
     pub(super) fn forget_system_contacts(&mut self) {
         self.workspace.systems.sides.clear();
+        self.workspace.systems.places.clear();
+        self.workspace.systems.touched.clear();
         self.workspace.systems.nodal.clear();
         self.workspace.systems.points.clear();
     }
@@ -203,59 +215,90 @@ impl<S: Space> Simulation<S> {
         if self.state.systems.is_empty() {
             return;
         }
-        let contacts = self.state.network.contacts.iter();
-        let sides: Vec<_> = contacts.map(|contact| self.sides(contact)).collect();
+        let mut found = SystemContacts::default();
+        for contact in &self.state.network.contacts {
+            let place = self.sides(contact).map_or(RIGID, |sides| {
+                found.sides.push(sides);
+                found.sides.len() as u32 - 1
+            });
+            found.places.push(place);
+        }
         let systems = self.state.systems.len();
         let mut touched: Vec<Vec<u32>> = vec![Vec::new(); systems];
-        let mut places: Vec<Vec<Nodes>> = vec![Vec::new(); systems];
-        for side in sides.iter().flatten().flatten() {
+        for side in found.sides.iter().flatten() {
             if let Side::Nodes { system, nodes } = side {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
-                places[*system as usize].push(*nodes);
+            }
+        }
+        let mut kept = Vec::with_capacity(systems);
+        for (system, nodes) in touched.iter_mut().enumerate() {
+            nodes.sort_unstable();
+            nodes.dedup();
+            kept.push(self.state.systems.kept_compliance(system, nodes));
+        }
+        let mut points: Vec<Vec<Nodes>> = vec![Vec::new(); systems];
+        for side in found.sides.iter().flatten() {
+            if let Side::Nodes { system, nodes } = side {
+                let system = *system as usize;
+                if kept[system].is_none() {
+                    points[system].push(*nodes);
+                }
             }
         }
         let before = std::mem::take(&mut self.workspace.systems);
-        let mut known = before.nodal.into_iter().zip(before.points);
-        let mut found = SystemContacts {
-            sides,
-            ..SystemContacts::default()
-        };
-        for (system, (mut nodes, points)) in touched.into_iter().zip(places).enumerate() {
-            nodes.sort_unstable();
-            nodes.dedup();
+        let known = before.nodal.into_iter().zip(before.points);
+        let mut known = before.touched.into_iter().zip(known);
+        let touched = touched.into_iter().zip(points).zip(kept);
+        for (system, ((nodes, points), kept)) in touched.enumerate() {
             let points = fewer_points(points, nodes.len());
-            if !points.is_empty() {
-                nodes = (0..points.len() as u32).collect();
-            }
             let same = known.next();
-            let same = same.filter(|(nodal, of)| nodal.nodes == nodes && *of == points);
-            let nodal = same.map_or_else(|| self.nodal(system, nodes, &points), |(nodal, _)| nodal);
+            let same = same.filter(|(touched, (_, of))| *touched == nodes && *of == points);
+            let nodal = same.map_or_else(
+                || self.nodal(system, &nodes, &points, kept),
+                |(_, (nodal, _))| nodal,
+            );
             found.nodal.push(nodal);
             found.points.push(points);
+            found.touched.push(nodes);
         }
         self.workspace.systems = found;
     }
 
-    /// A system as the solver sees it, by nodes or, where there are any, by points.
-    fn nodal(&self, system: usize, nodes: Vec<u32>, points: &[Nodes]) -> NodalSystem<S> {
+    /// A system as the solver sees it, by all nodes of the compliance that it keeps, by touched nodes, or, where there are any, by points.
+    fn nodal(
+        &self,
+        system: usize,
+        touched: &[u32],
+        points: &[Nodes],
+        kept: Option<Arc<Compliance<S>>>,
+    ) -> NodalSystem<S> {
         let systems = &self.state.systems;
+        let free = |nodes: &[u32]| -> Vec<S::Vector> {
+            let all = nodes.iter();
+            all.map(|n| systems.free_velocity_of(system, *n)).collect()
+        };
+        if let Some(kept) = kept {
+            let free = free(kept.nodes());
+            return NodalSystem::kept(kept, free);
+        }
         if points.is_empty() {
-            let free = nodes.iter().map(|n| systems.free_velocity_of(system, *n));
-            let free = free.collect();
-            let compliance = systems.compliance(system, &nodes);
-            return NodalSystem::new(nodes, free, compliance);
+            let compliance = systems.compliance(system, touched);
+            return NodalSystem::new(touched.to_vec(), free(touched), &compliance);
         }
         let free = points.iter().map(|p| systems.free_velocity_at(system, p));
-        let free = free.collect();
-        NodalSystem::new(nodes, free, systems.point_compliance(system, points))
+        let nodes = (0..points.len() as u32).collect();
+        let compliance = systems.point_compliance(system, points);
+        NodalSystem::new(nodes, free.collect(), &compliance)
     }
 
     /// Hands systems, as far as contacts see them, and all contacts to the solver.
     pub(super) fn pose_with_systems(&mut self) {
         let SystemContacts {
             sides,
+            places,
             nodal,
             points,
+            ..
         } = &self.workspace.systems;
         let posed = |side: &Side<S>| match side {
             Side::Nodes { system, nodes } => {
@@ -272,8 +315,8 @@ impl<S: Space> Simulation<S> {
         for system in nodal {
             problem.push_system(system.clone());
         }
-        for (form, sides) in self.workspace.forms.iter().zip(sides) {
-            match sides {
+        for (form, place) in self.workspace.forms.iter().zip(places) {
+            match sides.get(*place as usize) {
                 None => problem.push(form),
                 Some(sides) => {
                     let sides = sides.each_ref().map(posed);
@@ -341,8 +384,12 @@ impl<S: Space> Simulation<S> {
             why,
         })?;
         for system in &changed {
-            let nodes = std::mem::take(&mut self.workspace.systems.nodal[*system].nodes);
-            let again = self.nodal(*system, nodes, &self.workspace.systems.points[*system]);
+            let SystemContacts {
+                touched, points, ..
+            } = &self.workspace.systems;
+            let (touched, points) = (&touched[*system], &points[*system]);
+            let kept = self.state.systems.kept_compliance(*system, touched);
+            let again = self.nodal(*system, touched, points, kept);
             self.workspace.systems.nodal[*system] = again;
         }
         if !changed.is_empty() {
@@ -368,7 +415,8 @@ impl<S: Space> Simulation<S> {
 
     /// Velocity of the candidate of the `k`-th contact relative to its antagonist where a system is one of them (m/s).
     pub(super) fn relative_velocity_of_sides(&self, k: usize) -> Option<S::Vector> {
-        let [a, b] = self.workspace.systems.sides.get(k)?.as_ref()?;
+        let systems = &self.workspace.systems;
+        let [a, b] = systems.sides.get(*systems.places.get(k)? as usize)?;
         Some(self.velocity_of_side(a) - self.velocity_of_side(b))
     }
 }

@@ -1,13 +1,14 @@
 //! A half-space as a dynamical system.
 
-use super::{Cells, HalfSpace};
+use super::{Cells, HalfSpace, MAX_KEPT};
 use crate::compiled::Deformable;
 use fretwork_core::bodies::{
-    Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemSize, SystemStep,
-    SystemWork, TouchingSurface,
+    Compliance, Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemSize,
+    SystemStep, SystemWork, TouchingSurface,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use std::sync::Arc;
 
 impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
     fn name(&self) -> &str {
@@ -49,6 +50,11 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.force.fill(0.0);
+        let of = |s: &SystemStep<S>| [s.h, s.theta];
+        if self.held() <= MAX_KEPT && self.step.as_ref().map(of) != Some(of(step)) {
+            let cells = (0..self.fixed.grid.len() as u32).collect();
+            self.kept = Some(Arc::new(Compliance::new(cells)));
+        }
         self.step = Some(*step);
     }
 
@@ -227,6 +233,10 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         Nodes::sum(&weights).unwrap_or(contactor.nodes)
     }
 
+    fn expected_velocity(&self, _contactor: &Contactor, free: &[f64]) -> (S::Vector, S::Spin) {
+        (self.entries(free, self.fixed.grid.len()), S::Spin::zero())
+    }
+
     fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         if contactor.shape != ContactorShape::Surface {
             return None;
@@ -249,35 +259,28 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let Some(SystemStep { h, theta, .. }) = self.step else {
-            return vec![S::Matrix::uniform(0.0); nodes.len() * nodes.len()];
-        };
-        let scale = 1.0 / (h * h * theta);
-        let mut inertia = S::Vector::zero();
-        for axis in (0..S::D).filter(|a| self.yields(*a)) {
-            inertia[axis] = 1.0 / self.fixed.mass;
+        let block = self.blocks();
+        let pairs = nodes
+            .iter()
+            .flat_map(|a| nodes.iter().map(move |b| (*a, *b)));
+        pairs.map(|(a, b)| block(a, b)).collect()
+    }
+
+    fn kept_compliance(&self, touched: &[u32]) -> Option<Arc<Compliance<S>>> {
+        let kept = self.kept.as_ref()?;
+        let block = self.blocks();
+        for b in touched {
+            kept.column_or(*b as usize, |axis| {
+                let (block, mut unit) = (&block, S::Vector::zero());
+                unit[axis] = 1.0;
+                move |a| block(a as u32, *b).apply(&unit)
+            });
         }
-        let inertia = S::Matrix::diagonal(&inertia);
-        let mut units = [S::Vector::zero(); 3];
-        for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
-            unit[axis] = 1.0;
-        }
-        let mut out = Vec::with_capacity(nodes.len() * nodes.len());
-        for a in nodes {
-            for b in nodes {
-                let influence = self.fixed.kernel.between(*a as usize, *b as usize);
-                let mut block = inertia;
-                for j in 0..S::D {
-                    let mut column = S::Vector::zero();
-                    for i in 0..S::D {
-                        column[i] = scale * self.sign(i) * self.sign(j) * influence[i][j];
-                    }
-                    block = block + S::Matrix::dyad(&column, &units[j]);
-                }
-                out.push(block);
-            }
-        }
-        out
+        Some(Arc::clone(kept))
+    }
+
+    fn kept_nodes(&self) -> Option<usize> {
+        self.kept.as_ref().map(|kept| kept.nodes().len())
     }
 
     fn holders(&self) -> Vec<Holder> {
@@ -350,7 +353,14 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
     fn size(&self) -> Option<SystemSize> {
         // A surface that rolls has a second table, of the material behind.
         let tables = 1 + usize::from(self.fixed.rolling.is_some());
+        let column = if self.held() <= MAX_KEPT {
+            self.held() * S::D * size_of::<f64>()
+        } else {
+            0
+        };
         Some(SystemSize {
+            surface: self.fixed.grid.len() * column,
+            point: column,
             unknowns: self.held(),
             matrix: tables * self.fixed.kernel.bytes(),
             operations: [0.0, self.fixed.kernel.operations()],

@@ -30,12 +30,17 @@ pub use profile::Profile;
 
 use crate::compiled::Deformable;
 use crate::material::Elasticity;
-use fretwork_core::bodies::{Contactor, ContactorShape, Dof, Nodes, SystemStep, TimeFunction};
-use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::bodies::{
+    Compliance, Contactor, ContactorShape, Dof, Nodes, SystemStep, TimeFunction,
+};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
 /// Most cells: each that touches by its point is a body of its own.
 const MAX_CELLS: usize = 1_000_000;
+
+/// Most coordinates of cells whose compliance is kept, as far as they were touched: 128 MB.
+const MAX_KEPT: usize = 4_000;
 
 /// Which side of its surface a half-space fills.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -130,6 +135,8 @@ pub struct HalfSpace<S: Space> {
     behind: Option<Arc<(f64, Kernel)>>,
     /// Displacements of the material that has come to each cell of a surface that rolls (m).
     passing: Vec<f64>,
+    /// The compliance of its cells for the length of the step, where there are not too many.
+    kept: Option<Arc<Compliance<S>>>,
 }
 
 impl<S: Deformable> HalfSpace<S> {
@@ -198,6 +205,7 @@ impl<S: Deformable> HalfSpace<S> {
             step: None,
             behind: None,
             passing: Vec::new(),
+            kept: None,
         };
         if spec.touching == Cells::Surface {
             let vertices =
@@ -266,6 +274,34 @@ impl<S: Deformable> HalfSpace<S> {
         (0..cells * d)
             .map(|k| self.sign(k % d) * found[k % d][k / d])
             .collect()
+    }
+
+    /// Blocks of the compliance of two cells in the last step (1/kg), with the inertia of the holder; zero before the first.
+    fn blocks(&self) -> impl Fn(u32, u32) -> S::Matrix {
+        let scale = self.step.map(|s| 1.0 / (s.h * s.h * s.theta));
+        let mut inertia = S::Vector::zero();
+        for axis in (0..S::D).filter(|a| self.yields(*a)) {
+            inertia[axis] = 1.0 / self.fixed.mass;
+        }
+        let mut units = [S::Vector::zero(); 3];
+        for (axis, unit) in units.iter_mut().enumerate().take(S::D) {
+            unit[axis] = 1.0;
+        }
+        move |a, b| {
+            let Some(scale) = scale else {
+                return S::Matrix::uniform(0.0);
+            };
+            let influence = self.fixed.kernel.between(a as usize, b as usize);
+            let mut block = S::Matrix::diagonal(&inertia);
+            for j in 0..S::D {
+                let mut column = S::Vector::zero();
+                for i in 0..S::D {
+                    column[i] = scale * self.sign(i) * self.sign(j) * influence[i][j];
+                }
+                block = block + S::Matrix::dyad(&column, &units[j]);
+            }
+            block
+        }
     }
 
     /// Elastic displacement of a cell (m).

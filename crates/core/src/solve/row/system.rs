@@ -80,16 +80,17 @@ impl<S: Space> SystemRow<S> {
             u += (body.v + S::spin_velocity(&body.s, &side.arm)) * sign;
         }
         for term in &self.terms {
-            u += systems[term.system as usize].velocity[term.node as usize] * term.weight;
+            u += systems[term.system as usize].velocity(term.node) * term.weight;
         }
         u
     }
 
+    /// Adds what an impulse does to the velocities of bodies, and gives `on_node` the system, the node and the impulse on it.
     fn push(
         &self,
         p: &S::Vector,
         solver_bodies: &mut [SolverBody<S>],
-        systems: &mut [NodalSystem<S>],
+        mut on_node: impl FnMut(u32, u32, &S::Vector),
     ) {
         if *p == S::Vector::zero() {
             return;
@@ -101,7 +102,7 @@ impl<S: Space> SystemRow<S> {
             body.s += side.inverse_spin.apply(&S::moment(&side.arm, &p));
         }
         for term in &self.terms {
-            systems[term.system as usize].push(term.node, &(*p * term.weight));
+            on_node(term.system, term.node, &(*p * term.weight));
         }
     }
 
@@ -114,12 +115,17 @@ impl<S: Space> SystemRow<S> {
     ) {
         let u = self.relative(solver_bodies, systems);
         let change = self.contact.update(u, relaxation);
-        self.push(&change, solver_bodies, systems);
+        self.push(&change, solver_bodies, |system, node, p| {
+            systems[system as usize].push(node, p);
+        });
     }
 
-    /// Adds what the stored impulse does to the velocities.
+    /// Adds what the stored impulse does to the velocities; those of nodes are right once their systems are settled.
     pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
-        self.push(self.contact.impulse(), solver_bodies, systems);
+        let impulse = self.contact.impulse();
+        self.push(impulse, solver_bodies, |system, node, p| {
+            systems[system as usize].load(node, p);
+        });
     }
 
     /// Adds its impulse to those on the nodes of the systems, by system.
@@ -182,7 +188,7 @@ impl<S: Space> SystemRow<S> {
             body.v.dot(&body.v) + body.s.dot(&body.s)
         });
         let nodes = self.terms.iter().map(|term| {
-            let v = systems[term.system as usize].velocity[term.node as usize] * term.weight;
+            let v = systems[term.system as usize].velocity(term.node) * term.weight;
             v.dot(&v)
         });
         let own: f64 = rigid.chain(nodes).sum();
