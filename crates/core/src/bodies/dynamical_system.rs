@@ -399,6 +399,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         Vec::new()
     }
 
+    /// Places of the points of that mesh at the start of the run, without load (m), of a body that travels as grains do; none of others, of
+    /// which [`DeformedMesh::points`] stay where they are.
+    fn mesh_at_start(&self) -> Vec<S::Vector> {
+        Vec::new()
+    }
+
     /// The surface that touches, for tractions along it; none of systems of which tractions are not known. Its points and facets stay
     /// the same over a run.
     fn touching_surface(&self) -> Option<TouchingSurface<S>> {

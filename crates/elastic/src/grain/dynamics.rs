@@ -343,6 +343,27 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         })
     }
 
+    fn mesh_velocity(&self) -> Vec<S::Vector> {
+        let (model, rotation) = (&self.model, &self.state.rotation);
+        let (velocity, spin) = Self::of_frame(&self.state.velocity);
+        let rates = model
+            .shape
+            .displacements(Self::of_modes(&self.state.velocity));
+        let points = model.shape.mesh().points().iter().zip(self.displacements());
+        let moves = points.zip(rates).map(|((x, u), rate)| {
+            let arm = S::rotate(rotation, &(*x * model.size + u));
+            velocity + S::spin_velocity(&spin, &arm) + S::rotate(rotation, &(rate * model.scale))
+        });
+        moves.collect()
+    }
+
+    fn mesh_at_start(&self) -> Vec<S::Vector> {
+        let (at, rotation) = &self.model.origin;
+        let points = self.model.shape.mesh().points().iter();
+        let placed = points.map(|x| *at + S::rotate(rotation, &(*x * self.model.size)));
+        placed.collect()
+    }
+
     fn small_strain(&self) -> Option<[f64; 2]> {
         let displacements = self.displacements();
         let over = 1.0 / self.model.size;

@@ -86,6 +86,8 @@ struct Model<S: Space> {
     scale: f64,
     /// lambda of each mode (1/s^2).
     rates: Vec<f64>,
+    /// Where it was made, and its orientation there.
+    origin: (S::Vector, S::Rotation),
 }
 
 /// The state of a grain between two steps.
@@ -144,6 +146,7 @@ impl<S: Deformable> ElasticGrain<S> {
             },
             scale: 1.0 / (density * size.powi(S::D as i32)).sqrt(),
             rates: shape.rates().iter().map(|r| rate * r).collect(),
+            origin: (spec.position, spec.rotation),
             name: spec.name,
             shape: Arc::clone(shape),
             size,
