@@ -207,6 +207,20 @@ fn solver(case: &Case) -> Result<(), ValidationError> {
             "0 (never) or the fraction of a radius above which an overlap is removed, below 1";
         return outside("projection", s.projection, expected);
     }
+    let deforms = [
+        ("elastic_grains", !case.elastic_grains.is_empty()),
+        ("elastic", !case.elastic.is_empty()),
+        ("half_spaces", !case.half_spaces.is_empty()),
+    ];
+    if let Some((field, _)) = deforms
+        .into_iter()
+        .find(|(_, any)| *any && s.projection > 0.0)
+    {
+        let message = format!(
+            "moves rigid grains and first bodies apart, not what deforms (`{field}`); set it to 0, and `solver.correction` above 0 to have overlaps removed"
+        );
+        return Err(ValidationError::new("solver.projection", message));
+    }
     if !(1.0..2.0).contains(&s.relaxation) {
         let expected = "a number from 1 (none) to below 2";
         return outside("relaxation", s.relaxation, expected);

@@ -119,3 +119,17 @@ fn grains_that_have_to_be_rigid() {
         &["one shape"],
     );
 }
+
+#[test]
+fn projection_of_overlaps() {
+    let marked = soft(PLANE, "[(material: \"grain\")]");
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let case = trial.write("case.ron", marked);
+    let sets = ["--set", "solver.projection=0.01"];
+    trial.refuses(
+        &case,
+        &sets,
+        &["projection", "elastic_grains", "set it to 0"],
+    );
+}

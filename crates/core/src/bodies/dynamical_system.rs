@@ -210,8 +210,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse, gradients to all nodes at
 /// a time, and Newton and the interior point form W, of which the blocks between all contacts of a system are filled. Where these have
 /// more than some ten million entries there are products alone, and methods that need W are refused
-/// ([`crate::solve::refusal`]). Nodes take up forces, no moments: a law that resists rotation is refused
-/// ([`crate::step::StepError::SystemRotation`]), and so is the projection of overlaps.
+/// ([`crate::solve::refusal`]). A law that resists rotation needs a [`turning_node`](DynamicalSystem::turning_node), and is refused
+/// without ([`crate::step::StepError::SystemRotation`]); so is the projection of overlaps with any system.
 ///
 /// # Systems that are not linear
 /// With internal forces f(q) in place of K q a step is taken with the tangent: `linearise` forms K = df/dq and A at the state
@@ -325,6 +325,13 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// contactor that does not turn.
     fn contact_nodes(&self, contactor: &Contactor, _arm: &S::Vector) -> Nodes {
         contactor.nodes
+    }
+
+    /// A node that turns with a contactor, after those of points, and a length (m): the velocity of the node is the angular velocity of the
+    /// contactor times this length (in the plane along x), and an impulse p on it is a moment of p times the length. Laws that resist
+    /// rotation act on it. None of contactors that take up no moments.
+    fn turning_node(&self, _contactor: &Contactor) -> Option<(u32, f64)> {
+        None
     }
 
     /// The surface of a contactor that is one, in the frame of the contactor, as it is now.

@@ -7,7 +7,7 @@ use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
-use crate::solve::{NodalSystem, Side};
+use crate::solve::{MomentForm, NodalSystem, Side};
 
 /// What the contacts of a step act on where dynamical systems take part, found once for the current contacts.
 #[derive(Debug)]
@@ -42,6 +42,12 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
         points.clear();
     }
     points
+}
+
+/// A point as the solver knows it: its place among the points of the system where there are any, or itself.
+fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
+    let at = points.binary_search_by(|other| other.order(point));
+    at.map_or(*point, |at| Nodes::one(at as u32))
 }
 
 impl<S: Space> Simulation<S> {
@@ -200,6 +206,29 @@ impl<S: Space> Simulation<S> {
     /// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
     /// systems of which no other nodes are touched.
     pub(super) fn find_system_contacts(&mut self) {
+        self.find_touched_nodes(&[]);
+    }
+
+    /// The same with the nodes that laws turn which resist rotation, once these laws were asked.
+    pub(super) fn find_turned_systems(&mut self) {
+        let moments = std::mem::take(&mut self.workspace.moments);
+        if !moments.is_empty() {
+            self.find_touched_nodes(&moments);
+        }
+        self.workspace.moments = moments;
+    }
+
+    /// By side of a contact the system that its moment turns, with the node and its length (m).
+    fn turned(&self, contact: u32) -> [Option<(u32, u32, f64)>; 2] {
+        let bodies = self.state.network.contacts[contact as usize].bodies;
+        bodies.map(|body| {
+            let carrier = self.state.bodies.carrier(body as usize)?;
+            let (node, length) = self.state.systems.turning_node(carrier)?;
+            Some((carrier.system, node, length))
+        })
+    }
+
+    fn find_touched_nodes(&mut self, moments: &[MomentForm<S>]) {
         if self.state.systems.is_empty() {
             return;
         }
@@ -212,6 +241,12 @@ impl<S: Space> Simulation<S> {
             if let Side::Nodes { system, nodes } = side {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
                 places[*system as usize].push(*nodes);
+            }
+        }
+        for form in moments {
+            for (system, node, _) in self.turned(form.contact).into_iter().flatten() {
+                touched[system as usize].push(node);
+                places[system as usize].push(Nodes::one(node));
             }
         }
         let before = std::mem::take(&mut self.workspace.systems);
@@ -258,14 +293,10 @@ impl<S: Space> Simulation<S> {
             points,
         } = &self.workspace.systems;
         let posed = |side: &Side<S>| match side {
-            Side::Nodes { system, nodes } => {
-                let points = &points[*system as usize];
-                let at = points.binary_search_by(|point| point.order(nodes));
-                Side::Nodes {
-                    system: *system,
-                    nodes: at.map_or(*nodes, |at| Nodes::one(at as u32)),
-                }
-            }
+            Side::Nodes { system, nodes } => Side::Nodes {
+                system: *system,
+                nodes: place_among(&points[*system as usize], nodes),
+            },
             Side::Rigid { .. } => *side,
         };
         let problem = &mut self.workspace.problem;
@@ -281,6 +312,28 @@ impl<S: Space> Simulation<S> {
                     debug_assert!(known, "all nodes of the sides were pushed");
                 }
             }
+        }
+    }
+
+    /// Hands the moments of contacts to the solver.
+    pub(super) fn pose_moments(&mut self) {
+        for k in 0..self.workspace.moments.len() {
+            let form = self.workspace.moments[k];
+            let sides = match self.state.systems.is_empty() {
+                true => [None; 2],
+                false => self.turned(form.contact),
+            };
+            let points = &self.workspace.systems.points;
+            let sides = sides.map(|side| {
+                let (system, node, length) = side?;
+                let node = place_among(&points[system as usize], &Nodes::one(node));
+                let (node, _) = node.terms().next()?;
+                Some((system, node, length))
+            });
+            let contact = &self.workspace.forms[form.contact as usize];
+            let problem = &mut self.workspace.problem;
+            let known = problem.push_moment_between(&form, contact, sides);
+            debug_assert!(known, "the nodes that turn were pushed");
         }
     }
 

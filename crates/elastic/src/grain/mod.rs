@@ -103,6 +103,16 @@ struct State<S: Space> {
     velocity: Vec<f64>,
 }
 
+/// A grain at q_m, before contacts act.
+#[derive(Clone, Debug)]
+struct Middle<S: Space> {
+    rotation: S::Rotation,
+    /// Its angular velocity there from the start of the step, which contacts see (rad/s).
+    spin: S::Spin,
+    /// The same at the end of the step without contacts (rad/s).
+    free: S::Spin,
+}
+
 /// A grain that deforms.
 #[derive(Clone, Debug)]
 pub struct ElasticGrain<S: Space> {
@@ -111,8 +121,7 @@ pub struct ElasticGrain<S: Space> {
     state: State<S>,
     /// At the start of the step.
     start: State<S>,
-    /// The orientation at q_m, and the velocities there without contacts.
-    middle: (S::Rotation, Vec<f64>),
+    middle: Middle<S>,
     /// Where the vertices of the surface are in the frame (m).
     vertices: Vec<S::Vector>,
 }
@@ -171,7 +180,11 @@ impl<S: Deformable> ElasticGrain<S> {
             model: Arc::new(model),
             formed: None,
             start: state.clone(),
-            middle: (state.rotation, state.velocity.clone()),
+            middle: Middle {
+                rotation: spec.rotation,
+                spin: spec.spin,
+                free: spec.spin,
+            },
             state,
             vertices: Vec::new(),
         };
