@@ -133,3 +133,21 @@ fn projection_of_overlaps() {
         &["projection", "elastic_grains", "set it to 0"],
     );
 }
+
+/// Grains are told by their places: a user gave them no names.
+#[test]
+fn grains_that_overlap() {
+    let from = PLANE.find("List(").unwrap();
+    let to = PLANE.find("    friction:").unwrap();
+    let pair = "List(material: \"grain\", grains: [(at: [0.1, 0.02], radius: 0.01), (at: [0.1, 0.03], radius: 0.01)])";
+    let case = format!("{}{pair}],\n{}", &PLANE[..from], &PLANE[to..]);
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let case = trial.write("case.ron", soft(&case, "[(material: \"grain\")]"));
+    let said = trial.refuses(
+        &case,
+        &[],
+        &["the grain at [0.1, 0.02] m", "the grain at [0.1, 0.03] m"],
+    );
+    assert!(!said.contains("grain_"), "{said}");
+}

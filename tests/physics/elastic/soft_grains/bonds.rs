@@ -1,6 +1,7 @@
 //! Bonds between the sides of blocks.
 
 use super::*;
+use fretwork::scene::bond_sites::BondSites;
 
 /// Bonds of a side of a length stand for that length.
 fn glued<S: Dimensional>(what: &str, bodies: &str, grains: &str) -> f64 {
@@ -71,4 +72,27 @@ fn bonds_stand_for_the_side() {
     for area in solid {
         near(side * side, area, 1e-5);
     }
+}
+
+/// A square on a plane: the largest area of a bond over the mass of the square, along the normal; rigid and soft alike.
+#[test]
+fn check_estimates_bonds_of_grains_that_deform() {
+    let mut s = Soft {
+        interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5, area_factor: 2.0,",
+        parameters: ", cohesion: {\"k_n\": 1e10, \"k_t\": 1e10}, damage: {\"strength\": 1e4, \"energy\": 1.0}".to_owned(),
+        bodies: wall("floor", &[0.0, 1.0], &[0.0, 0.0], ""),
+        grains: square("soft", [0.0, 0.01], 0.02, 0.0, ""),
+        ..Soft::default()
+    }
+    .build::<Dim2>();
+    s.step().unwrap();
+    let network = &s.state.network;
+    let bonds = network.contacts.iter().filter_map(|c| network.bond(c));
+    let area = bonds.map(|b| b.area).fold(0.0, f64::max);
+    let mass = s.state.systems.get(0).unwrap().mass();
+    let law = usize::from(network.contacts[0].law);
+    let sites = BondSites::of(&s, law).unwrap();
+    println!("{sites:?}");
+    near(area / mass, sites.normal, 1e-9);
+    assert!(sites.shear > sites.normal && sites.shear < 10.0 * sites.normal);
 }
