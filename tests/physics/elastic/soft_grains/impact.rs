@@ -53,8 +53,10 @@ fn two_disks_collide() {
         );
         assert!(met && place_of(&s, 0).x < place_of(&s, 1).x);
         assert!(off < 1e-12, "{off:e}");
-        assert!(moment < if mu == 0.0 { 1e-10 } else { 2e-3 }, "{moment:e}");
-        assert!(most < 1e-3 && energy(&s) < start, "{most:e}");
+        // Tangential impulses act across the gap that a step closes, with a couple.
+        assert!(moment < if mu == 0.0 { 1e-10 } else { 2e-5 }, "{moment:e}");
+        // Single steps gain a little; the ledger has it.
+        assert!(most < 5e-5 && energy(&s) < start, "{most:e}");
         closes(&s, 1e-12);
     }
 }

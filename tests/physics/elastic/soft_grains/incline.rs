@@ -31,7 +31,7 @@ fn a_block_on_an_incline() {
             };
             println!("E {young:e}, tan {tan}: {found} of {expected} m/s^2");
             assert!(
-                (found - expected).abs() < 2e-3 * G,
+                (found - expected).abs() < 1e-6 * G,
                 "{young:e} {tan}: {found} {expected}"
             );
             assert!(place_of(&s, 0).y > 0.0099);

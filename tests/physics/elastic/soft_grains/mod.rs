@@ -4,6 +4,7 @@
 
 mod adhesion;
 mod bonds;
+mod extremes;
 mod fast;
 mod found;
 mod impact;
@@ -116,6 +117,11 @@ impl Soft {
     }
 
     fn build<S: Dimensional>(&self) -> Simulation<S> {
+        self.build_with(NU)
+    }
+
+    /// The same of materials of a Poisson's ratio.
+    fn build_with<S: Dimensional>(&self, nu: f64) -> Simulation<S> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);
         let name = format!("fretwork-soft-{}-{number}", std::process::id());
@@ -125,7 +131,7 @@ impl Soft {
         for name in ["rigid", "soft", "stone"] {
             let text = format!(
                 "(doc: \"chosen\", density: (value: {DENSITY:?}, unit: \"kg/m^3\", source: \"chosen\"), properties: {{\
-                 \"young\": (value: {:?}, unit: \"Pa\", source: \"chosen\"), \"poisson\": (value: {NU:?}, source: \"chosen\")}})",
+                 \"young\": (value: {:?}, unit: \"Pa\", source: \"chosen\"), \"poisson\": (value: {nu:?}, source: \"chosen\")}})",
                 self.young
             );
             std::fs::write(shelf.join(format!("{name}.ron")), text).unwrap();

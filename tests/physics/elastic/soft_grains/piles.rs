@@ -65,7 +65,8 @@ fn rests<S: Dimensional + Steps>(
         s.state.energy.kinetic,
         deepest(&s) / R
     );
-    near(weight, walls.abs(), 5e-3);
+    // Spheres still creep at the end, by accelerations of some 1e-4 of gravity.
+    near(weight, walls.abs(), 5e-4);
     assert!(deepest(&s) < 0.01 * R);
     closes(&s, 1e-9);
     s
