@@ -138,6 +138,21 @@ def check_end(folder, name, state):
         fail(f"displacements of {name} at the end differ from {name}.vtk by {off:e} m")
 
 
+def check_grains(folder, name, view, state, file):
+    """Grains that deform: their bodies are grains of the run, and the last state is that of the legacy file."""
+    known = set(file["views/grains/PointData/id"][:].astype(int))
+    ids = [view[place]["body"][:] for place in ("PointData", "CellData")]
+    if not all(set(i) <= known for i in ids):
+        fail(f"bodies of {view.name} are no grains of the run")
+    corners = view["Connectivity"][:].reshape(len(ids[1]), -1)
+    if (ids[0][corners] != ids[1][:, None]).any():
+        fail(f"elements of {view.name} join points of other grains")
+    if len(file["views/elastic_grains"]) == 1 and folder:
+        # The only material: the legacy file has no other grains.
+        check_end(folder, "elastic_grains", {"displacement": state["deformation"]})
+    print(f"  grains of {name}: {len(set(ids[0]))} of {len(ids[1])} elements, von Mises stress up to {state['von_mises'].max():.3e} Pa")
+
+
 def check_surface(folder, name, state, dimension):
     """The sums of pressure and traction times area are the forces of the contacts at the end."""
     table = np.genfromtxt(os.path.join(folder, f"{name}_tractions.csv"), delimiter=",", names=True)
@@ -158,14 +173,18 @@ def check_surface(folder, name, state, dimension):
 def check_meshes(folder, file, live):
     """Fields of deformable bodies; those of the end also against the other files of the run."""
     dimension = int(file.attrs["dimension"])
-    for kind in ("meshes", "surfaces"):
+    for kind in ("meshes", "surfaces", "elastic_grains"):
         for name, view in file["views"].get(kind, {}).items():
             n = check_mesh(view)
             last = mesh_state(view, n - 1)
-            if kind == "meshes":
+            if kind != "surfaces":
                 check_stress(name, last)
             at_end = abs(view["Steps/Values"][-1] - file["statistics/time"][-1]) < 1e-12
-            if live or not at_end:
+            whole = not live and at_end
+            if kind == "elastic_grains":
+                check_grains(folder if whole else None, name, view, last, file)
+                continue
+            if not whole:
                 continue
             if kind == "meshes":
                 check_end(folder, name, last)

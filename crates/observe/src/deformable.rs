@@ -13,6 +13,7 @@ use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
+use fretwork_scene::case::Case;
 use serde::Serialize;
 use std::fmt::Write as _;
 
@@ -28,8 +29,9 @@ pub struct Deformable {
     distortions: Vec<Option<[f64; 2]>>,
     /// Of each body the largest share of a force on its border.
     borders: Vec<f64>,
-    /// Largest strain and rotation of grains that deform.
+    /// Largest strain and rotation of grains that deform, and the names of their materials.
     grains: Option<[f64; 2]>,
+    materials: Vec<String>,
 }
 
 /// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
@@ -106,8 +108,8 @@ impl BorderLoad {
 }
 
 impl Deformable {
-    /// Of the dynamical systems of a simulation.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
+    /// Of the dynamical systems of the simulation of a case.
+    pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
         let systems = || first_bodies(s);
         let named = systems().flat_map(|system| {
             let holders = system.holders().into_iter();
@@ -119,6 +121,11 @@ impl Deformable {
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
             borders: vec![0.0; systems().count()],
             grains: strain_of_grains(s),
+            materials: case
+                .elastic_grains
+                .iter()
+                .map(|g| g.material.clone())
+                .collect(),
         }
     }
 }
@@ -307,7 +314,10 @@ impl<S: Space> Observer<S> for Deformable {
             ]
         };
         let grains = self.grains.map(|_| GRAINS.to_owned());
-        self.bodies.iter().flat_map(of).chain(grains).collect()
+        let links = self.materials.iter();
+        let links = links.map(|name| format!("elastic_grains_{name}.vtkhdf"));
+        let of_bodies = self.bodies.iter().flat_map(of);
+        of_bodies.chain(grains).chain(links).collect()
     }
 }
 

@@ -4,6 +4,7 @@
 use super::tractions::{SurfaceState, Zone, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
 
 /// What the values of a field stand at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +54,89 @@ impl<S: Space> BodyState<S> {
     }
 }
 
+/// Grains that deform as one mesh, as it is now.
+#[derive(Clone, Debug)]
+pub struct GrainsState<S: Space> {
+    mesh: DeformedMesh<S>,
+    velocity: Vec<S::Vector>,
+    /// Points at the start of the run, without load (m), and their way from there.
+    start: Vec<S::Vector>,
+    travel: Vec<S::Vector>,
+    /// By point and by element the identity of the body.
+    bodies: [Vec<i64>; 2],
+}
+
+impl<S: Space> Default for GrainsState<S> {
+    fn default() -> Self {
+        Self {
+            mesh: DeformedMesh {
+                points: Vec::new(),
+                displacement: Vec::new(),
+                elements: Vec::new(),
+                boundary: Vec::new(),
+                stress: Vec::new(),
+            },
+            velocity: Vec::new(),
+            start: Vec::new(),
+            travel: Vec::new(),
+            bodies: [Vec::new(), Vec::new()],
+        }
+    }
+}
+
+impl<S: Space> GrainsState<S> {
+    /// Of the systems of these indices; those that have no mesh are left out. Grains that left the period of the scene are shown in it.
+    pub fn of(s: &Simulation<S>, systems: &[usize]) -> Self {
+        let mut out = Self::default();
+        for k in systems {
+            let (Some(system), [body, ..]) = (s.state.systems.get(*k), s.state.systems.bodies(*k))
+            else {
+                continue;
+            };
+            let (Some(mesh), at) = (
+                system.deformed_mesh(),
+                s.state.bodies.position[*body as usize],
+            ) else {
+                continue;
+            };
+            let shift = s.shapes.periodic.wrapped(at) - at;
+            let (start, now) = (system.mesh_at_start(), &mesh.points);
+            let moved = now.iter().zip(&mesh.displacement).zip(&start);
+            out.travel
+                .extend(moved.map(|((x, u), start)| *x + shift + *u - *start));
+            out.start.extend(start);
+            out.velocity.extend(system.mesh_velocity());
+            let first = out.mesh.points.len() as u32;
+            let id = s.state.bodies.id[*body as usize] as i64;
+            let cells = mesh.elements.len() / (S::D + 1);
+            for (ids, count) in out.bodies.iter_mut().zip([mesh.points.len(), cells]) {
+                ids.resize(ids.len() + count, id);
+            }
+            let elements = mesh.elements.iter().map(|p| first + p);
+            out.mesh.elements.extend(elements);
+            out.mesh.points.extend(mesh.points);
+            out.mesh.displacement.extend(mesh.displacement);
+            out.mesh.stress.extend(mesh.stress);
+        }
+        out
+    }
+
+    /// Points at the start of the run, without load (m).
+    pub fn start(&self) -> &[S::Vector] {
+        &self.start
+    }
+
+    /// The D + 1 points of each element, one after the other.
+    pub fn elements(&self) -> &[u32] {
+        &self.mesh.elements
+    }
+
+    /// Identities of the bodies, by point and by element.
+    pub fn bodies(&self) -> &[Vec<i64>; 2] {
+        &self.bodies
+    }
+}
+
 /// Numbers of vectors, three each.
 pub fn triples<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
     vectors.iter().flat_map(V::padded).collect()
@@ -80,13 +164,10 @@ pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
         MeshField {
             name: "stress",
             unit: "Pa",
-            doc: "stress (Cauchy): XX, YY, ZZ, XY, YZ, XZ; in plane strain ZZ is along the depth",
+            doc: STRESS,
             at: At::Cells,
             width: 6,
-            values: |b| {
-                let order = |[xx, yy, zz, yz, xz, xy]: &[f64; 6]| [*xx, *yy, *zz, *xy, *yz, *xz];
-                b.mesh.stress.iter().flat_map(order).collect()
-            },
+            values: |b| in_vtk_order(&b.mesh.stress),
         },
         MeshField {
             name: "von_mises",
@@ -97,6 +178,62 @@ pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
             values: |b| b.mesh.stress.iter().map(von_mises).collect(),
         },
     ]
+}
+
+/// Fields inside grains that deform.
+pub fn of_grains<S: Space>() -> [MeshField<GrainsState<S>>; 5] {
+    [
+        MeshField {
+            name: "displacement",
+            unit: "m",
+            doc: "way of the point since the start of the run, with the motion of the grain",
+            at: At::Points,
+            width: 3,
+            values: |g| triples(&g.travel),
+        },
+        MeshField {
+            name: "deformation",
+            unit: "m",
+            doc: "displacement of the point against the frame that moves with the grain, in world axes",
+            at: At::Points,
+            width: 3,
+            values: |g| triples(&g.mesh.displacement),
+        },
+        MeshField {
+            name: "velocity",
+            unit: "m/s",
+            doc: "velocity",
+            at: At::Points,
+            width: 3,
+            values: |g| triples(&g.velocity),
+        },
+        MeshField {
+            name: "stress",
+            unit: "Pa",
+            doc: STRESS,
+            at: At::Cells,
+            width: 6,
+            values: |g| in_vtk_order(&g.mesh.stress),
+        },
+        MeshField {
+            name: "von_mises",
+            unit: "Pa",
+            doc: "von Mises stress",
+            at: At::Cells,
+            width: 1,
+            values: |g| g.mesh.stress.iter().map(von_mises).collect(),
+        },
+    ]
+}
+
+/// What the components of a stress are.
+const STRESS: &str =
+    "stress (Cauchy): XX, YY, ZZ, XY, YZ, XZ; in plane strain ZZ is along the depth";
+
+/// Stresses xx, yy, zz, yz, xz, xy in VTK's order.
+fn in_vtk_order(stress: &[[f64; 6]]) -> Vec<f64> {
+    let order = |[xx, yy, zz, yz, xz, xy]: &[f64; 6]| [*xx, *yy, *zz, *xy, *yz, *xz];
+    stress.iter().flat_map(order).collect()
 }
 
 /// Fields along a surface that touches.

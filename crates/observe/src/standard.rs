@@ -69,7 +69,7 @@ fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> 
     let drawn = loops.map(|t| (t.body.clone(), t.along));
     all.push(Box::new(DrivenBodies::of(s, drawn)));
     if !s.state.systems.is_empty() {
-        all.push(Box::new(Deformable::of(s)));
+        all.push(Box::new(Deformable::of(case, s)));
     }
     if case.jump.is_some() {
         all.push(Box::new(CycleJumps));

@@ -100,12 +100,10 @@ fn of_contacts<S: Space>(s: &Simulation<S>, law: usize) -> Vec<BondPair> {
         .map(|c| {
             let (mut normal, mut shear) = (0.0, 0.0);
             for (body, arm) in c.bodies.iter().zip(&c.arms) {
-                let body = *body as usize;
-                let inverse = &s.state.bodies.inverse_mass[body];
+                let inverse = &s.state.bodies.inverse_mass[*body as usize];
                 let along: f64 = (0..S::D).map(|k| inverse[k] * c.normal[k].powi(2)).sum();
-                let most = (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max);
-                normal += along;
-                shear += most + arm.norm().powi(2) * s.state.bodies.inverse_inertia[body];
+                normal += of_deforming(s, *body).map_or(along, |inverse| inverse[0]);
+                shear += inverse_mass(s, *body) + arm.norm().powi(2) * inverse_inertia(s, *body);
             }
             BondPair {
                 radius: c.radius,
@@ -192,13 +190,26 @@ fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
 }
 
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Side> {
-    let balls = s.shapes.balls.iter();
-    let balls = balls.map(|b| (b.body, b.radius, b.material));
+    // A point of a grain that deforms is as large as what it stands for.
+    let balls = s.shapes.balls.iter().map(|b| {
+        let area = b.area.norm();
+        let size = match S::D {
+            _ if b.radius > 0.0 => b.radius,
+            2 => 0.5 * area,
+            _ => (area / std::f64::consts::PI).sqrt(),
+        };
+        (b.body, size, b.material)
+    });
+    let balls = balls.filter(|(_, size, _)| *size > 0.0);
     let pieces = s.shapes.pieces.iter();
     let pieces = pieces.map(|p| (p.body, p.size, p.material));
     let side = |(body, radius, material): (u32, f64, u16)| {
         let inverse = inverse_mass(s, body);
-        let turning = radius * radius * s.state.bodies.inverse_inertia[body as usize];
+        let arm = match of_deforming(s, body) {
+            Some(_) => s.state.bodies.length[body as usize],
+            None => radius,
+        };
+        let turning = arm * arm * inverse_inertia(s, body);
         Side {
             body,
             curvature: 1.0 / radius,
@@ -229,7 +240,24 @@ fn surfaces<S: Space>(s: &Simulation<S>) -> Vec<Side> {
     out
 }
 
+/// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its mass; none of other bodies.
+fn of_deforming<S: Space>(s: &Simulation<S>, body: u32) -> Option<[f64; 2]> {
+    let (bodies, b) = (&s.state.bodies, body as usize);
+    bodies.carrier(b).filter(|carrier| carrier.grain)?;
+    let (mass, radius) = (bodies.mass[b], bodies.length[b]);
+    let share = if S::D == 2 { 0.5 } else { 0.4 };
+    Some([1.0 / mass, 1.0 / (share * mass * radius * radius)])
+}
+
+fn inverse_inertia<S: Space>(s: &Simulation<S>, body: u32) -> f64 {
+    let rigid = s.state.bodies.inverse_inertia[body as usize];
+    of_deforming(s, body).map_or(rigid, |inverse| inverse[1])
+}
+
 fn inverse_mass<S: Space>(s: &Simulation<S>, body: u32) -> f64 {
+    if let Some([inverse, _]) = of_deforming(s, body) {
+        return inverse;
+    }
     let inverse = &s.state.bodies.inverse_mass[body as usize];
     (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max)
 }

@@ -1,6 +1,7 @@
 //! Validation of a case before it is built.
 
 use super::build::Origin;
+use super::called;
 use super::case::{AccurateResult, BodySpec, Case, Checkpoint};
 use super::phases::PhaseSpec;
 use super::processes;
@@ -207,6 +208,20 @@ fn solver(case: &Case) -> Result<(), ValidationError> {
             "0 (never) or the fraction of a radius above which an overlap is removed, below 1";
         return outside("projection", s.projection, expected);
     }
+    let deforms = [
+        ("elastic_grains", !case.elastic_grains.is_empty()),
+        ("elastic", !case.elastic.is_empty()),
+        ("half_spaces", !case.half_spaces.is_empty()),
+    ];
+    if let Some((field, _)) = deforms
+        .into_iter()
+        .find(|(_, any)| *any && s.projection > 0.0)
+    {
+        let message = format!(
+            "moves rigid grains and first bodies apart, not what deforms (`{field}`); set it to 0, and `solver.correction` above 0 to have overlaps removed"
+        );
+        return Err(ValidationError::new("solver.projection", message));
+    }
     if !(1.0..2.0).contains(&s.relaxation) {
         let expected = "a number from 1 (none) to below 2";
         return outside("relaxation", s.relaxation, expected);
@@ -401,28 +416,10 @@ pub(super) fn overlaps<S: Steps>(
     let Some(worst) = worst.filter(|c| c.gap < -0.01 * smallest) else {
         return Ok(());
     };
-    let name = |body: u32| {
-        let driven = s.state.bodies.driven.iter().find(|d| d.body == body);
-        let at = s.state.bodies.position[body as usize];
-        match driven {
-            Some(d) => format!("the body `{}`", d.name),
-            None if s.state.bodies.carrier(body as usize).is_some() => {
-                let carrier = s.state.bodies.carrier(body as usize);
-                let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
-                format!("the body `{}`", system.map_or("", |s| s.name()))
-            }
-            None => format!(
-                "the grain at {:?} m",
-                (0..S::D)
-                    .map(|k| fretwork_core::geometry::space::VectorLike::padded(&at)[k])
-                    .collect::<Vec<_>>()
-            ),
-        }
-    };
     let message = format!(
         "{} and {} overlap by {:.3e} m at the start; move them apart or make them smaller",
-        name(worst.bodies[0]),
-        name(worst.bodies[1]),
+        called::body(s, worst.bodies[0]),
+        called::body(s, worst.bodies[1]),
         -worst.gap
     );
     // The error is reported at the last grain of the pair in the case, or at the body if neither is a grain.

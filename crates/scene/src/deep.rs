@@ -1,7 +1,8 @@
 //! Check for bodies that stand in each other deeper than the distance within which contacts are looked for: their points would never meet the
-//! surface that they are behind.
+//! surface that they are behind, or, within a grain, would be pushed out from there.
 
 use super::build::Origin;
+use super::called;
 use super::source::ValidationError;
 use fretwork_core::contact::detect;
 use fretwork_core::geometry::space::Space;
@@ -19,15 +20,6 @@ pub(super) fn points<S: Space>(
     origins: &[Origin],
 ) -> Result<(), ValidationError> {
     let bodies = &s.state.bodies;
-    let name = |body: u32| {
-        let carrier = bodies.carrier(body as usize);
-        let system = carrier.and_then(|c| s.state.systems.get(c.system as usize));
-        let driven = bodies.driven.iter().find(|d| d.body == body);
-        match (system, driven) {
-            (Some(system), _) => system.name().to_owned(),
-            (None, driven) => driven.map_or_else(String::new, |d| d.name.clone()),
-        }
-    };
     let system = |body: u32| bodies.carrier(body as usize).map(|c| c.system);
     for point in s.shapes.balls.iter().filter(|b| b.radius == 0.0) {
         let centre = detect::centre(point, bodies);
@@ -54,9 +46,9 @@ pub(super) fn points<S: Space>(
             let depth = nearest.map_or(0.0, |touch| -touch.distance);
             if depth > s.state.network.alert {
                 let message = format!(
-                    "points of `{}` lie {depth:.3e} m behind the surface of `{}` at the start, where no contact is looked for; move them apart",
-                    name(point.body),
-                    name(surface.body)
+                    "points of {} lie {depth:.3e} m behind the surface of {} at the start, beyond the alert distance; move them apart",
+                    called::body(s, point.body),
+                    called::body(s, surface.body)
                 );
                 let place = origins.get(point.body as usize);
                 let place = place.map_or_else(|| "elastic".to_owned(), |o| o.path());

@@ -9,6 +9,7 @@ pub mod biaxial;
 pub mod bond_sites;
 pub mod build;
 pub mod builder;
+mod called;
 pub mod case;
 pub mod check;
 pub mod circuit;

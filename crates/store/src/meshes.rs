@@ -1,13 +1,16 @@
-//! Converts deformable bodies to the views of `results.h5`: the mesh of each body of finite elements, and the surface of each body that
-//! touches. Bodies are those that the case lists as `elastic` and `half_spaces`.
+//! Converts deformable bodies to the views of `results.h5`: the mesh of each body of finite elements, the surface of each body that
+//! touches, and the grains of each material that deform as one mesh. Bodies are those that the case lists as `elastic` and `half_spaces`.
 
 use super::results::{Field, Mesh};
 use fretwork_core::bodies::DynamicalSystem;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_observe::mesh_fields::{At, BodyState, MeshField, of_bodies, of_surfaces, triples};
+use fretwork_observe::mesh_fields::{
+    At, BodyState, GrainsState, MeshField, of_bodies, of_grains, of_surfaces, triples,
+};
 use fretwork_observe::tractions::SurfaceState;
 use fretwork_scene::case::Case;
+use std::collections::BTreeMap;
 
 /// The systems whose fields are written.
 fn systems<'a, S: Space>(
@@ -23,7 +26,23 @@ fn systems<'a, S: Space>(
     all.filter(move |(_, system)| listed(system.name()))
 }
 
-/// The meshes and surfaces of the bodies of a case.
+/// The grains that deform, by the name of their material: the indices of their systems.
+fn grains<'a, S: Space>(case: &'a Case, s: &Simulation<S>) -> Vec<(&'a str, Vec<usize>)> {
+    let mut of_material: BTreeMap<u16, Vec<usize>> = BTreeMap::new();
+    for k in 0..s.state.systems.len() {
+        let system = s.state.systems.get(k).filter(|s| s.is_grain());
+        if let Some(contactor) = system.and_then(|s| s.contactors().into_iter().next()) {
+            of_material.entry(contactor.material).or_default().push(k);
+        }
+    }
+    let named = of_material.into_iter().filter_map(|(material, systems)| {
+        let name = case.materials.keys().nth(usize::from(material))?;
+        Some((name.as_str(), systems))
+    });
+    named.collect()
+}
+
+/// The meshes and surfaces of the bodies of a case, and its grains that deform.
 pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Mesh> {
     let mut out = Vec::new();
     for (k, system) in systems(case, s) {
@@ -34,6 +53,7 @@ pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Mesh> {
                 cells: mesh.elements.iter().map(|p| i64::from(*p)).collect(),
                 corners: S::D + 1,
                 fields: fields(&of_bodies::<S>()),
+                ..Mesh::default()
             });
         }
         if let Some(state) = SurfaceState::of(s, k) {
@@ -43,8 +63,20 @@ pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Mesh> {
                 cells: state.surface.facets.iter().map(|p| i64::from(*p)).collect(),
                 corners: S::D,
                 fields: fields(&of_surfaces::<S>()),
+                ..Mesh::default()
             });
         }
+    }
+    for (material, systems) in grains(case, s) {
+        let state = GrainsState::of(s, &systems);
+        out.push(Mesh {
+            group: format!("elastic_grains/{material}"),
+            points: triples(state.start()),
+            cells: state.elements().iter().map(|p| i64::from(*p)).collect(),
+            corners: S::D + 1,
+            fields: fields(&of_grains::<S>()),
+            bodies: state.bodies().clone(),
+        });
     }
     out
 }
@@ -72,6 +104,10 @@ pub fn values<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Vec<Vec<f64>>> {
             let values = of_surfaces().map(|f| (f.values)(&state));
             out.push(values.to_vec());
         }
+    }
+    for (_, systems) in grains(case, s) {
+        let state = GrainsState::of(s, &systems);
+        out.push(of_grains().map(|f| (f.values)(&state)).to_vec());
     }
     out
 }

@@ -18,7 +18,7 @@ fn pulled(elements: usize) -> Simulation<Dim2> {
     detection: (alert: 1e-3, skin: 5e-4),
     solver: (tolerance: 1e-8, norm: Velocity, max_iterations: 20000),
     interfaces: [(name: "glue", between: ("square", "disk"), contact: "mohr-coulomb",
-        parameters: (contact: {{"mu": 0.0, "cohesion": 1e4, "tension": 1e4}}))],
+        parameters: (contact: {{"mu": 0.0, "cohesion": 1e4, "tension": 1e4, "range": 1e-3}}))],
     grains: [
         Polygons(material: "square", grains: [(at: [0.0, 0.0], points: [(-0.01, -0.01), (0.01, -0.01), (0.01, 0.01), (-0.01, 0.01)])]),
         List(material: "disk", grains: [(at: [0.0003, 0.01501], radius: 0.005, velocity: [0.0, 1.0])]),

@@ -114,7 +114,7 @@ fn points_that_lie_deep_in_another_body() {
     let case = case.replace(second, &format!("‸{second}"));
     refused(
         &with(&case, "[0.0, 0.09]", "[0.0, -0.55]"),
-        &["points of `roof` lie 5.500e-1 m behind the surface of `floor`"],
+        &["points of the body `roof` lie 5.500e-1 m behind the surface of the body `floor`"],
     );
 }
 

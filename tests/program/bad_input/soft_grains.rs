@@ -119,3 +119,35 @@ fn grains_that_have_to_be_rigid() {
         &["one shape"],
     );
 }
+
+#[test]
+fn projection_of_overlaps() {
+    let marked = soft(PLANE, "[(material: \"grain\")]");
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let case = trial.write("case.ron", marked);
+    let sets = ["--set", "solver.projection=0.01"];
+    trial.refuses(
+        &case,
+        &sets,
+        &["projection", "elastic_grains", "set it to 0"],
+    );
+}
+
+/// Grains are told by their places: a user gave them no names.
+#[test]
+fn grains_that_overlap() {
+    let from = PLANE.find("List(").unwrap();
+    let to = PLANE.find("    friction:").unwrap();
+    let pair = "List(material: \"grain\", grains: [(at: [0.1, 0.02], radius: 0.01), (at: [0.1, 0.03], radius: 0.01)])";
+    let case = format!("{}{pair}],\n{}", &PLANE[..from], &PLANE[to..]);
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    let case = trial.write("case.ron", soft(&case, "[(material: \"grain\")]"));
+    let said = trial.refuses(
+        &case,
+        &[],
+        &["the grain at [0.1, 0.02] m", "the grain at [0.1, 0.03] m"],
+    );
+    assert!(!said.contains("grain_"), "{said}");
+}

@@ -4,7 +4,7 @@ use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
 use fretwork::record::Observed;
-use fretwork::record::mesh_fields::{of_bodies, of_surfaces};
+use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::{Summary, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
@@ -88,7 +88,8 @@ fn every_field_of_the_views_is_documented() {
         let contacts = fields.contacts.iter().map(|f| (f.name, f.unit));
         let meshes = of_bodies::<S>().map(|f| (f.name, f.unit));
         let surfaces = of_surfaces::<S>().map(|f| (f.name, f.unit));
-        let of_bodies = meshes.into_iter().chain(surfaces);
+        let soft = of_grains::<S>().map(|f| (f.name, f.unit));
+        let of_bodies = meshes.into_iter().chain(surfaces).chain(soft);
         let missing = undocumented(grains.chain(contacts).chain(of_bodies));
         missing.into_iter().map(str::to_owned).collect()
     }

@@ -5,19 +5,19 @@ use fretwork::record::results::Reader;
 use std::path::Path;
 
 /// A field of a mesh over its states.
-struct Field<'a> {
-    reader: &'a Reader,
-    group: String,
+pub(super) struct Field<'a> {
+    pub(super) reader: &'a Reader,
+    pub(super) group: String,
 }
 
 impl Field<'_> {
-    fn states(&self) -> usize {
+    pub(super) fn states(&self) -> usize {
         let group = &self.group;
         self.reader.rows(&format!("{group}/Steps/Values")).unwrap()
     }
 
     /// The values of a field at a state; `place` is `Point` or `Cell`.
-    fn values(&self, place: &str, name: &str, width: usize, state: usize) -> Vec<f64> {
+    pub(super) fn values(&self, place: &str, name: &str, width: usize, state: usize) -> Vec<f64> {
         let Self { reader, group } = self;
         let offset = format!("{group}/Steps/{place}DataOffsets/{name}");
         let first = reader.whole(&offset, (state, 1)).unwrap()[0] as usize;
@@ -27,7 +27,7 @@ impl Field<'_> {
         reader.numbers(&name, (first, count), width).unwrap()
     }
 
-    fn last(&self, place: &str, name: &str, width: usize) -> Vec<f64> {
+    pub(super) fn last(&self, place: &str, name: &str, width: usize) -> Vec<f64> {
         self.values(place, name, width, self.states() - 1)
     }
 }
@@ -44,7 +44,7 @@ fn total(path: &Path, column: &str) -> f64 {
 }
 
 /// Rows of numbers of a legacy file after the line that begins with a word.
-fn legacy(path: &Path, begins: &str, rows: usize) -> Vec<f64> {
+pub(super) fn legacy(path: &Path, begins: &str, rows: usize) -> Vec<f64> {
     let text = std::fs::read_to_string(path).unwrap();
     let lines = text.lines().skip_while(|l| !l.starts_with(begins)).skip(1);
     let numbers = lines.filter(|l| !l.is_empty() && !l.starts_with("LOOKUP"));

@@ -2,6 +2,7 @@
 
 mod contacts;
 mod documented;
+mod elastic_grains;
 mod fields;
 mod ledger;
 mod meshes;

@@ -212,8 +212,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse, gradients to all nodes at
 /// a time, and Newton and the interior point form W, of which the blocks between all contacts of a system are filled. Where these have
 /// more than some ten million entries there are products alone, and methods that need W are refused
-/// ([`crate::solve::refusal`]). Nodes take up forces, no moments: a law that resists rotation is refused
-/// ([`crate::step::StepError::SystemRotation`]), and so is the projection of overlaps.
+/// ([`crate::solve::refusal`]). A law that resists rotation needs a [`turning_node`](DynamicalSystem::turning_node), and is refused
+/// without ([`crate::step::StepError::SystemRotation`]); so is the projection of overlaps with any system.
 ///
 /// # Systems that are not linear
 /// With internal forces f(q) in place of K q a step is taken with the tangent: `linearise` forms K = df/dq and A at the state
@@ -329,6 +329,13 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         contactor.nodes
     }
 
+    /// A node that turns with a contactor, after those of points, and a length (m): the velocity of the node is the angular velocity of the
+    /// contactor times this length (in the plane along x), and an impulse p on it is a moment of p times the length. Laws that resist
+    /// rotation act on it. None of contactors that take up no moments.
+    fn turning_node(&self, _contactor: &Contactor) -> Option<(u32, f64)> {
+        None
+    }
+
     /// The surface of a contactor that is one, in the frame of the contactor, as it is now.
     fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         None
@@ -415,6 +422,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// Velocities of the points of that mesh (m/s); none where they are not known.
     fn mesh_velocity(&self) -> Vec<S::Vector> {
+        Vec::new()
+    }
+
+    /// Places of the points of that mesh at the start of the run, without load (m), of a body that travels as grains do; none of others, of
+    /// which [`DeformedMesh::points`] stay where they are.
+    fn mesh_at_start(&self) -> Vec<S::Vector> {
         Vec::new()
     }
 

@@ -202,6 +202,9 @@ impl<S: Space> Systems<S> {
     /// which is by body.
     pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
         for entry in &mut self.entries {
+            // Rotation without contacts may have turned spins since the start.
+            entry.start.clear();
+            entry.start.extend_from_slice(entry.system.velocity());
             entry.system.linearise(step);
             entry.free = entry.system.free_velocity(step);
             for (contactor, body) in entry.contactors.iter().zip(&entry.bodies) {
@@ -265,6 +268,21 @@ impl<S: Space> Systems<S> {
         let entry = &self.entries[carrier.system as usize];
         let contactor = &entry.contactors[carrier.contactor as usize];
         entry.system.contact_nodes(contactor, arm)
+    }
+
+    /// Angular velocity of a contactor's body at the start of the step (rad/s).
+    pub fn spin_at_start(&self, carrier: Carrier) -> S::Spin {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        let (_, spin) = entry.system.contactor_velocity(contactor, &entry.start);
+        spin
+    }
+
+    /// The node that turns with a contactor's body, with its length (m); see [`DynamicalSystem::turning_node`].
+    pub fn turning_node(&self, carrier: Carrier) -> Option<(u32, f64)> {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        entry.system.turning_node(contactor)
     }
 
     /// Velocity of a point of a system at the current velocities (m/s).

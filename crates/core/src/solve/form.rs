@@ -352,22 +352,32 @@ impl<S: Space> Problem<S> {
 
     /// Adds the moments of a contact that was already pushed, given with its bodies and normal.
     pub fn push_moment(&mut self, form: &MomentForm<S>, contact: &ContactForm<S>) {
+        let row = self.moment_row(form, contact);
+        self.moments.push(row);
+    }
+
+    /// The row of the moments of a contact between rigid bodies.
+    pub(super) fn moment_row(
+        &self,
+        form: &MomentForm<S>,
+        contact: &ContactForm<S>,
+    ) -> MomentRow<S> {
         let [i, j] = contact.bodies.map(|b| b as usize);
-        self.moments.push(MomentRow::new(
+        MomentRow::new(
             form,
             self.places[form.contact as usize],
             contact.bodies,
             contact.normal,
             [&self.masses[i], &self.masses[j]],
             [self.lengths[i], self.lengths[j]],
-        ));
+        )
     }
 
     /// Iterates over the moments, in the order pushed.
     pub fn moments(&self) -> impl Iterator<Item = MomentSolution<S>> {
         self.moments.iter().map(|row| {
             let [i, j] = row.bodies.map(|b| &self.solver_bodies[b as usize]);
-            row.solution(i, j)
+            row.solution(i, j, &self.systems)
         })
     }
 

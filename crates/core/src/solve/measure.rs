@@ -33,7 +33,8 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     for row in &problem.moments {
         let (i, j) = solver_bodies.read(row.bodies);
-        sums.add_moment(&row.residual(problem.normal(row.place), &i, &j));
+        let pn = problem.normal(row.place);
+        sums.add_moment(&row.residual(pn, &i, &j, &problem.systems));
     }
     sums
 }

@@ -307,7 +307,7 @@ impl<S: Space> Problem<S> {
                 None => {
                     let [i, j] = row.bodies.map(|b| b as usize);
                     let (mut a, mut b) = (self.solver_bodies[i], self.solver_bodies[j]);
-                    row.update(pn, &mut a, &mut b, 1.0);
+                    row.update(pn, &mut a, &mut b, &mut self.systems, 1.0);
                 }
             }
         }
@@ -339,11 +339,12 @@ impl<S: Space> Problem<S> {
         for row in &self.of_systems {
             row.load(&mut self.solver_bodies, &mut self.systems);
         }
-        self.settle_systems();
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
+        let systems = &mut self.systems;
         for row in &self.moments {
-            solver_bodies.alone(row.bodies, |a, b| row.load(a, b));
+            solver_bodies.alone(row.bodies, |a, b| row.load(a, b, systems));
         }
+        self.settle_systems();
     }
 
     /// Returns the index, as pushed, of the contact at a position in the iteration.
@@ -436,8 +437,8 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     for k in 0..problem.moments.len() {
         let pn = problem.normal(problem.moments[k].place);
         let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-        let row = &mut problem.moments[k];
-        solver_bodies.alone(row.bodies, |a, b| row.update(pn, a, b, relaxation));
+        let (row, systems) = (&mut problem.moments[k], &mut problem.systems);
+        solver_bodies.alone(row.bodies, |a, b| row.update(pn, a, b, systems, relaxation));
     }
 }
 

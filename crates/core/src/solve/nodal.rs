@@ -2,7 +2,7 @@
 
 use super::form::{ContactForm, Mobility, Place, Problem};
 use super::loaded::{Loaded, add_response, vector};
-use super::row::{SystemRow, Term};
+use super::row::{MomentForm, SystemRow, Term};
 use super::side::Side;
 use crate::bodies::{Compliance, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -218,11 +218,44 @@ impl<S: Space> Problem<S> {
         true
     }
 
+    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by side of a system that turns its index, the
+    /// node that turns with it, and the length (m) by which the velocity of that is its spin. False, and nothing is added, where a side
+    /// names a system or a node that was not pushed.
+    #[must_use]
+    pub fn push_moment_between(
+        &mut self,
+        form: &MomentForm<S>,
+        contact: &ContactForm<S>,
+        sides: [Option<(u32, u32, f64)>; 2],
+    ) -> bool {
+        let mut terms = [None; 2];
+        for ((side, term), sign) in sides.into_iter().zip(&mut terms).zip([1.0, -1.0]) {
+            let Some((system, node, length)) = side else {
+                continue;
+            };
+            let known = self.systems.get(system as usize);
+            let Some(Ok(at)) = known.map(|s| s.nodes.binary_search(&node)) else {
+                return false;
+            };
+            *term = Some(Term {
+                system,
+                node: at as u32,
+                weight: sign / length,
+            });
+        }
+        let row = self.moment_row(form, contact);
+        self.moments.push(row.with_systems(terms, &self.systems));
+        true
+    }
+
     /// The impulses that contacts have on the nodes of the systems (N s), by system, in the order of its nodes.
     pub fn node_impulses(&self) -> Vec<Vec<S::Vector>> {
         let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
         let mut impulses: Vec<Vec<S::Vector>> = self.systems.iter().map(rest).collect();
         for row in &self.of_systems {
+            row.add_impulses(&mut impulses);
+        }
+        for row in &self.moments {
             row.add_impulses(&mut impulses);
         }
         impulses

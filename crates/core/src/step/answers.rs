@@ -187,7 +187,11 @@ impl<S: Space> Simulation<S> {
         let theta = self.options.scheme.theta;
         let average = |b: u32| {
             let b = b as usize;
-            start.spin(b) * (1.0 - theta) + self.state.bodies.spin[b] * theta
+            let before = match self.state.bodies.carrier(b) {
+                Some(carrier) => self.state.systems.spin_at_start(carrier),
+                None => start.spin(b),
+            };
+            before * (1.0 - theta) + self.state.bodies.spin[b] * theta
         };
         let turn = |(form, moment): (&MomentForm<S>, solve::MomentSolution<S>)| {
             let contact = &self.state.network.contacts[moment.contact as usize];

@@ -49,10 +49,10 @@ pub enum StepError {
         /// What it said.
         source: ProcessError,
     },
-    /// A law resists rotation at a contact with a dynamical system, which takes up forces alone.
+    /// A law resists rotation at a contact with a dynamical system that takes up forces alone.
     #[error(
         "step {step}: the law of a contact with the system `{system}` resists rotation (rolling friction, spinning friction or \
-         bending of a bond), which dynamical systems do not take up; use a law without it there"
+         bending of a bond), which it does not take up: of all that deforms only grains do; use a law without it there"
     )]
     SystemRotation {
         /// Number of the step.

@@ -49,6 +49,7 @@ impl<S: Space> Simulation<S> {
                 &mut self.workspace.moments,
             );
             prepared.map_err(|e| self.law_error(e))?;
+            self.find_turned_systems();
             report.timing.laws += clock.elapsed();
 
             let clock = Instant::now();
@@ -122,7 +123,8 @@ impl<S: Space> Simulation<S> {
         let moments = self.workspace.moments.iter();
         let carrier = moments
             .flat_map(moment_steps)
-            .find_map(|b| self.state.bodies.carrier(b as usize));
+            .filter_map(|b| self.state.bodies.carrier(b as usize))
+            .find(|carrier| self.state.systems.turning_node(*carrier).is_none());
         if let Some(carrier) = carrier {
             let system = self.state.systems.get(carrier.system as usize);
             return Err(StepError::SystemRotation {
@@ -229,10 +231,7 @@ impl<S: Space> Simulation<S> {
         } else {
             self.pose_with_systems();
         }
-        for form in &self.workspace.moments {
-            let contact = &self.workspace.forms[form.contact as usize];
-            self.workspace.problem.push_moment(form, contact);
-        }
+        self.pose_moments();
     }
 
     fn adopt_velocities(&mut self) -> Result<(), StepError> {

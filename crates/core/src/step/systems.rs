@@ -7,7 +7,7 @@ use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
-use crate::solve::{NodalSystem, Side};
+use crate::solve::{MomentForm, NodalSystem, Side};
 use std::sync::Arc;
 
 /// What the contacts of a step act on where dynamical systems take part, found once for the current contacts.
@@ -52,6 +52,12 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
         points.clear();
     }
     points
+}
+
+/// A point as the solver knows it: its place among the points of the system where there are any, or itself.
+fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
+    let at = points.binary_search_by(|other| other.order(point));
+    at.map_or(*point, |at| Nodes::one(at as u32))
 }
 
 impl<S: Space> Simulation<S> {
@@ -212,6 +218,29 @@ impl<S: Space> Simulation<S> {
     /// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
     /// systems of which no other nodes are touched.
     pub(super) fn find_system_contacts(&mut self) {
+        self.find_touched_nodes(&[]);
+    }
+
+    /// The same with the nodes that laws turn which resist rotation, once these laws were asked.
+    pub(super) fn find_turned_systems(&mut self) {
+        let moments = std::mem::take(&mut self.workspace.moments);
+        if !moments.is_empty() {
+            self.find_touched_nodes(&moments);
+        }
+        self.workspace.moments = moments;
+    }
+
+    /// By side of a contact the system that its moment turns, with the node and its length (m).
+    fn turned(&self, contact: u32) -> [Option<(u32, u32, f64)>; 2] {
+        let bodies = self.state.network.contacts[contact as usize].bodies;
+        bodies.map(|body| {
+            let carrier = self.state.bodies.carrier(body as usize)?;
+            let (node, length) = self.state.systems.turning_node(carrier)?;
+            Some((carrier.system, node, length))
+        })
+    }
+
+    fn find_touched_nodes(&mut self, moments: &[MomentForm<S>]) {
         if self.state.systems.is_empty() {
             return;
         }
@@ -230,6 +259,11 @@ impl<S: Space> Simulation<S> {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
             }
         }
+        let turned = moments.iter().flat_map(|form| self.turned(form.contact));
+        let turned: Vec<_> = turned.flatten().collect();
+        for (system, node, _) in &turned {
+            touched[*system as usize].push(*node);
+        }
         let mut kept = Vec::with_capacity(systems);
         for (system, nodes) in touched.iter_mut().enumerate() {
             nodes.sort_unstable();
@@ -243,6 +277,11 @@ impl<S: Space> Simulation<S> {
                 if kept[system].is_none() {
                     points[system].push(*nodes);
                 }
+            }
+        }
+        for (system, node, _) in turned {
+            if kept[system as usize].is_none() {
+                points[system as usize].push(Nodes::one(node));
             }
         }
         let before = std::mem::take(&mut self.workspace.systems);
@@ -301,14 +340,10 @@ impl<S: Space> Simulation<S> {
             ..
         } = &self.workspace.systems;
         let posed = |side: &Side<S>| match side {
-            Side::Nodes { system, nodes } => {
-                let points = &points[*system as usize];
-                let at = points.binary_search_by(|point| point.order(nodes));
-                Side::Nodes {
-                    system: *system,
-                    nodes: at.map_or(*nodes, |at| Nodes::one(at as u32)),
-                }
-            }
+            Side::Nodes { system, nodes } => Side::Nodes {
+                system: *system,
+                nodes: place_among(&points[*system as usize], nodes),
+            },
             Side::Rigid { .. } => *side,
         };
         let problem = &mut self.workspace.problem;
@@ -324,6 +359,28 @@ impl<S: Space> Simulation<S> {
                     debug_assert!(known, "all nodes of the sides were pushed");
                 }
             }
+        }
+    }
+
+    /// Hands the moments of contacts to the solver.
+    pub(super) fn pose_moments(&mut self) {
+        for k in 0..self.workspace.moments.len() {
+            let form = self.workspace.moments[k];
+            let sides = match self.state.systems.is_empty() {
+                true => [None; 2],
+                false => self.turned(form.contact),
+            };
+            let points = &self.workspace.systems.points;
+            let sides = sides.map(|side| {
+                let (system, node, length) = side?;
+                let node = place_among(&points[system as usize], &Nodes::one(node));
+                let (node, _) = node.terms().next()?;
+                Some((system, node, length))
+            });
+            let contact = &self.workspace.forms[form.contact as usize];
+            let problem = &mut self.workspace.problem;
+            let known = problem.push_moment_between(&form, contact, sides);
+            debug_assert!(known, "the nodes that turn were pushed");
         }
     }
 

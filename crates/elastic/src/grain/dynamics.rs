@@ -1,7 +1,7 @@
 //! A step of a grain that deforms: its frame as a rigid body, its modes as oscillators, both by the theta scheme.
 
 use super::shape::stresses;
-use super::{ElasticGrain, Formed, State};
+use super::{ElasticGrain, Formed, Middle, State};
 use crate::compiled::Deformable;
 use crate::element::Symmetric;
 use crate::small_strain;
@@ -30,8 +30,33 @@ impl<S: Deformable> ElasticGrain<S> {
         })
     }
 
+    /// Arm of a vertex from the origin of the frame, in world axes (m); of the node that turns none.
     fn arm(&self, node: u32) -> S::Vector {
-        S::rotate(&self.state.rotation, &self.vertices[node as usize])
+        let vertex = self.vertices.get(node as usize);
+        vertex.map_or(S::Vector::zero(), |at| S::rotate(&self.state.rotation, at))
+    }
+
+    /// Whether a node is the one that turns with the frame, after the vertices.
+    fn is_turning(&self, node: u32) -> bool {
+        node as usize == self.vertices.len()
+    }
+
+    /// The velocity of the node that turns, at an angular velocity of the frame.
+    fn turning_velocity(&self, spin: &S::Spin) -> S::Vector {
+        let mut out = S::Vector::zero();
+        for k in 0..S::Spin::N {
+            out[k] = spin[k] * self.model.contactor.radius;
+        }
+        out
+    }
+
+    /// The moment of an impulse on that node.
+    fn turning_moment(&self, impulse: &S::Vector) -> S::Spin {
+        let mut out = S::Spin::zero();
+        for k in 0..S::Spin::N {
+            out[k] = impulse[k] * self.model.contactor.radius;
+        }
+        out
     }
 
     /// Velocities averaged over the step.
@@ -83,8 +108,13 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn linearise(&mut self, step: &SystemStep<S>) {
-        let free = self.free_velocity(step);
-        self.middle = (self.state.rotation, free);
+        let (_, spin) = Self::of_frame(&self.state.velocity);
+        let (_, free) = Self::of_frame(&self.free_velocity(step));
+        self.middle = Middle {
+            rotation: self.state.rotation,
+            spin,
+            free,
+        };
     }
 
     fn advance(&mut self, time: f64) {
@@ -155,7 +185,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         let model = &self.model;
         let average = self.average(theta);
         let (velocity, _) = Self::of_frame(&average);
-        let (before, spin_before) = Self::of_frame(&self.start.velocity);
+        let (before, _) = Self::of_frame(&self.start.velocity);
         let (after, _) = Self::of_frame(&self.state.velocity);
         let alpha = model.damping.mass;
         let mut work = SystemWork {
@@ -165,12 +195,15 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
             ..SystemWork::default()
         };
         // Contacts turned the grain with its inertia at q_m.
-        let (rotation, free) = &self.middle;
+        let Middle {
+            rotation,
+            spin: spin_before,
+            free: spin_free,
+        } = &self.middle;
         let inertia = S::turned_tensor(rotation, &model.inertia);
         let spin_after = S::turned_tensor(rotation, &model.inverse).apply(&self.state.momentum);
-        let spin = spin_before + (spin_after - spin_before) * theta;
-        let (_, spin_free) = Self::of_frame(free);
-        let received = inertia.apply(&(spin_after - spin_free)) * (1.0 + h * theta * alpha);
+        let spin = *spin_before + (spin_after - *spin_before) * theta;
+        let received = inertia.apply(&(spin_after - *spin_free)) * (1.0 + h * theta * alpha);
         let braked = h * alpha * spin.dot(&inertia.apply(&spin));
         let gained = Self::energy_of_spin(&self.state, &model.inertia)
             - Self::energy_of_spin(&self.start, &model.inertia);
@@ -217,6 +250,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
 
     fn node_velocity(&self, node: u32, velocity: &[f64]) -> S::Vector {
         let (frame, spin) = Self::of_frame(velocity);
+        if self.is_turning(node) {
+            return self.turning_velocity(&spin);
+        }
         let mut own = S::Vector::zero();
         for axis in 0..S::D {
             let modes = self.model.shape.at(node as usize, axis).iter();
@@ -227,6 +263,13 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]) {
+        if self.is_turning(node) {
+            let moment = self.turning_moment(impulse);
+            for k in 0..S::Spin::N {
+                generalised[S::D + k] += moment[k];
+            }
+            return;
+        }
         let moment = S::moment(&self.arm(node), impulse);
         let own = S::unrotate(&self.state.rotation, impulse) * self.model.scale;
         let (frame, modes) = generalised.split_at_mut(S::D + S::Spin::N);
@@ -251,6 +294,10 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
 
     fn contact_nodes(&self, _contactor: &Contactor, arm: &S::Vector) -> Nodes {
         self.nodes_at(&S::unrotate(&self.state.rotation, arm))
+    }
+
+    fn turning_node(&self, contactor: &Contactor) -> Option<(u32, f64)> {
+        Some((self.vertices.len() as u32, contactor.radius))
     }
 
     fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
@@ -299,15 +346,32 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         for (of, node) in nodes.iter().enumerate() {
             for axis in 0..S::D {
                 let unit = &units[axis];
-                let spin = inverse.apply(&S::moment(&arms[of], unit));
-                let column = self.column(formed, *node as usize, axis);
+                let turns = self.is_turning(*node);
+                let moment = match turns {
+                    true => self.turning_moment(unit),
+                    false => S::moment(&arms[of], unit),
+                };
+                let spin = inverse.apply(&moment);
+                let column = match turns {
+                    true => &[][..],
+                    false => self.column(formed, *node as usize, axis),
+                };
                 for (row, seen) in nodes.iter().enumerate() {
-                    let rigid =
-                        *unit * (over / self.model.mass) + S::spin_velocity(&spin, &arms[row]);
+                    let block = &mut out[row * count + of];
+                    if self.is_turning(*seen) {
+                        let turning = self.turning_velocity(&spin);
+                        *block = *block + S::Matrix::dyad(&turning, unit);
+                        continue;
+                    }
+                    let rigid = S::spin_velocity(&spin, &arms[row]);
+                    if turns {
+                        *block = *block + S::Matrix::dyad(&rigid, unit);
+                        continue;
+                    }
+                    let rigid = *unit * (over / self.model.mass) + rigid;
                     let from = *seen as usize * S::D;
                     let response = S::Vector::from_slice(&column[from..from + S::D]);
                     let elastic = S::rotate(&self.state.rotation, &response);
-                    let block = &mut out[row * count + of];
                     *block = *block
                         + S::Matrix::dyad(&rigid, unit)
                         + S::Matrix::dyad(&elastic, &own[axis]);
@@ -341,6 +405,27 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
                 .map(|s| turned_stress::<S>(rotation, s))
                 .collect(),
         })
+    }
+
+    fn mesh_velocity(&self) -> Vec<S::Vector> {
+        let (model, rotation) = (&self.model, &self.state.rotation);
+        let (velocity, spin) = Self::of_frame(&self.state.velocity);
+        let rates = model
+            .shape
+            .displacements(Self::of_modes(&self.state.velocity));
+        let points = model.shape.mesh().points().iter().zip(self.displacements());
+        let moves = points.zip(rates).map(|((x, u), rate)| {
+            let arm = S::rotate(rotation, &(*x * model.size + u));
+            velocity + S::spin_velocity(&spin, &arm) + S::rotate(rotation, &(rate * model.scale))
+        });
+        moves.collect()
+    }
+
+    fn mesh_at_start(&self) -> Vec<S::Vector> {
+        let (at, rotation) = &self.model.origin;
+        let points = self.model.shape.mesh().points().iter();
+        let placed = points.map(|x| *at + S::rotate(rotation, &(*x * self.model.size)));
+        placed.collect()
     }
 
     fn small_strain(&self) -> Option<[f64; 2]> {

@@ -86,6 +86,8 @@ struct Model<S: Space> {
     scale: f64,
     /// lambda of each mode (1/s^2).
     rates: Vec<f64>,
+    /// Where it was made, and its orientation there.
+    origin: (S::Vector, S::Rotation),
 }
 
 /// The state of a grain between two steps.
@@ -101,6 +103,16 @@ struct State<S: Space> {
     velocity: Vec<f64>,
 }
 
+/// A grain at q_m, before contacts act.
+#[derive(Clone, Debug)]
+struct Middle<S: Space> {
+    rotation: S::Rotation,
+    /// Its angular velocity there from the start of the step, which contacts see (rad/s).
+    spin: S::Spin,
+    /// The same at the end of the step without contacts (rad/s).
+    free: S::Spin,
+}
+
 /// A grain that deforms.
 #[derive(Clone, Debug)]
 pub struct ElasticGrain<S: Space> {
@@ -109,8 +121,7 @@ pub struct ElasticGrain<S: Space> {
     state: State<S>,
     /// At the start of the step.
     start: State<S>,
-    /// The orientation at q_m, and the velocities there without contacts.
-    middle: (S::Rotation, Vec<f64>),
+    middle: Middle<S>,
     /// Where the vertices of the surface are in the frame (m).
     vertices: Vec<S::Vector>,
 }
@@ -144,6 +155,7 @@ impl<S: Deformable> ElasticGrain<S> {
             },
             scale: 1.0 / (density * size.powi(S::D as i32)).sqrt(),
             rates: shape.rates().iter().map(|r| rate * r).collect(),
+            origin: (spec.position, spec.rotation),
             name: spec.name,
             shape: Arc::clone(shape),
             size,
@@ -168,7 +180,11 @@ impl<S: Deformable> ElasticGrain<S> {
             model: Arc::new(model),
             formed: None,
             start: state.clone(),
-            middle: (state.rotation, state.velocity.clone()),
+            middle: Middle {
+                rotation: spec.rotation,
+                spin: spec.spin,
+                free: spec.spin,
+            },
             state,
             vertices: Vec::new(),
         };

@@ -56,6 +56,14 @@ impl<S: Dimensional> Builder<'_, S> {
             BTreeMap::new();
         for (k, spec) in self.case.elastic_grains.iter().enumerate() {
             let here = format!("elastic_grains.{k}");
+            let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+            if !spec.material.chars().all(plain) {
+                let message = format!(
+                    "the material `{}` names files of its grains: rename it with letters, digits, `-` and `_`",
+                    spec.material
+                );
+                return Err(self.fail(format!("{here}.material"), message));
+            }
             let (elasticity, material) = self.elasticity(&here, &spec.material, properties)?;
             elasticity
                 .check()

@@ -13,7 +13,7 @@ const KINDS: [(usize, u8); 3] = [(2, 3), (3, 5), (4, 10)];
 /// A mesh, and the fields that it carries.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Its group in `/views`: `meshes/NAME` or `surfaces/NAME`.
+    /// Its group in `/views`: `meshes/NAME`, `surfaces/NAME` or `elastic_grains/NAME`.
     pub group: String,
     /// Coordinates without load, three per point (m).
     pub points: Vec<f64>,
@@ -23,6 +23,8 @@ pub struct Mesh {
     pub corners: usize,
     /// Fields, in the order of their values.
     pub fields: Vec<Field>,
+    /// By point and by cell the identity of the body, where the mesh is of many; empty otherwise.
+    pub bodies: [Vec<i64>; 2],
 }
 
 /// A field of a mesh.
@@ -55,6 +57,8 @@ pub struct MeshView {
     steps: [Growing; 5],
     data: Vec<Growing>,
     data_offsets: Vec<Growing>,
+    /// Of what all states share: 0.
+    shared_offsets: Vec<Growing>,
     count: i64,
     path: String,
 }
@@ -106,11 +110,23 @@ impl MeshView {
             let doc = ("", "first value of each state");
             data_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
         }
+        let mut shared_offsets = Vec::new();
+        for (place, ids) in ["PointData", "CellData"].into_iter().zip(&mesh.bodies) {
+            if ids.is_empty() {
+                continue;
+            }
+            let doc = ("", "identity of the body, the same in all states");
+            store.numbers(&format!("{path}/{place}/body"), 1, ids, doc)?;
+            let name = format!("{path}/Steps/{place}Offsets/body");
+            let doc = ("", "first value of each state; 0");
+            shared_offsets.push(store.growing::<i64>(&name, 1, doc, FEW)?);
+        }
         Ok(Self {
             values,
             steps,
             data,
             data_offsets,
+            shared_offsets,
             count: 0,
             path,
         })
@@ -131,6 +147,9 @@ impl MeshView {
             let first = store.rows(*column) as i64;
             store.append(*offsets, &[first])?;
             store.append(*column, values)?;
+        }
+        for offsets in &self.shared_offsets {
+            store.append(*offsets, &[0i64])?;
         }
         for (column, value) in self.steps.iter().zip([0i64, 1, 0, 0, 0]) {
             store.append(*column, &[value])?;

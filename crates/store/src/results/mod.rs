@@ -370,7 +370,7 @@ fn write_origin(store: &mut Store, header: &Header) -> Result<(), ResultsError> 
 
 /// Declares the meshes of deformable bodies; no group is created without them.
 fn declare_meshes(store: &mut Store, meshes: &[Mesh]) -> Result<Vec<MeshView>, ResultsError> {
-    for group in ["meshes", "surfaces"] {
+    for group in ["meshes", "surfaces", "elastic_grains"] {
         let inside = |m: &Mesh| m.group.split('/').next() == Some(group);
         if meshes.iter().any(inside) {
             store.group(&format!("/views/{group}"))?;
@@ -389,6 +389,7 @@ fn companions(meshes: &[Mesh]) -> Vec<[String; 2]> {
         .map(|group| {
             let name = group.replacen("meshes/", "mesh_", 1);
             let name = name.replacen("surfaces/", "surface_", 1);
+            let name = name.replacen("elastic_grains/", "elastic_grains_", 1);
             [format!("{name}.vtkhdf"), format!("/views/{group}")]
         })
         .collect()

@@ -68,6 +68,15 @@ impl Reader {
         self.names.iter().any(|n| n == name)
     }
 
+    /// Whether it has a dataset in this group, or in a group of it.
+    pub fn has_group(&self, name: &str) -> bool {
+        let inside = |n: &String| {
+            n.strip_prefix(name)
+                .is_some_and(|rest| rest.starts_with('/'))
+        };
+        self.names.iter().any(inside)
+    }
+
     /// Number of rows of a dataset.
     ///
     /// # Errors

@@ -60,6 +60,8 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
 
 /// Group of the grains' view.
 const ROOT: &str = "views/grains";
+/// Group of the meshes of grains that deform.
+const DEFORM: &str = "views/elastic_grains";
 
 struct Grains {
     reader: Reader,
@@ -159,6 +161,12 @@ impl Grains {
             match sorted.take(body, motion) {
                 Known::First(grain) => state.shaped.push(*grain),
                 Known::Again => {}
+                Known::Not if corners[k] > 0.0 && self.reader.has_group(DEFORM) => {
+                    return Err(format!(
+                        "state {frame} holds grains that deform (`elastic_grains`), which no other case takes over: begin from a run in which they are \
+                         rigid, or let the run itself go on with `--resume` and a later `time.end`"
+                    ));
+                }
                 Known::Not if corners[k] > 0.0 => return Err(shapeless(frame)),
                 Known::Not => {
                     balls.push(body);

@@ -1,16 +1,21 @@
 //! Mohr-Coulomb: |t_t| <= c + mu p, with p >= -tension: a permanent plastic strength, not a bond.
 //!
+//! Cohesion and tension act where surfaces touch, at gaps up to `range`; farther apart the contact is one of Coulomb without them. Contacts are
+//! known up to the alert distance, a number of the method: without a range of its own the strength would depend on it.
+//! LMGC90's IQS_WET_DS_CLB has the same condition on the gap, with the thickness Wthk.
+//!
 //! The host's cone is |t_t| <= mu (p + c_n) + c_t with c_n the tension strength. So that the shear
 //! strength at zero pressure is c, c_t = c - mu tension.
 #![forbid(unsafe_code)]
-use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
+use fretwork_law::{ContactLaw, Friction, Law, Site, export, parameters};
 
 parameters! {
-    /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone.
+    /// Friction, cohesion and a tension cut-off below the apex c/mu of the cone. The range is that of surfaces that touch: roughness, a film.
     pub struct MohrCoulomb {
         mu: "" = 0.5, 0.0, 1e6, "friction coefficient, tangent of the friction angle";
         cohesion: "Pa" = 1e5, 0.0, 1e30, "shear strength c without pressure";
         tension: "Pa" = 5e4, 0.0, 1e30, "tension cut-off, at most cohesion/mu";
+        range: "m" = 1e-7, 0.0, 1e30, "largest gap over which cohesion and tension act";
     }
 }
 
@@ -20,8 +25,6 @@ impl Law for MohrCoulomb {
         "|t_t| <= c + mu p with a tension cut-off; the strength stays when it slides";
     const REFERENCE: &'static str =
         "R. I. Borja, Plasticity: Modeling and Computation, Springer (2013); C. A. Coulomb (1773)";
-    const FLAGS: u64 = abi::FLAG_CONSTANT;
-
     fn validate(&self) -> Result<(), String> {
         if self.mu * self.tension > self.cohesion {
             return Err(format!(
@@ -34,11 +37,15 @@ impl Law for MohrCoulomb {
 }
 
 impl ContactLaw for MohrCoulomb {
-    fn friction(&self, _site: &Site, _state: &[f64]) -> Friction {
+    fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
+        let (cohesion, tension) = match site.gap <= self.range {
+            true => (self.cohesion, self.tension),
+            false => (0.0, 0.0),
+        };
         Friction {
             mu: self.mu,
-            tension_strength: self.tension,
-            shear_cohesion: (self.cohesion - self.mu * self.tension).max(0.0),
+            tension_strength: tension,
+            shear_cohesion: (cohesion - self.mu * tension).max(0.0),
             ..Friction::default()
         }
     }
@@ -57,6 +64,7 @@ mod tests {
             mu: 0.5,
             cohesion: 10.0,
             tension: 8.0,
+            range: 1e-6,
         };
         let f = law.friction(&Site::default(), &[]);
         let strength = |p: f64| f.mu * (p + f.tension_strength) + f.shear_cohesion;
@@ -66,12 +74,34 @@ mod tests {
         }
     }
 
+    /// Surfaces that touch within the range hold, others slide by friction alone.
+    #[test]
+    fn the_strength_ends_with_the_range() {
+        let law = MohrCoulomb {
+            range: 2e-6,
+            ..MohrCoulomb::default()
+        };
+        let at = |gap| {
+            let site = Site {
+                gap,
+                ..Site::default()
+            };
+            let f = law.friction(&site, &[]);
+            (f.mu, f.tension_strength > 0.0, f.shear_cohesion > 0.0)
+        };
+        for gap in [-1e-3, 0.0, 2e-6] {
+            assert_eq!(at(gap), (0.5, true, true), "{gap}");
+        }
+        assert_eq!(at(2.1e-6), (0.5, false, false));
+    }
+
     #[test]
     fn keeps_the_cut_off_below_the_apex() {
         let law = |mu, cohesion, tension| MohrCoulomb {
             mu,
             cohesion,
             tension,
+            range: 1e-7,
         };
         assert!(law(0.5, 10.0, 20.0).validate().is_ok());
         assert!(law(0.5, 10.0, 20.1).validate().is_err());

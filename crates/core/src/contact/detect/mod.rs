@@ -7,6 +7,7 @@ mod narrow;
 mod neighbours;
 mod order;
 mod prediction;
+mod sorted;
 mod sweep;
 
 pub use extents::{Extents, fast_motion};

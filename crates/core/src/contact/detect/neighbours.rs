@@ -1,5 +1,6 @@
 //! Broad phase: pairs of shapes within the range of the neighbour list.
 
+use super::sorted::Sorted;
 use super::{LawTable, frame};
 use crate::bodies::Bodies;
 use crate::contact::network::{Key, Network};
@@ -105,6 +106,11 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         h: f64,
     ) -> Vec<f64> {
         let mut turning = Vec::with_capacity(self.shapes.surfaces.len());
+        let all: Vec<u32> = (0..self.radii.len() as u32).collect();
+        let any_closed = self.shapes.surfaces.iter().any(|s| s.shape.is_closed());
+        let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, &self.shapes.periodic));
+        let largest = self.radii.iter().copied().fold(0.0, f64::max);
+        let mut around = Vec::new();
         for (s, surface) in self.shapes.surfaces.iter().enumerate() {
             let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
             let pivot = self.bodies.position[surface.body as usize];
@@ -120,11 +126,20 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
             turning.push(spin);
             let extra = widening(widened, surface.body);
-            for (at, radius) in self.radii.iter().enumerate() {
-                let (body, material, name) = self.owner(at as u32);
+            let candidates = match &sorted {
+                Some(sorted) if closed => {
+                    let most = size + largest + self.reach + extra;
+                    sorted.near(&origin, most, &mut around);
+                    &around
+                }
+                _ => &all,
+            };
+            for at in candidates {
+                let (body, material, name) = self.owner(*at);
+                let radius = self.radii[*at as usize];
                 let known = self.laws.get(material, surface.material).is_some();
                 if known && self.may_touch(body, surface.body) {
-                    let centre = self.centres[at];
+                    let centre = self.centres[*at as usize];
                     let mut reach = radius + self.reach + extra;
                     let mut apart = centre - origin;
                     if closed {

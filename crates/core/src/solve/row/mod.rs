@@ -16,8 +16,8 @@ mod visit;
 
 pub(super) use full::FullRow;
 pub(super) use general::GeneralRow;
-pub(super) use moment::MomentRow;
 pub use moment::{MomentForm, MomentSolution};
+pub(super) use moment::{MomentRow, turning};
 pub(super) use plain::PlainRow;
 pub(super) use solver_bodies::SolverBodies;
 pub(super) use system::{SystemRow, Term};

@@ -3,9 +3,10 @@
 //! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and M_sc
 //! opposes w with |M_sc| <= (friction length) p_n, separately for bending and twist.
 
-use super::{Residual, SolverBody, inverse};
+use super::{Residual, SolverBody, Term, inverse};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{Mobility, Place};
+use crate::solve::nodal::NodalSystem;
 
 /// Resistance of a contact to rotation. Moments over the step are in N m s.
 #[derive(Clone, Copy, Debug)]
@@ -49,8 +50,10 @@ pub(in crate::solve) struct MomentRow<S: Space> {
     pub place: Place,
     pub bodies: [u32; 2],
     n: S::Vector,
-    /// Inverse lengths of the bodies (1/m).
+    /// Inverse lengths of the bodies (1/m); 0 of the body of a dynamical system.
     over: [f64; 2],
+    /// Nodes of systems that turn: their velocity times the weight (1/m) is a spin, and the moment times the weight the impulse on them.
+    terms: Vec<Term>,
     /// Inverse inertias times the lengths (1/(kg m)).
     inverse_spins: [S::Tensor; 2],
     /// Relative spin due to a unit moment; the largest one for anisotropic inertia.
@@ -76,6 +79,7 @@ impl<S: Space> MomentRow<S> {
             bodies,
             n,
             over: lengths.map(|l| 1.0 / l),
+            terms: Vec::new(),
             inverse_spins: std::array::from_fn(|k| mobilities[k].inertia.scaled(lengths[k])),
             w,
             iw: inverse(w),
@@ -84,11 +88,70 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    fn relative(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> S::Spin {
-        a.s * self.over[0] - b.s * self.over[1]
+    /// The same with systems on these sides, by the nodes that turn with them: their bodies have no spin of their own.
+    pub fn with_systems(mut self, nodes: [Option<Term>; 2], systems: &[NodalSystem<S>]) -> Self {
+        for (side, term) in nodes.into_iter().enumerate() {
+            let Some(term) = term else { continue };
+            self.over[side] = 0.0;
+            let block = systems[term.system as usize].block(term.node, term.node);
+            let row = |i: usize| {
+                (0..S::Spin::N)
+                    .map(|j| block.entry(i, j).abs())
+                    .sum::<f64>()
+            };
+            let quickest = (0..S::Spin::N).map(row).fold(0.0, f64::max);
+            self.w += quickest * term.weight * term.weight;
+            self.terms.push(term);
+        }
+        self.iw = inverse(self.w);
+        self
     }
 
-    fn push(&self, moment: &S::Spin, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
+    /// The nodes that it acts on.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// Adds its moment to the impulses on the nodes of the systems, by system.
+    pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
+        for term in &self.terms {
+            impulses[term.system as usize][term.node as usize] +=
+                turning::<S>(&self.moment) * term.weight;
+        }
+    }
+
+    fn relative(
+        &self,
+        a: &SolverBody<S>,
+        b: &SolverBody<S>,
+        systems: &[NodalSystem<S>],
+    ) -> S::Spin {
+        let mut spin = a.s * self.over[0] - b.s * self.over[1];
+        for term in &self.terms {
+            let v = systems[term.system as usize].velocity(term.node);
+            for k in 0..S::Spin::N {
+                spin[k] += v[k] * term.weight;
+            }
+        }
+        spin
+    }
+
+    fn push(
+        &self,
+        moment: &S::Spin,
+        a: &mut SolverBody<S>,
+        b: &mut SolverBody<S>,
+        systems: &mut [NodalSystem<S>],
+    ) {
+        self.turn(moment, a, b);
+        for term in &self.terms {
+            let impulse = turning::<S>(moment) * term.weight;
+            systems[term.system as usize].push(term.node, &impulse);
+        }
+    }
+
+    /// Adds what a moment does to the spins of rigid bodies.
+    fn turn(&self, moment: &S::Spin, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
         a.s += self.inverse_spins[0].apply(moment);
         b.s -= self.inverse_spins[1].apply(moment);
     }
@@ -99,11 +162,12 @@ impl<S: Space> MomentRow<S> {
         pn: f64,
         a: &mut SolverBody<S>,
         b: &mut SolverBody<S>,
+        systems: &mut [NodalSystem<S>],
         relaxation: f64,
     ) {
         let form = &self.form;
         let pn = pn.max(0.0);
-        let f = self.relative(a, b) - self.moment * self.w;
+        let f = self.relative(a, b, systems) - self.moment * self.w;
         let (f_twist, f_bend) = S::split_spin(&self.n, &f);
         let (a_twist, a_bend) = S::split_spin(&self.n, &form.a);
         let bound = form.spinning * pn;
@@ -114,7 +178,7 @@ impl<S: Space> MomentRow<S> {
         let pull = a_bend + (bend * self.w + f_bend) * form.b_bend;
         let bend = bend - pull * (1.0 / (1.0 + self.w * form.b_bend));
         let change = (S::spin_about(&self.n, twist) + bend - self.moment) * relaxation;
-        self.push(&change, a, b);
+        self.push(&change, a, b, systems);
         self.moment += change;
     }
 
@@ -133,8 +197,18 @@ impl<S: Space> MomentRow<S> {
         self.moment = *moment;
     }
 
-    pub fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
-        self.push(&self.moment, a, b);
+    /// Adds what the stored moment does to the velocities; those of nodes are right once their systems are settled.
+    pub fn load(
+        &self,
+        a: &mut SolverBody<S>,
+        b: &mut SolverBody<S>,
+        systems: &mut [NodalSystem<S>],
+    ) {
+        self.turn(&self.moment, a, b);
+        for term in &self.terms {
+            let impulse = turning::<S>(&self.moment) * term.weight;
+            systems[term.system as usize].load(term.node, &impulse);
+        }
     }
 
     /// Returns the bond's moment at a relative spin.
@@ -145,12 +219,18 @@ impl<S: Space> MomentRow<S> {
     }
 
     /// Computes the natural map times a lever arm, as a velocity.
-    pub fn residual(&self, pn: f64, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual {
+    pub fn residual(
+        &self,
+        pn: f64,
+        a: &SolverBody<S>,
+        b: &SolverBody<S>,
+        systems: &[NodalSystem<S>],
+    ) -> Residual {
         if self.iw == 0.0 {
             return Residual::default();
         }
         let pn = pn.max(0.0);
-        let w = self.relative(a, b);
+        let w = self.relative(a, b, systems);
         let shifted = self.moment - self.bond(&w);
         let rho = self.iw + self.form.b_twist.min(self.form.b_bend);
         let (twist, bend) = S::split_spin(&self.n, &(shifted - w * rho));
@@ -169,11 +249,25 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    pub fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> MomentSolution<S> {
+    pub fn solution(
+        &self,
+        a: &SolverBody<S>,
+        b: &SolverBody<S>,
+        systems: &[NodalSystem<S>],
+    ) -> MomentSolution<S> {
         MomentSolution {
             contact: self.form.contact,
             moment: self.moment,
-            friction: self.moment - self.bond(&self.relative(a, b)),
+            friction: self.moment - self.bond(&self.relative(a, b, systems)),
         }
     }
+}
+
+/// A moment as the impulse on a node that turns with a system, see [`crate::bodies::DynamicalSystem::turning_node`].
+pub(in crate::solve) fn turning<S: Space>(spin: &S::Spin) -> S::Vector {
+    let mut out = S::Vector::zero();
+    for k in 0..S::Spin::N {
+        out[k] = spin[k];
+    }
+    out
 }

@@ -10,7 +10,7 @@ use crate::solve::local::block::{Block, BlockMatrix};
 use crate::solve::local::factored;
 use crate::solve::local::form::{Delassus, Shift, Shifted};
 use crate::solve::nodal::NodalSystem;
-use crate::solve::row::Term;
+use crate::solve::row::{Term, turning};
 use std::cell::{OnceCell, RefCell};
 
 /// Direction of one component of a block.
@@ -57,6 +57,19 @@ pub struct Unknown<'a, S: Space, const D: usize> {
     pub nodes: &'a [Term],
     /// One axis per component.
     pub axes: [Axis<S>; D],
+    /// Whether it is a moment, which acts on nodes that turn.
+    pub turns: bool,
+}
+
+impl<S: Space, const D: usize> Unknown<'_, S, D> {
+    /// The impulse on a node of weight 1 per unit of a component.
+    fn on_node(&self, component: usize) -> S::Vector {
+        let axis = &self.axes[component];
+        match self.turns {
+            true => turning::<S>(&axis.angular[0]),
+            false => axis.linear,
+        }
+    }
 }
 
 /// Impulse and moment of a body, or its velocity and spin.
@@ -144,8 +157,10 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
             motion.1 += w;
         }
         for term in unknown.nodes {
-            let axes = unknown.axes.iter().zip(p);
-            let impulse = axes.fold(S::Vector::zero(), |sum, (axis, p)| sum + axis.linear * *p);
+            let components = p.iter().enumerate();
+            let impulse = components.fold(S::Vector::zero(), |sum, (k, p)| {
+                sum + unknown.on_node(k) * *p
+            });
             motions.nodes[term.system as usize][term.node as usize] += impulse * term.weight;
         }
     }
@@ -161,7 +176,7 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
     pub fn relative(&self, c: usize, motions: &Motions<S>) -> [f64; D] {
         let unknown = &self.unknowns[c];
         let [a, b] = unknown.bodies.map(|b| &motions.bodies[b as usize]);
-        let mut u = std::array::from_fn(|k| {
+        let mut u: [f64; D] = std::array::from_fn(|k| {
             let axis = &unknown.axes[k];
             axis.linear.dot(&a.0) + axis.angular[0].dot(&a.1)
                 - axis.linear.dot(&b.0)
@@ -169,8 +184,8 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         });
         for term in unknown.nodes {
             let v = motions.nodes[term.system as usize][term.node as usize] * term.weight;
-            for (u, axis) in u.iter_mut().zip(&unknown.axes) {
-                *u += axis.linear.dot(&v);
+            for (k, u) in u.iter_mut().enumerate() {
+                *u += unknown.on_node(k).dot(&v);
             }
         }
         u
@@ -198,10 +213,10 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         for a in x.nodes {
             for b in y.nodes.iter().filter(|b| b.system == a.system) {
                 let block = self.systems[a.system as usize].block(a.node, b.node);
-                for (l, axis) in y.axes.iter().enumerate() {
-                    let v = block.apply(&axis.linear) * (a.weight * b.weight);
-                    for (k, own) in x.axes.iter().enumerate() {
-                        out[k][l] += own.linear.dot(&v);
+                for l in 0..D {
+                    let v = block.apply(&y.on_node(l)) * (a.weight * b.weight);
+                    for (k, row) in out.iter_mut().enumerate() {
+                        row[l] += x.on_node(k).dot(&v);
                     }
                 }
             }

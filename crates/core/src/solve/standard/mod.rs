@@ -19,7 +19,7 @@ use super::local::law::Law;
 use super::local::solver::Method;
 use super::local::state::{Budget, State};
 use super::nodal::NodalSystem;
-use super::row::{MomentForm, SystemRow, Term};
+use super::row::{MomentForm, SystemRow, Term, turning};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use bodies::{Axis, Bodies, Motions, Unknown};
 
@@ -114,11 +114,18 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         }
     }
 
-    fn add(&mut self, bodies: [u32; 2], nodes: &'a [Term], axes: [Axis<S>; D], law: Law) -> u32 {
+    fn add(
+        &mut self,
+        bodies: [u32; 2],
+        (nodes, turns): (&'a [Term], bool),
+        axes: [Axis<S>; D],
+        law: Law,
+    ) -> u32 {
         self.w.unknowns.push(Unknown {
             bodies,
             nodes,
             axes,
+            turns,
         });
         self.laws.push(law);
         self.laws.len() as u32 - 1
@@ -161,7 +168,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 ..axes[0].bonded(0.0)
             };
         }
-        places.contact = Some(self.add(form.bodies, nodes, own, law));
+        places.contact = Some(self.add(form.bodies, (nodes, false), own, law));
         self.constant[k] = form.normal * -form.tension;
         if let Some(e) = &form.elastic {
             let mut axes = axes;
@@ -185,14 +192,14 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             if e.b_t == 0.0 {
                 self.constant[k] -= S::tangent_vector(&form.normal, &e.a_t);
             }
-            places.bond = Some(self.add(form.bodies, nodes, axes, law));
+            places.bond = Some(self.add(form.bodies, (nodes, false), axes, law));
         }
         places
     }
 
     fn push_moment(
         &mut self,
-        problem: &Problem<S>,
+        problem: &'a Problem<S>,
         form: &MomentForm<S>,
         contact: &ContactForm<S>,
         k: usize,
@@ -202,7 +209,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         let Some(of) = self.places[form.contact as usize].contact else {
             return places;
         };
-        if !contact.bodies.iter().any(turns) {
+        let nodes = problem.moments[k].terms();
+        if nodes.is_empty() && !contact.bodies.iter().any(turns) {
             return places;
         }
         let axes: [Axis<S>; D] = spins::<S, D>(&contact.normal).map(|spin| Axis {
@@ -216,7 +224,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                 twist: form.spinning,
                 bend: form.rolling,
             };
-            places.contact = Some(self.add(contact.bodies, &[], axes, law));
+            places.contact = Some(self.add(contact.bodies, (nodes, true), axes, law));
         }
         if form.b_twist > 0.0 || form.b_bend > 0.0 || form.a != S::Spin::zero() {
             let mut axes = axes;
@@ -232,7 +240,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             if form.b_bend == 0.0 {
                 self.constant_moments[k] -= bend;
             }
-            places.bond = Some(self.add(contact.bodies, &[], axes, Law::Free));
+            places.bond = Some(self.add(contact.bodies, (nodes, true), axes, Law::Free));
         }
         places
     }
@@ -253,6 +261,11 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             }
             for term in row.terms() {
                 nodes[term.system as usize][term.node as usize] += *p * term.weight;
+            }
+        }
+        for (row, m) in problem.moments.iter().zip(&self.constant_moments) {
+            for term in row.terms() {
+                nodes[term.system as usize][term.node as usize] += turning::<S>(m) * term.weight;
             }
         }
         self.w.respond(&mut nodes);
