@@ -400,6 +400,20 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         }
     }
 
+    fn neighbours(&self, contactor: usize) -> Option<[Option<S::Vector>; 2]> {
+        let part = self.model.part.as_ref()?;
+        let found = part.neighbours(contactor)?;
+        Some(found.map(|p| p.map(|p| self.node_position(p))))
+    }
+
+    fn vertex_nodes(&self, contactor: &Contactor, weights: &[(u32, f64)]) -> Option<Nodes> {
+        let part = self.model.part.as_ref()?;
+        if contactor.shape != ContactorShape::Surface {
+            return None;
+        }
+        part.of_vertices(weights)
+    }
+
     fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         let part = self.model.part.as_ref()?;
         if contactor.shape != ContactorShape::Surface {

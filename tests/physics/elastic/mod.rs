@@ -14,6 +14,7 @@ mod grains;
 mod half_space;
 mod line_contact;
 mod newton;
+mod patch;
 mod point_contact;
 mod profile;
 mod rotation;

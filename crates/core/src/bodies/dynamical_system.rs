@@ -327,6 +327,18 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         contactor.nodes
     }
 
+    /// Of a contactor that is a point on a line of points whose displacement is linear between them: where the points before and after it
+    /// on that line are (m). None of others, and in space.
+    fn neighbours(&self, _contactor: usize) -> Option<[Option<S::Vector>; 2]> {
+        None
+    }
+
+    /// The nodes of a weighted sum of vertices of the surface of a contactor, whose displacement is linear between them; none of
+    /// surfaces of which it is not, and of more than [`Nodes::MAX`].
+    fn vertex_nodes(&self, _contactor: &Contactor, _weights: &[(u32, f64)]) -> Option<Nodes> {
+        None
+    }
+
     /// The surface of a contactor that is one, in the frame of the contactor, as it is now.
     fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         None

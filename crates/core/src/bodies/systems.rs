@@ -255,6 +255,19 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
+    /// Where the points next to a contactor's are, see [`DynamicalSystem::neighbours`].
+    pub(crate) fn neighbours(&self, carrier: Carrier) -> Option<[Option<S::Vector>; 2]> {
+        let entry = &self.entries[carrier.system as usize];
+        entry.system.neighbours(carrier.contactor as usize)
+    }
+
+    /// The nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].
+    pub(crate) fn vertex_nodes(&self, carrier: Carrier, weights: &[(u32, f64)]) -> Option<Nodes> {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        entry.system.vertex_nodes(contactor, weights)
+    }
+
     /// Velocity of a point of a system at the current velocities (m/s).
     pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
         let system = &self.entries[system].system;
