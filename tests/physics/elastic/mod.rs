@@ -55,6 +55,7 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
     Support {
         part: part.to_owned(),
         axes: axes.to_vec(),
+        later: Vec::new(),
     }
 }
 

@@ -18,6 +18,7 @@
 //! Sources: J. J. Moreau, "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999); M. Jean,
 //! "The non-smooth contact dynamics method", same volume.
 
+use super::drive::Dof;
 use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -399,6 +400,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// What holds and drives it, always in the same order.
     fn holders(&self) -> Vec<Holder> {
         Vec::new()
+    }
+
+    /// The current drive of a held part along an axis, to be replaced by one that imposes motion if it does, and by none that does
+    /// if it does not. None where nothing is held.
+    fn drive_mut(&mut self, _part: &str, _axis: usize) -> Option<&mut Dof> {
+        None
     }
 
     /// Its mesh as it is now; none of systems that have no mesh.
