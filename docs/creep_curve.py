@@ -11,7 +11,7 @@ cells over each half-axis; a step rolls by a share of a cell, and the contact ro
 
 Prints for each creepage Q/(mu P), CONTACT's, the difference, how much it changed over the last half-axis rolled, and the processor time.
 
-Source of the reference: E. A. H. Vollebregt, User guide for CONTACT, example of creep curves.
+Reference: the output of CONTACT (E. A. H. Vollebregt) for its example of this contact.
 """
 import argparse
 import csv
@@ -48,7 +48,7 @@ def force(creepage):
         call += ["--set", each]
     subprocess.run(call, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with open(f"{folder}/statistics.csv", encoding="utf-8") as file:
-        rows = [float(row["wheel_holder_fx [N]"]) / (-MU * LOAD) for row in csv.DictReader(file)]
+        rows = [abs(float(row["wheel_holder_fx [N]"])) / (MU * LOAD) for row in csv.DictReader(file)]
     with open(f"{folder}/summary.json", encoding="utf-8") as file:
         seconds = json.load(file)["cpu_seconds"]
     back = math.ceil(words.cells / words.step)
