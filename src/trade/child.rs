@@ -42,6 +42,9 @@ struct StoredRun {
     seconds: f64,
     wall: f64,
     visits: f64,
+    /// Words of the reasons why the run says that it is not trustworthy.
+    #[serde(default)]
+    doubts: Vec<String>,
 }
 
 impl StoredRun {
@@ -73,6 +76,8 @@ pub struct Finished {
     pub wall: f64,
     /// Contacts times iterations, summed over the steps: a machine-independent measure of cost.
     pub visits: f64,
+    /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none of one that is.
+    pub doubts: Vec<String>,
 }
 
 /// How a run ended.
@@ -302,6 +307,7 @@ impl Launcher {
             seconds: run.seconds,
             wall: run.wall,
             visits: run.visits,
+            doubts: run.doubts,
         }
     }
 
@@ -348,6 +354,8 @@ fn read_run(
     let summary = summary(place);
     let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
     let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
+    let reasons = summary["reasons"].as_array().into_iter().flatten();
+    let doubts = reasons.filter_map(Value::as_str).map(words).collect();
     let first = said.lines().next().unwrap_or("no reason was given");
     StoredRun {
         sets: sets.to_vec(),
@@ -361,7 +369,14 @@ fn read_run(
         seconds: number("/cpu_seconds").unwrap_or(elapsed),
         wall: elapsed,
         visits: visits(place, number("/steps").unwrap_or(0.0)),
+        doubts,
     }
+}
+
+/// The words in capitals that a reason begins with; the reason itself where there are none.
+fn words(reason: &str) -> String {
+    let first = reason.split(':').next().unwrap_or(reason);
+    first.trim().to_owned()
 }
 
 /// Summary of a run; null if there is none.
@@ -405,6 +420,7 @@ mod tests {
             seconds: 1.0,
             wall: 1.0,
             visits: 1.0,
+            doubts: Vec::new(),
         };
         let folder = std::env::temp_dir().join(format!("fretwork-kept-{}", std::process::id()));
         let mut launcher = Launcher {

@@ -8,7 +8,7 @@ use super::output::{Output, Wanted};
 use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use super::study::Ledger;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// An output of a setting. Errors are fractions of the reference's value if the wanted error is relative,
 /// otherwise in the output's unit.
@@ -48,6 +48,10 @@ pub struct Row {
     pub seeds: usize,
     /// Reason why it cannot be used, if any.
     pub failed: Option<String>,
+    /// Runs that say that they are not trustworthy.
+    pub doubted: usize,
+    /// Words of their reasons, in order.
+    pub doubts: BTreeSet<String>,
     /// Processor time of the steps per run (s).
     pub seconds: f64,
     /// Contacts times iterations per run.
@@ -83,6 +87,19 @@ pub struct Compared<'a> {
     pub done: &'a Ledger,
     /// Launcher, which knows their folders.
     pub launcher: &'a Launcher,
+}
+
+impl Row {
+    /// How many of its runs say that they are not trustworthy, and why; none where all are.
+    pub fn doubt(&self) -> Option<String> {
+        let words: Vec<&str> = self.doubts.iter().map(String::as_str).collect();
+        let (doubted, seeds) = (self.doubted, self.seeds);
+        let said = format!(
+            "{doubted} of {seeds} runs not trustworthy: {}",
+            words.join(", ")
+        );
+        (doubted > 0).then_some(said)
+    }
 }
 
 impl Compared<'_> {
@@ -302,6 +319,8 @@ impl Compared<'_> {
             name: setting.name(self.parameters),
             seeds: runs.len(),
             failed,
+            doubted: runs.iter().filter(|r| !r.1.doubts.is_empty()).count(),
+            doubts: runs.iter().flat_map(|r| r.1.doubts.clone()).collect(),
             seconds: runs.iter().map(|r| r.1.seconds).sum::<f64>() / n,
             visits: runs.iter().map(|r| r.1.visits).sum::<f64>() / n,
             faster,

@@ -51,7 +51,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
                 .collect();
             json!({
                 "setting": r.name, "sets": r.setting.sets(&study.parameters), "reference": r.setting == reference,
-                "seeds": r.seeds, "failed": r.failed, "seconds": r.seconds, "visits": r.visits,
+                "seeds": r.seeds, "failed": r.failed, "not_trustworthy": r.doubted, "reasons": r.doubts, "seconds": r.seconds, "visits": r.visits,
                 "faster": r.faster.map(|f| f.0), "faster_interval": r.faster.and_then(|f| f.1), "outputs": errors,
             })
         })
@@ -88,6 +88,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
         "reference",
         "seeds",
         "failed",
+        "not_trustworthy",
         "seconds",
         "visits",
         "faster",
@@ -119,6 +120,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
             u8::from(r.setting == reference).to_string(),
             r.seeds.to_string(),
             r.failed.clone().unwrap_or_default(),
+            r.doubt().unwrap_or_default(),
             format!("{:e}", r.seconds),
             format!("{:e}", r.visits),
             maybe(r.faster.map(|f| f.0)),

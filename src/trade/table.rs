@@ -131,6 +131,9 @@ fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
             let cell = error_cell(e.as_ref(), o, row.setting == reference);
             let _ = write!(out, "  {cell:>24}");
         }
+        if let Some(doubt) = row.doubt() {
+            let _ = write!(out, "  ! {doubt}");
+        }
         if row.seeds < study.seeds.len() {
             let _ = write!(out, "  {} of {} seeds", row.seeds, study.seeds.len());
         }
@@ -140,6 +143,12 @@ fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
         out,
         "* on the frontier: no other setting is cheaper with a smaller error bound"
     );
+    if found.rows.iter().any(|row| row.doubt().is_some()) {
+        let _ = writeln!(
+            out,
+            "! runs that warn about themselves; the reasons are in `summary.json` of their folders in runs/"
+        );
+    }
 }
 
 /// The error of an output in a row; of the reference its own error.

@@ -33,6 +33,8 @@ use std::sync::Arc;
 pub struct ElasticBody<S: Space> {
     pub(crate) model: Arc<Model<S>>,
     pub(crate) formed: Option<Arc<Formed<S>>>,
+    /// The current drive of each held coordinate.
+    pub(crate) drives: Vec<Dof>,
     pub(crate) displacement: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
     /// Both at the start of the step.
@@ -95,7 +97,9 @@ impl<S: Deformable> ElasticBody<S> {
             contactors,
             part,
         };
+        let drives = model.freedoms.held.iter().map(|h| h.drive.clone());
         Ok(Self {
+            drives: drives.collect(),
             model: Arc::new(model),
             formed: None,
             displacement: vec![0.0; total],
@@ -194,9 +198,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn begin_step(&mut self, step: &SystemStep<S>) {
         let model = Arc::clone(&self.model);
         self.jump = 0.0;
-        for driven in model.freedoms.imposed() {
-            let c = driven.coordinate as usize;
-            let drive = driven.drive.over(step.time, step.h);
+        for (c, drive) in model.freedoms.imposed(&self.drives) {
+            let drive = drive.over(step.time, step.h);
             if let Some(speeds) = drive.speeds(step.time, step.h, step.theta) {
                 let before = self.velocity[c];
                 self.jump += 0.5 * model.mass[c] * (speeds.start.powi(2) - before.powi(2));
@@ -242,10 +245,10 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let SystemStep { time, h, theta, .. } = *step;
         let [q, v] = &self.start;
         let mut end = v.clone();
-        for driven in model.freedoms.imposed() {
-            let drive = driven.drive.over(time, h);
+        for (c, drive) in model.freedoms.imposed(&self.drives) {
+            let drive = drive.over(time, h);
             if let Some(speeds) = drive.speeds(time, h, theta) {
-                end[driven.coordinate as usize] = speeds.end;
+                end[c] = speeds.end;
             }
         }
         // With imposed coordinates at their final velocity, what the others lack is A^-1 of the rest of the forces.
@@ -264,8 +267,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 h * (model.mass[c] * gravity - elastic[c] - viscous[c])
             })
             .collect();
-        for driven in model.freedoms.forces() {
-            impulse[driven.coordinate as usize] += h * Self::force(&driven.drive, step);
+        for (c, drive) in model.freedoms.forces(&self.drives) {
+            impulse[c] += h * Self::force(drive, step);
         }
         if let Some(formed) = &self.formed {
             formed.solve(&mut impulse);
@@ -313,9 +316,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             work.potential -= h * m * gravity * average[c];
             work.scheme += (theta - 0.5) * m * change * change;
         }
-        for driven in model.freedoms.forces() {
-            let force = Self::force(&driven.drive, step);
-            work.external += h * force * average[driven.coordinate as usize];
+        for (c, drive) in model.freedoms.forces(&self.drives) {
+            work.external += h * Self::force(drive, step) * average[c];
         }
         if model.freedoms.free < model.freedoms.total() {
             let moved = &average[model.freedoms.free..];
@@ -354,8 +356,13 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn is_driven(&self) -> bool {
-        let mut imposed = self.model.freedoms.imposed();
-        imposed.any(|d| !matches!(d.drive, Dof::Fixed))
+        let mut imposed = self.model.freedoms.imposed(&self.drives);
+        imposed.any(|(_, drive)| !matches!(drive, Dof::Fixed))
+    }
+
+    fn drive_mut(&mut self, part: &str, axis: usize) -> Option<&mut Dof> {
+        let held = self.model.freedoms.find(part, axis)?;
+        self.drives.get_mut(held)
     }
 
     fn node_position(&self, node: u32) -> S::Vector {
@@ -384,6 +391,20 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             }
             _ => contactor.nodes,
         }
+    }
+
+    fn neighbours(&self, contactor: usize) -> Option<[Option<S::Vector>; 2]> {
+        let part = self.model.part.as_ref()?;
+        let found = part.neighbours(contactor)?;
+        Some(found.map(|p| p.map(|p| self.node_position(p))))
+    }
+
+    fn vertex_nodes(&self, contactor: &Contactor, weights: &[(u32, f64)]) -> Option<Nodes> {
+        let part = self.model.part.as_ref()?;
+        if contactor.shape != ContactorShape::Surface {
+            return None;
+        }
+        part.of_vertices(weights)
     }
 
     fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
@@ -441,11 +462,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let freedoms = &self.model.freedoms;
         let reactions = self.step.as_ref().map(|step| self.reactions(step));
         let averages = self.step.as_ref().map(|step| self.average(step));
-        let one = |held: &Held| {
+        let one = |(held, drive): (&Held, &Dof)| {
             let c = held.coordinate as usize;
             let force = match (&self.step, &reactions) {
                 (Some(_), Some(reactions)) if c >= freedoms.free => reactions[c - freedoms.free],
-                (Some(step), _) => Self::force(&held.drive, step),
+                (Some(step), _) => Self::force(drive, step),
                 _ => 0.0,
             };
             Holder {
@@ -457,8 +478,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 force,
             }
         };
-        let mut held: Vec<&Held> = freedoms.held.iter().collect();
-        held.sort_by_key(|h| (h.support, freedoms.axis[h.coordinate as usize]));
+        let mut held: Vec<(&Held, &Dof)> = freedoms.held.iter().zip(&self.drives).collect();
+        held.sort_by_key(|(h, _)| (h.support, freedoms.axis[h.coordinate as usize]));
         held.into_iter().map(one).collect()
     }
 

@@ -16,7 +16,7 @@ pub struct Held {
     pub part: String,
     /// Index of the coordinate.
     pub coordinate: u32,
-    /// Its drive.
+    /// Its drive at the start; the body has the current one.
     pub drive: Dof,
 }
 
@@ -62,7 +62,9 @@ impl<S: Space> Freedoms<S> {
                         Some(other) => {
                             let other: &Support = &supports[other];
                             // At a common corner of two parts that do the same, either will do.
-                            let same = other.axes[axis].as_ref() == Some(drive) && drive.imposes();
+                            let same = other.axes[axis].as_ref() == Some(drive)
+                                && other.later(axis).eq(support.later(axis))
+                                && drive.imposes();
                             if !same {
                                 let [one, two] = [&other.part, &support.part].map(Clone::clone);
                                 return Err(BodyError::Twice(one, two, ["x", "y", "z"][axis]));
@@ -114,7 +116,7 @@ impl<S: Space> Freedoms<S> {
                 };
                 if imposed {
                     out.imposed.push(out.held.len());
-                } else if !matches!(drive, Dof::Free) {
+                } else {
                     out.forces.push(out.held.len());
                 }
                 out.held.push(Held {
@@ -131,14 +133,22 @@ impl<S: Space> Freedoms<S> {
         out
     }
 
-    /// Coordinates with a force.
-    pub fn forces(&self) -> impl Iterator<Item = &Held> {
-        self.forces.iter().map(|k| &self.held[*k])
+    /// Coordinates that may have a force, with their drives; `drives` has that of each of `held`.
+    pub fn forces<'a>(&'a self, drives: &'a [Dof]) -> impl Iterator<Item = (usize, &'a Dof)> {
+        let of = |k: &usize| (self.held[*k].coordinate as usize, &drives[*k]);
+        self.forces.iter().map(of)
     }
 
-    /// Imposed coordinates, in their order.
-    pub fn imposed(&self) -> impl Iterator<Item = &Held> {
-        self.imposed.iter().map(|k| &self.held[*k])
+    /// Imposed coordinates with their drives, in their order.
+    pub fn imposed<'a>(&'a self, drives: &'a [Dof]) -> impl Iterator<Item = (usize, &'a Dof)> {
+        let of = |k: &usize| (self.held[*k].coordinate as usize, &drives[*k]);
+        self.imposed.iter().map(of)
+    }
+
+    /// The place in `held` of a part along an axis.
+    pub fn find(&self, part: &str, axis: usize) -> Option<usize> {
+        let along = |h: &Held| usize::from(self.axis[h.coordinate as usize]) == axis;
+        self.held.iter().position(|h| h.part == part && along(h))
     }
 
     /// Number of coordinates.

@@ -180,8 +180,8 @@ impl<S: Deformable> ElasticBody<S> {
                 model.mass[c] * inertia + h * (forces.elastic[c] + forces.viscous[c])
             })
             .collect();
-        for driven in model.freedoms.forces() {
-            out[driven.coordinate as usize] -= h * Self::force(&driven.drive, step);
+        for (c, drive) in model.freedoms.forces(&self.drives) {
+            out[c] -= h * Self::force(drive, step);
         }
         out
     }
@@ -195,10 +195,9 @@ impl<S: Deformable> ElasticBody<S> {
         let mut end = at.velocity.clone();
         // Imposed coordinates go to their final velocity, and the tangent says what that does to the others.
         let mut change = vec![0.0; end.len()];
-        for driven in model.freedoms.imposed() {
-            let drive = driven.drive.over(time, h);
+        for (c, drive) in model.freedoms.imposed(&self.drives) {
+            let drive = drive.over(time, h);
             if let Some(speeds) = drive.speeds(time, h, theta) {
-                let c = driven.coordinate as usize;
                 change[c] = speeds.end - end[c];
                 end[c] = speeds.end;
             }
@@ -288,8 +287,8 @@ impl<S: Deformable> ElasticBody<S> {
             rounded += (h * stiff * moved).powi(2)
                 + (model.mass[c] * (before.abs() + after.abs())).powi(2);
         }
-        for driven in model.freedoms.forces() {
-            balanced += (h * Self::force(&driven.drive, step)).powi(2);
+        for (_, drive) in model.freedoms.forces(&self.drives) {
+            balanced += (h * Self::force(drive, step)).powi(2);
         }
         [f64::sqrt(balanced), ROUNDING * f64::sqrt(rounded)]
     }

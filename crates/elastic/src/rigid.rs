@@ -110,6 +110,7 @@ mod tests {
         Support {
             part: part.to_owned(),
             axes: axes.to_vec(),
+            later: Vec::new(),
         }
     }
 

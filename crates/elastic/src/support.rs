@@ -11,6 +11,16 @@ pub struct Support {
     pub part: String,
     /// The drive along each axis; a force (N; N/m in 2D) is that on the whole part.
     pub axes: Vec<Option<Dof>>,
+    /// Drives that take over during the run ([`ElasticBody`](crate::ElasticBody) is told when): index of the phase, axis, drive. Parts with a common corner must have the same.
+    pub later: Vec<(usize, usize, Dof)>,
+}
+
+impl Support {
+    /// The drives that take over along an axis.
+    pub(crate) fn later(&self, axis: usize) -> impl Iterator<Item = (usize, &Dof)> {
+        let along = self.later.iter().filter(move |l| l.1 == axis);
+        along.map(|(phase, _, drive)| (*phase, drive))
+    }
 }
 
 /// Rayleigh damping, C = alpha M + beta K.

@@ -81,6 +81,19 @@ impl SurfacePart {
         self.points[self.points.len() / 2]
     }
 
+    /// The points before and after one of a chain, by its place in `points`; none in space.
+    pub fn neighbours(&self, k: usize) -> Option<[Option<u32>; 2]> {
+        let before = k.checked_sub(1).map(|b| self.points[b]);
+        let after = self.points.get(k + 1).copied();
+        (self.dimension == 2).then_some([before, after])
+    }
+
+    /// The nodes of a weighted sum of vertices; none of too many.
+    pub fn of_vertices(&self, weights: &[(u32, f64)]) -> Option<Nodes> {
+        let terms = weights.iter().map(|(k, w)| (self.points[*k as usize], *w));
+        Nodes::sum(&terms.collect::<Vec<_>>())
+    }
+
     /// The nodes of a place on the surface, by the shape functions of its facet. `position` gives the current place of a point of the
     /// mesh (m).
     pub fn nodes<S: Space>(&self, at: &S::Vector, position: impl Fn(u32) -> S::Vector) -> Nodes {

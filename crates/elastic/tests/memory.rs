@@ -19,6 +19,7 @@ fn body<S: Deformable>(mesh: Mesh<S>, strain: Strain) -> ElasticBody<S> {
     let supports = [Support {
         part: "bottom".to_owned(),
         axes: vec![Some(Dof::Fixed); S::D],
+        later: Vec::new(),
     }];
     let spec = BodySpec {
         name: "block",

@@ -6,7 +6,7 @@ use super::case::{BodySpec, Case};
 use super::holders;
 use super::source::{ValidationError, nearest};
 use fretwork_core::bodies::Dof;
-use fretwork_core::bodies::pressure::Servo;
+use fretwork_core::bodies::pressure::{Pushed, Servo};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_core::step::control::{Changes, GravityDrive, Phase, Until};
@@ -101,12 +101,6 @@ impl Redriven {
             dof.as_ref().map(|d| (name, place, d))
         })
     }
-}
-
-/// The phases of a run, each as often as it is run.
-pub(super) fn in_order(case: &Case) -> impl Iterator<Item = &PhaseSpec> {
-    let rounds = groups(case).flat_map(|(group, times)| (0..times).map(move |_| group.clone()));
-    rounds.flat_map(|group| &case.phases[group])
 }
 
 /// All drives that the holder of a deformable body has during the run, along an axis: its own, then those of the phases.
@@ -232,7 +226,7 @@ fn one(case: &Case, phase: &PhaseSpec, last: bool) -> Result<(), ValidationError
         let all = bodies.clone().chain(holders.iter().map(String::as_str));
         known(&path, "body", name, all)?;
         if !bodies.clone().any(|b| b == name) {
-            holders::check(case, phase, name, redriven)?;
+            holders::check(case, name, redriven)?;
         }
         for (dof, place, drive) in redriven.given(dimension) {
             if place.is_none() {
@@ -381,7 +375,8 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
         };
         for (dof, drive) in body.ordered(S::D).iter().enumerate() {
             let name = BodySpec::names(S::D)[dof];
-            let servos = Servo::of(&s.state.bodies, &s.shapes, place, dof, drive)
+            let pushed = Pushed::Body(place, dof);
+            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, drive)
                 .map_err(|m| ValidationError::new(format!("bodies.{k}.dofs.{name}"), m))?;
             s.state.control.servos.extend(servos);
         }
@@ -389,12 +384,24 @@ pub(super) fn install<S: Space>(case: &Case, s: &mut Simulation<S>) -> Result<()
             s.state.control.gates.push((place, time));
         }
     }
+    for (path, holder, axes) in holders::own(case) {
+        for (axis, drive) in axes.into_iter().enumerate() {
+            let (Some(drive), Some(held)) = (drive, holders::find(case, s, &holder, axis)) else {
+                continue;
+            };
+            let pushed = Pushed::Holder(held);
+            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, drive).map_err(|m| {
+                ValidationError::new(format!("{path}.{}", ["x", "y", "z"][axis]), m)
+            })?;
+            s.state.control.servos.extend(servos);
+        }
+    }
     let mut phases = Vec::new();
     for (k, spec) in case.phases.iter().enumerate() {
         phases.push(Phase {
             name: spec.name.clone(),
             until: spec.until.clone(),
-            changes: changes(spec, s).map_err(|f| f.under(&format!("phases.{k}")))?,
+            changes: changes(case, spec, s).map_err(|f| f.under(&format!("phases.{k}")))?,
             recurs: false,
         });
     }
@@ -413,16 +420,28 @@ fn place<S: Space>(s: &Simulation<S>, name: &str) -> Option<usize> {
     s.state.bodies.driven.iter().position(|d| d.name == name)
 }
 
-fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, ValidationError> {
-    let mut drives = Vec::new();
+fn changes<S: Space>(
+    case: &Case,
+    spec: &PhaseSpec,
+    s: &Simulation<S>,
+) -> Result<Changes<S>, ValidationError> {
+    let (mut drives, mut held) = (Vec::new(), Vec::new());
     for (name, redriven) in &spec.drives {
         for (dof, k, drive) in redriven.given(S::D) {
-            let (Some(place), Some(k)) = (place(s, name), k) else {
-                continue;
+            let Some(k) = k else { continue };
+            let pushed = match (place(s, name), holders::find(case, s, name, k)) {
+                (Some(place), _) => {
+                    drives.push((place, k, drive.clone()));
+                    Pushed::Body(place, k)
+                }
+                (None, Some(holder)) => {
+                    held.push((holder.clone(), drive.clone()));
+                    Pushed::Holder(holder)
+                }
+                (None, None) => continue,
             };
-            Servo::of(&s.state.bodies, &s.shapes, place, k, drive)
+            Servo::of(&s.state.bodies, &s.shapes, &pushed, drive)
                 .map_err(|m| ValidationError::new(format!("drives.{name}.{dof}"), m))?;
-            drives.push((place, k, drive.clone()));
         }
     }
     let mut contact = Vec::new();
@@ -450,6 +469,7 @@ fn changes<S: Space>(spec: &PhaseSpec, s: &Simulation<S>) -> Result<Changes<S>, 
     }
     Ok(Changes {
         drives,
+        holders: held,
         gravity: spec.gravity.as_deref().map(S::Vector::from_slice),
         gravity_drive: spec.gravity_drive.clone(),
         contact,

@@ -14,6 +14,7 @@ mod grains;
 mod half_space;
 mod line_contact;
 mod newton;
+mod patch;
 mod point_contact;
 mod profile;
 mod rotation;
@@ -54,6 +55,7 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
     Support {
         part: part.to_owned(),
         axes: axes.to_vec(),
+        later: Vec::new(),
     }
 }
 

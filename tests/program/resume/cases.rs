@@ -179,6 +179,16 @@ fn deformable_bodies() {
         sets: &sets,
     };
     resumes("deformable", job, &[3]);
+    let phases = r#"phases=[
+        (name: "press", until: AtRest(energy: Some(1e9), held: 1e-3)),
+        (name: "rub", drives: {"cylinder.top": (x: Displacement(Sine(amplitude: 2e-6, frequency: 20.0)))}),
+    ]"#;
+    let held = ["elastic.cylinder.supports.0.x=Fixed", phases];
+    let job = Job {
+        case: "cylinder_on_flat_fretting",
+        sets: &[&sets[..], &held].concat(),
+    };
+    resumes("deformable-phases", job, &[3]);
 }
 
 /// Half-spaces: one that wears under a friction test, and two that roll, of which a step begins with the forces of the one before.

@@ -124,6 +124,53 @@ fn each_rung_is_the_case_with_more_that_deforms() {
     );
 }
 
+/// A load under which disks pass through each other: the report tells which rows are of runs that warn about themselves.
+#[test]
+fn rows_of_runs_that_are_not_trustworthy_are_marked() {
+    let folder = Folder::new("doubts");
+    let heavy = SHEAR.replace("to: -2e4", "to: -3e7");
+    let (case, out) = (folder.file("heavy.ron", &heavy), folder.out());
+    let found = study(&[
+        &case,
+        "--vary",
+        "time.step=1e-4,2e-4",
+        "--seeds",
+        "2",
+        "--budget",
+        "1m",
+        "--out",
+        &out,
+    ]);
+    let table = std::fs::read_to_string(format!("{out}/trade.csv")).unwrap();
+    let mut doubted = 0;
+    for setting in settings(&found) {
+        let runs = doubted_runs(&out, &setting);
+        assert_eq!(setting["not_trustworthy"], runs, "{setting}");
+        assert_eq!(setting["reasons"] != serde_json::json!([]), runs > 0);
+        let name = setting["setting"].as_str().unwrap();
+        let row = table.lines().find(|l| l.starts_with(name)).unwrap();
+        assert_eq!(row.contains("runs not trustworthy: "), runs > 0, "{row}");
+        doubted += runs;
+    }
+    assert!(doubted > 0, "{table}");
+}
+
+/// Runs of a setting whose own summary says that they are not trustworthy.
+fn doubted_runs(out: &str, setting: &Value) -> usize {
+    let read = |path: std::path::PathBuf| -> Option<Value> {
+        serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()
+    };
+    let places = std::fs::read_dir(format!("{out}/runs")).unwrap();
+    let runs = places.filter_map(|place| {
+        let place = place.ok()?.path();
+        let run = read(place.join("run.json"))?;
+        let own = run["sets"] == setting["sets"];
+        own.then(|| read(place.join("summary.json")))?
+    });
+    runs.filter(|summary| summary["trustworthy"] == false)
+        .count()
+}
+
 /// From the other ends of the ladder: rigid contacts get springs of the materials, grains and half-spaces become rigid.
 #[test]
 fn every_rung_leads_to_the_others() {

@@ -19,6 +19,7 @@
 //! "The non-smooth contact dynamics method", same volume.
 
 use super::compliance::Compliance;
+use super::drive::Dof;
 use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -336,6 +337,18 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
+    /// Of a contactor that is a point on a line of points whose displacement is linear between them: where the points before and after it
+    /// on that line are (m). None of others, and in space.
+    fn neighbours(&self, _contactor: usize) -> Option<[Option<S::Vector>; 2]> {
+        None
+    }
+
+    /// The nodes of a weighted sum of vertices of the surface of a contactor, whose displacement is linear between them; none of
+    /// surfaces of which it is not, and of more than [`Nodes::MAX`].
+    fn vertex_nodes(&self, _contactor: &Contactor, _weights: &[(u32, f64)]) -> Option<Nodes> {
+        None
+    }
+
     /// The surface of a contactor that is one, in the frame of the contactor, as it is now.
     fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         None
@@ -413,6 +426,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// What holds and drives it, always in the same order.
     fn holders(&self) -> Vec<Holder> {
         Vec::new()
+    }
+
+    /// The current drive of a held part along an axis, to be replaced by one that imposes motion if it does, and by none that does
+    /// if it does not. None where nothing is held.
+    fn drive_mut(&mut self, _part: &str, _axis: usize) -> Option<&mut Dof> {
+        None
     }
 
     /// Its mesh as it is now; none of systems that have no mesh.

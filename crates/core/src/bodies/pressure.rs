@@ -2,6 +2,7 @@
 
 use super::drive::Dof;
 use super::state::Bodies;
+use super::systems::{HeldAxis, Systems};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
@@ -13,13 +14,30 @@ struct Face {
     offset: f64,
 }
 
+/// What a servo pushes.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pushed {
+    /// A driven body: its index among these, and that of the degree of freedom.
+    Body(usize, usize),
+    /// What holds a part of a deformable body.
+    Holder(HeldAxis),
+}
+
+impl Pushed {
+    /// Index of the degree of freedom.
+    fn dof(&self) -> usize {
+        match self {
+            Self::Body(_, dof) => *dof,
+            Self::Holder(held) => held.axis,
+        }
+    }
+}
+
 /// A drive that depends on the area between walls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Servo {
-    /// Index among the driven bodies.
-    place: usize,
-    /// Index of the degree of freedom.
-    dof: usize,
+    /// What it pushes.
+    pushed: Pushed,
     /// Index of the stage, 0 where there are no stages.
     drive: usize,
     /// Product of the periodic lengths (m, m^2).
@@ -29,9 +47,9 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// Index among the driven bodies.
-    pub(crate) fn place(&self) -> usize {
-        self.place
+    /// What it pushes.
+    pub(crate) fn pushed(&self) -> &Pushed {
+        &self.pushed
     }
 
     /// Returns the servos of one degree of freedom, one for each stage that is a pressure.
@@ -41,11 +59,11 @@ impl Servo {
     pub fn of<S: Space>(
         bodies: &Bodies<S>,
         shapes: &Shapes<S>,
-        place: usize,
-        dof: usize,
+        pushed: &Pushed,
         drive: &Dof,
     ) -> Result<Vec<Self>, String> {
         let mut servos = Vec::new();
+        let dof = pushed.dof();
         for (k, drive) in drive.drives().enumerate() {
             let Dof::Pressure { between, .. } = drive else {
                 continue;
@@ -56,8 +74,7 @@ impl Servo {
                 );
             }
             let mut servo = Self {
-                place,
-                dof,
+                pushed: pushed.clone(),
                 drive: k,
                 fixed: 1.0,
                 spans: Vec::new(),
@@ -86,13 +103,17 @@ impl Servo {
     }
 
     /// Measures the area between the walls and passes it to the drive.
-    pub fn measure<S: Space>(&self, bodies: &mut Bodies<S>) {
+    pub fn measure<S: Space>(&self, bodies: &mut Bodies<S>, systems: &mut Systems<S>) {
         let mut now = self.fixed;
         for (axis, faces) in &self.spans {
             let [low, high] = faces.map(|f| bodies.position[f.body][*axis] + f.offset);
             now *= (high - low).abs();
         }
-        let dof = &mut bodies.driven[self.place].dofs[self.dof];
+        let dof = match &self.pushed {
+            Pushed::Body(place, dof) => Some(&mut bodies.driven[*place].dofs[*dof]),
+            Pushed::Holder(held) => systems.drive_mut(held),
+        };
+        let Some(dof) = dof else { return };
         let drive = match dof {
             Dof::Stages(stages) => match stages.get_mut(self.drive) {
                 Some(stage) => &mut stage.drive,
@@ -103,11 +124,6 @@ impl Servo {
         if let Dof::Pressure { area, .. } = drive {
             *area = now;
         }
-    }
-
-    /// Returns whether it controls this degree of freedom.
-    pub fn serves(&self, place: usize, dof: usize) -> bool {
-        (self.place, self.dof) == (place, dof)
     }
 }
 
@@ -183,10 +199,11 @@ mod tests {
                 material: 0,
             });
         }
-        let servos = Servo::of(&bodies, &shapes, 2, 2, &pressure).unwrap_or_default();
+        let servos =
+            Servo::of(&bodies, &shapes, &Pushed::Body(2, 2), &pressure).unwrap_or_default();
         for wide in [0.3, 0.2] {
             bodies.position[1].x = wide;
-            servos[0].measure(&mut bodies);
+            servos[0].measure(&mut bodies, &mut Systems::default());
             let force = bodies.driven[2].dofs[2].force(0.0);
             assert!((force + 2e3 * wide * 0.5).abs() < 1e-9, "{force}");
         }
@@ -195,7 +212,7 @@ mod tests {
             between: Vec::new(),
             area: 0.0,
         };
-        let said = Servo::of(&bodies, &shapes, 2, 2, &blind).unwrap_err();
+        let said = Servo::of(&bodies, &shapes, &Pushed::Body(2, 2), &blind).unwrap_err();
         assert!(said.contains("length along x"), "{said}");
     }
 }

@@ -1,6 +1,7 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
 use super::compliance::Compliance;
+use super::drive::Dof;
 use super::dynamical_system::{
     Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork,
 };
@@ -24,6 +25,17 @@ pub struct Carrier {
     /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a contact of two of them is found
     /// from both sides.
     pub grain: bool,
+}
+
+/// A held part of a system along an axis.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct HeldAxis {
+    /// Index of the system.
+    pub system: usize,
+    /// Name of the part.
+    pub part: String,
+    /// Axis, 0 is x.
+    pub axis: usize,
 }
 
 /// A system with what the step keeps of it.
@@ -134,6 +146,17 @@ impl<S: Space> Systems<S> {
         });
         self.carry(bodies);
         index
+    }
+
+    /// The current drive of a held part, see [`DynamicalSystem::drive_mut`].
+    pub fn drive_mut(&mut self, of: &HeldAxis) -> Option<&mut Dof> {
+        let entry = self.entries.get_mut(of.system)?;
+        entry.system.drive_mut(&of.part, of.axis)
+    }
+
+    /// The index of a system by its name.
+    pub fn named(&self, name: &str) -> Option<usize> {
+        self.entries.iter().position(|e| e.system.name() == name)
     }
 
     /// Puts the bodies of all contactors where their systems have them.
@@ -283,6 +306,19 @@ impl<S: Space> Systems<S> {
         let entry = &self.entries[carrier.system as usize];
         let contactor = &entry.contactors[carrier.contactor as usize];
         entry.system.turning_node(contactor)
+    }
+
+    /// Where the points next to a contactor's are, see [`DynamicalSystem::neighbours`].
+    pub(crate) fn neighbours(&self, carrier: Carrier) -> Option<[Option<S::Vector>; 2]> {
+        let entry = &self.entries[carrier.system as usize];
+        entry.system.neighbours(carrier.contactor as usize)
+    }
+
+    /// The nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].
+    pub(crate) fn vertex_nodes(&self, carrier: Carrier, weights: &[(u32, f64)]) -> Option<Nodes> {
+        let entry = &self.entries[carrier.system as usize];
+        let contactor = &entry.contactors[carrier.contactor as usize];
+        entry.system.vertex_nodes(contactor, weights)
     }
 
     /// Velocity of a point of a system at the current velocities (m/s).

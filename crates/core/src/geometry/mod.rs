@@ -8,6 +8,7 @@ pub mod facets;
 pub mod grid;
 pub mod height_field;
 pub mod mesh;
+pub mod mortar;
 pub mod periodic;
 pub mod polyline;
 pub mod recede;

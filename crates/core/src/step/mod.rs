@@ -24,6 +24,7 @@ mod error;
 pub mod fields;
 mod finite;
 mod imposed;
+mod mortar;
 pub mod motion;
 mod one_step;
 mod options;

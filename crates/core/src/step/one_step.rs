@@ -88,6 +88,7 @@ impl<S: Space> Simulation<S> {
             [time, h],
             parallel,
         );
+        self.reach_mean_places();
         report.projected = self.project();
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);

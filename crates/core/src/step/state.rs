@@ -136,6 +136,7 @@ impl<S: Space> Simulation<S> {
             scar.show_again(&mut self.shapes);
         }
         self.state.control.set_parameters(&mut self.laws);
+        self.set_holder_drives();
         self.measure_areas();
         true
     }

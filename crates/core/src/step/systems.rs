@@ -194,12 +194,16 @@ impl<S: Space> Simulation<S> {
         if carriers == [None; 2] {
             return None;
         }
+        let mean = self.mean_place(contact);
         Some(std::array::from_fn(|k| {
             let (body, arm) = (contact.bodies[k], contact.arms[k]);
             match carriers[k] {
                 Some(carrier) => Side::Nodes {
                     system: carrier.system,
-                    nodes: self.state.systems.contact_nodes(carrier, &arm),
+                    nodes: match &mean {
+                        Some((nodes, _)) if k == 1 => *nodes,
+                        _ => self.state.systems.contact_nodes(carrier, &arm),
+                    },
                 },
                 None => Side::Rigid { body, arm },
             }

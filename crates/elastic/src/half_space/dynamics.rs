@@ -1,6 +1,6 @@
 //! A half-space as a dynamical system.
 
-use super::{Cells, HalfSpace, MAX_KEPT};
+use super::{Cells, HOLDER, HalfSpace, MAX_KEPT};
 use crate::compiled::Deformable;
 use fretwork_core::bodies::{
     Compliance, Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemSize,
@@ -72,7 +72,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
             .iter()
             .map(|q| -q * back)
             .collect();
-        for (axis, dof) in self.fixed.axes.iter().enumerate() {
+        for (axis, dof) in self.axes.iter().enumerate() {
             let mut v = self.start[1][held + axis];
             if self.yields(axis) {
                 let force = dof.over(time, h).force(time + theta * h);
@@ -165,7 +165,11 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
 
     fn is_driven(&self) -> bool {
         let moves = |dof: &Dof| dof.imposes() && !matches!(dof, Dof::Fixed);
-        self.fixed.rolling.is_some() || self.fixed.axes.iter().any(moves)
+        self.fixed.rolling.is_some() || self.axes.iter().any(moves)
+    }
+
+    fn drive_mut(&mut self, part: &str, axis: usize) -> Option<&mut Dof> {
+        self.axes.get_mut(axis).filter(|_| part == HOLDER)
     }
 
     fn node_position(&self, node: u32) -> S::Vector {
@@ -306,7 +310,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
                 force,
             }
         };
-        let axes = (0..S::D).map(|axis| ("holder", axis, held + axis));
+        let axes = (0..S::D).map(|axis| (HOLDER, axis, held + axis));
         let rolling = self.fixed.rolling.as_ref();
         let rolling = rolling.map(|_| ("rolling", 0, self.rolled()));
         axes.chain(rolling).map(one).collect()

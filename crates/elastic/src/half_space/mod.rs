@@ -91,6 +91,9 @@ pub struct HalfSpaceSpec<'a, S: Space> {
     pub surface_material: u16,
 }
 
+/// The part of a half-space that is held.
+pub const HOLDER: &str = "holder";
+
 /// What does not change, shared by copies.
 #[derive(Debug)]
 struct Fixed<S: Space> {
@@ -104,7 +107,6 @@ struct Fixed<S: Space> {
     /// Sign of the outward normal along the last axis.
     outward: f64,
     mass: f64,
-    axes: Vec<Dof>,
     rolling: Option<TimeFunction>,
     touching: Cells,
     surface_material: u16,
@@ -121,6 +123,8 @@ struct Fixed<S: Space> {
 #[derive(Clone, Debug)]
 pub struct HalfSpace<S: Space> {
     fixed: Arc<Fixed<S>>,
+    /// The current drive of its holder along each axis.
+    axes: Vec<Dof>,
     displacement: Vec<f64>,
     velocity: Vec<f64>,
     /// Forces on the cells and on the whole, by coordinate (N; N/m in 2D), in the last step.
@@ -184,7 +188,6 @@ impl<S: Deformable> HalfSpace<S> {
             places,
             outward,
             mass: spec.mass,
-            axes: spec.axes.to_vec(),
             rolling: spec.rolling,
             repeats: spec.repeats,
             touching: spec.touching,
@@ -196,6 +199,7 @@ impl<S: Deformable> HalfSpace<S> {
         let zeros = || vec![0.0; total];
         let body = Self {
             fixed: Arc::new(fixed),
+            axes: spec.axes.to_vec(),
             displacement: zeros(),
             velocity: zeros(),
             force: zeros(),
@@ -249,7 +253,7 @@ impl<S: Deformable> HalfSpace<S> {
 
     /// Whether the holder moves under forces along an axis.
     fn yields(&self, axis: usize) -> bool {
-        self.fixed.axes[axis].yields()
+        self.axes[axis].yields()
     }
 
     /// Sign of a local axis in the world: the last is the inward normal.
@@ -321,7 +325,7 @@ impl<S: Deformable> HalfSpace<S> {
     /// Force of the holder along an axis over the last step (N; N/m in 2D).
     fn reaction(&self, axis: usize, step: &SystemStep<S>) -> f64 {
         let c = self.held() + axis;
-        let drive = self.fixed.axes[axis].over(step.time, step.h);
+        let drive = self.axes[axis].over(step.time, step.h);
         if self.yields(axis) {
             return drive.force(step.time + step.theta * step.h);
         }
@@ -343,7 +347,7 @@ impl<S: Deformable> HalfSpace<S> {
             let speeds = dof.over(time, h).speeds(time, h, theta)?;
             Some((held + axis, [speeds.start, speeds.end]))
         };
-        let axes = self.fixed.axes.iter().enumerate().filter_map(of);
+        let axes = self.axes.iter().enumerate().filter_map(of);
         let rolling = self.fixed.rolling.as_ref().map(|f| {
             let mean = f.mean(time, h);
             (self.rolled(), [mean, mean])

@@ -254,13 +254,10 @@ impl<S: Dimensional> Builder<'_, S> {
                 self.check_holder(&at, axis, dof)?;
             }
             let holder = holders::name(&body.name, &spec.part);
-            let over_the_run = axes.iter().enumerate().map(|(axis, own)| {
-                let own = own.as_ref()?;
-                Some(holders::drive(self.case, &holder, axis, own))
-            });
             Ok(Support {
                 part: spec.part.clone(),
-                axes: over_the_run.collect(),
+                axes: axes.into_iter().cloned().collect(),
+                later: holders::later(self.case, &holder),
             })
         };
         body.supports.iter().enumerate().map(one).collect()
@@ -270,10 +267,6 @@ impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn check_holder(&self, at: &str, axis: &str, dof: &Dof) -> Result<(), InputError> {
         if axis == "z" && S::D == 2 {
             return Err(self.fail(at, "a case in two dimensions has no z; leave it out"));
-        }
-        if dof.drives().any(|d| matches!(d, Dof::Pressure { .. })) {
-            let message = "a servo of pressure needs rigid walls; give a force";
-            return Err(self.fail(at, message));
         }
         if let Some((below, why)) = dof.fault() {
             let dot = if below.is_empty() { "" } else { "." };

@@ -3,7 +3,6 @@
 use super::surface::Roughness;
 use super::{Builder, Dimensional, Origin};
 use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
-use crate::holders;
 use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::bodies::{Dof, DynamicalSystem};
@@ -181,8 +180,7 @@ impl<S: Dimensional> Builder<'_, S> {
             if let Some(dof) = dof {
                 self.check_holder(&format!("{here}.{axis}"), axis, dof)?;
             }
-            let own = dof.as_ref().unwrap_or(&Dof::Fixed);
-            out.push(holders::drive(self.case, &spec.name, out.len(), own));
+            out.push(dof.clone().unwrap_or(Dof::Fixed));
         }
         out.truncate(S::D);
         Ok(out)

@@ -10,7 +10,8 @@ pub use gravity::GravityDrive;
 pub use phases::{Begun, Changes, Phase, Until};
 
 use super::{Scheme, Simulation};
-use crate::bodies::pressure::Servo;
+use crate::bodies::pressure::{Pushed, Servo};
+use crate::bodies::{Dof, HeldAxis};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Kind};
 use phases::Clock;
@@ -33,6 +34,8 @@ pub struct Control<S: Space> {
     pub tolerance: Option<f64>,
     /// Parameters of contact laws that phases have set, by interface and parameter.
     contact_parameters: BTreeMap<(usize, usize), f64>,
+    /// Drives of holders of deformable bodies that phases have set.
+    holder_drives: BTreeMap<HeldAxis, Dof>,
     clock: Clock,
 }
 
@@ -45,6 +48,7 @@ impl<S: Space> Default for Control<S> {
             gates: Vec::new(),
             tolerance: None,
             contact_parameters: BTreeMap::new(),
+            holder_drives: BTreeMap::new(),
             clock: Clock::default(),
         }
     }
@@ -66,7 +70,10 @@ impl<S: Space> Control<S> {
         let parameters = |law: &Interface| law.contact().parameters.len();
         let mut set = self.contact_parameters.keys();
         self.phase() <= phases.len()
-            && self.servos.iter().all(|s| s.place() < driven)
+            && self.servos.iter().all(|s| match s.pushed() {
+                Pushed::Body(place, _) => *place < driven,
+                Pushed::Holder(_) => true,
+            })
             && self.gates.iter().all(|(place, _)| *place < driven)
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
@@ -80,6 +87,23 @@ impl<S: Space> Control<S> {
 }
 
 impl<S: Space> Simulation<S> {
+    /// Gives holders of deformable bodies the drives that phases have set so far.
+    pub(super) fn set_holder_drives(&mut self) {
+        for (held, drive) in &self.state.control.holder_drives {
+            if let Some(current) = self.state.systems.drive_mut(held) {
+                current.clone_from(drive);
+            }
+        }
+    }
+
+    /// Replaces the servos of what a phase drives anew by those of its drive.
+    fn replace_servos(&mut self, pushed: &Pushed, drive: &Dof) {
+        let servos = Servo::of(&self.state.bodies, &self.shapes, pushed, drive);
+        self.state.control.servos.retain(|s| s.pushed() != pushed);
+        // The servos were validated when the scene was built.
+        self.state.control.servos.extend(servos.unwrap_or_default());
+    }
+
     /// Returns whether the current phase is repeated later.
     pub fn phase_recurs(&self) -> bool {
         let now = self.state.control.phase().checked_sub(1);
@@ -131,15 +155,18 @@ impl<S: Space> Simulation<S> {
             .open(&phase.name, self.state.time, self.state.steps);
         let (changes, time) = (phase.changes, self.state.time);
         for (place, dof, drive) in changes.drives {
-            let servos = Servo::of(&self.state.bodies, &self.shapes, place, dof, &drive);
-            self.state.control.servos.retain(|s| !s.serves(place, dof));
-            // The servos were validated when the scene was built.
-            self.state.control.servos.extend(servos.unwrap_or_default());
+            self.replace_servos(&Pushed::Body(place, dof), &drive);
             let middle = time + 0.5 * self.options.scheme.h;
             self.state
                 .bodies
                 .set_drive(place, dof, drive.delayed(time), middle);
         }
+        for (held, drive) in changes.holders {
+            self.replace_servos(&Pushed::Holder(held.clone()), &drive);
+            let set = &mut self.state.control.holder_drives;
+            set.insert(held, drive.delayed(time));
+        }
+        self.set_holder_drives();
         if let Some(gravity) = changes.gravity {
             (self.state.control.gravity, self.state.control.gravity_drive) = (gravity, None);
             self.state.gravity = gravity;
@@ -184,7 +211,7 @@ impl<S: Space> Simulation<S> {
     /// Measures the loaded areas of all servo pressures.
     pub fn measure_areas(&mut self) {
         for servo in &self.state.control.servos {
-            servo.measure(&mut self.state.bodies);
+            servo.measure(&mut self.state.bodies, &mut self.state.systems);
         }
     }
 

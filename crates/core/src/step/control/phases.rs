@@ -1,7 +1,7 @@
 //! Phases: the changes at the start of each, and the condition that ends it.
 
 use super::GravityDrive;
-use crate::bodies::Dof;
+use crate::bodies::{Dof, HeldAxis};
 use crate::geometry::space::Space;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -38,6 +38,8 @@ pub struct Changes<S: Space> {
     /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time since the
     /// phase began.
     pub drives: Vec<(usize, usize, Dof)>,
+    /// The same of what holds deformable bodies.
+    pub holders: Vec<(HeldAxis, Dof)>,
     /// Gravity (m/s^2).
     pub gravity: Option<S::Vector>,
     /// Time dependence of gravity, as a function of the time since the phase began.
