@@ -11,10 +11,11 @@
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
+mod results;
+
 use crate::compiled::Deformable;
-use crate::element::{Simplex, Symmetric};
 use crate::error::BodyError;
-use crate::freedom::{Freedoms, Held};
+use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
 use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
@@ -115,41 +116,6 @@ impl<S: Deformable> ElasticBody<S> {
     /// Displacement of a point of the mesh (m).
     fn displacement(&self, point: u32) -> S::Vector {
         self.model.of(&self.displacement, point)
-    }
-
-    /// Stress in each element (Pa).
-    fn stresses(&self) -> Vec<Symmetric> {
-        if let Some(large) = &self.model.large {
-            return large.stresses(&self.displacement);
-        }
-        let mesh = &self.model.mesh;
-        let stress = |points: &[u32]| {
-            let simplex = Simplex::<S>::new(&mesh.corners(points));
-            let displacements: Vec<S::Vector> =
-                points.iter().map(|p| self.displacement(*p)).collect();
-            simplex.map_or([0.0; 6], |s| s.stress(&self.model.material, &displacements))
-        };
-        mesh.elements().map(stress).collect()
-    }
-
-    /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N; N/m in 2D): what the support
-    /// needs to impose the motion, without contacts at its own points.
-    fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
-        let model = &self.model;
-        let (average, theta_point) = self.average(step);
-        let [elastic, viscous] = match &model.large {
-            Some(large) => self.internal_of_step(large, step, &average),
-            None => model.internal(&theta_point, &average),
-        };
-        let free = model.freedoms.free;
-        (free..model.freedoms.total())
-            .map(|c| {
-                let change = self.velocity[c] - self.start[1][c];
-                let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
-                let inertia = model.mass[c] * (change / step.h - gravity);
-                inertia + elastic[c] + viscous[c] - self.contact[c] / step.h
-            })
-            .collect()
     }
 
     /// v_theta, and q + h theta v_theta.
@@ -459,42 +425,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn holders(&self) -> Vec<Holder> {
-        let freedoms = &self.model.freedoms;
-        let reactions = self.step.as_ref().map(|step| self.reactions(step));
-        let averages = self.step.as_ref().map(|step| self.average(step));
-        let one = |(held, drive): (&Held, &Dof)| {
-            let c = held.coordinate as usize;
-            let force = match (&self.step, &reactions) {
-                (Some(_), Some(reactions)) if c >= freedoms.free => reactions[c - freedoms.free],
-                (Some(step), _) => Self::force(drive, step),
-                _ => 0.0,
-            };
-            Holder {
-                part: held.part.clone(),
-                axis: usize::from(freedoms.axis[c]),
-                at: self.step.as_ref().map_or(1.0, |step| step.theta),
-                displacement: averages.as_ref().map_or(0.0, |a| a.1[c]),
-                velocity: averages.as_ref().map_or(0.0, |a| a.0[c]),
-                force,
-            }
-        };
-        let mut held: Vec<(&Held, &Dof)> = freedoms.held.iter().zip(&self.drives).collect();
-        held.sort_by_key(|(h, _)| (h.support, freedoms.axis[h.coordinate as usize]));
-        held.into_iter().map(one).collect()
+        self.held_parts()
     }
 
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
-        let mesh = &self.model.mesh;
-        let all = 0..mesh.points().len() as u32;
-        Some(DeformedMesh {
-            points: mesh.points().to_vec(),
-            displacement: all.map(|p| self.displacement(p)).collect(),
-            elements: mesh.elements().flatten().copied().collect(),
-            boundary: (0..mesh.facets())
-                .flat_map(|f| mesh.facet(f).iter().copied())
-                .collect(),
-            stress: self.stresses(),
-        })
+        Some(self.mesh_now())
     }
 
     fn mesh_velocity(&self) -> Vec<S::Vector> {
@@ -503,21 +438,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn touching_surface(&self) -> Option<TouchingSurface<S>> {
-        let part = self.model.part.as_ref()?;
-        let finite = self.model.large.is_some();
-        let rest = |p: u32| self.model.mesh.points()[p as usize];
-        // In small strain a force acts on the surface as it is without load.
-        let place = |p: u32| rest(p) + self.displacement(p) * f64::from(u8::from(finite));
-        Some(TouchingSurface {
-            nodes: part.points.clone(),
-            points: part.points.iter().map(|p| rest(*p)).collect(),
-            facets: part
-                .facets
-                .iter()
-                .flat_map(|f| f[..S::D].to_vec())
-                .collect(),
-            areas: part.areas::<S>(place),
-        })
+        self.surface_part()
     }
 
     fn size(&self) -> Option<SystemSize> {

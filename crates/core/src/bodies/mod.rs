@@ -1,6 +1,7 @@
 //! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
 //! rigid.
 pub mod compliance;
+pub mod contactor;
 pub mod delay;
 pub mod drive;
 pub mod dynamical_system;
@@ -14,10 +15,11 @@ pub mod systems;
 pub mod tensor;
 
 pub use compliance::{Compliance, block_of, column_of};
+pub use contactor::{Contactor, ContactorMotion, ContactorShape, Nodes};
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{
-    Contactor, ContactorMotion, ContactorShape, DeformedMesh, DynamicalSystem, Holder, Nodes,
-    SystemStep, SystemWork, compliance_by_solving, compliance_of_points, von_mises,
+    DeformedMesh, DynamicalSystem, Holder, SystemStep, SystemWork, compliance_by_solving,
+    compliance_of_points, von_mises,
 };
 pub use stages::Stage;
 pub use state::Bodies;

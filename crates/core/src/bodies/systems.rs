@@ -1,10 +1,9 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
 use super::compliance::Compliance;
+use super::contactor::{Contactor, ContactorShape, Nodes};
 use super::drive::Dof;
-use super::dynamical_system::{
-    Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork,
-};
+use super::dynamical_system::{DynamicalSystem, SystemStep, SystemWork};
 use super::state::Bodies;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
