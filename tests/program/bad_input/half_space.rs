@@ -217,7 +217,7 @@ fn masses_and_drives() {
             "depth",
             "mass: 1.0, dofs: (y: ‸Pressure(value: Constant(-1.0))), depth",
         ),
-        &["a servo of pressure needs rigid walls"],
+        &["a pressure needs the length along x: name two walls in `between`"],
     );
 }
 

@@ -304,7 +304,7 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
     })
 }
 
-/// Returns the folders of shipped laws: beside the program, where cargo puts libraries, and where an
+/// Returns the folders of shipped laws: where cargo puts libraries, beside the program, and where an
 /// installation would.
 fn shipped() -> Vec<PathBuf> {
     let Some(here) = std::env::current_exe()
@@ -313,7 +313,8 @@ fn shipped() -> Vec<PathBuf> {
     else {
         return Vec::new();
     };
-    let mut out = vec![here.clone(), here.join("deps")];
+    // Every build of cargo renews the libraries in `deps`, and those beside the program only where they are built themselves.
+    let mut out = vec![here.join("deps"), here.clone()];
     // Cargo's examples and tests are in, or beside, the folder of the libraries.
     let of_cargo = here
         .file_name()

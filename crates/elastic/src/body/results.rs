@@ -24,7 +24,7 @@ impl<S: Deformable> ElasticBody<S> {
 
     /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N; N/m in 2D): what the support
     /// needs to impose the motion, without contacts at its own points.
-    fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
+    pub(super) fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let (average, theta_point) = self.average(step);
         let [elastic, viscous] = match &model.large {
