@@ -89,7 +89,9 @@ fn cheapest(
 ) -> (Option<usize>, bool, String) {
     let all = |row: &Row, good: &dyn Fn(&OutputError, f64) -> bool| {
         let mut each = set.iter();
+        // What its own runs call untrustworthy is not recommended.
         row.failed.is_none()
+            && row.doubted == 0
             && each.all(|&o| {
                 row.errors[o]
                     .as_ref()

@@ -8,6 +8,7 @@ mod closed_forms;
 mod elastica;
 mod extremes;
 mod facets;
+mod fast_points;
 mod forces;
 mod frequency;
 mod grains;

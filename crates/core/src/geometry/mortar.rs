@@ -72,6 +72,9 @@ impl Footprint {
         for k in first..(first + MOST).min(last + 1) {
             let [mut from, mut to] = [along(k), along(k + 1)];
             let [start, size] = [from, to - from];
+            if start >= high {
+                break;
+            }
             if size <= 0.0 {
                 return None;
             }
@@ -81,9 +84,6 @@ impl Footprint {
             }
             if k == last && high <= to + slack {
                 to = to.max(high);
-            }
-            if from >= high {
-                break;
             }
             let (mut of_first, mut of_second) = (0.0, 0.0);
             for neighbour in self.neighbours.into_iter().flatten() {

@@ -92,7 +92,9 @@ impl<S: Space> NodalSystem<S> {
 
     /// The responses of all nodes for an impulse on one.
     fn column(&self, at: usize) -> &[f64] {
-        self.compliance.column(at, self.nodes.len())
+        let column = self.compliance.column(at, self.nodes.len());
+        debug_assert!(!column.is_empty(), "contacts act on touched nodes alone");
+        column
     }
 
     /// The velocities that impulses on its nodes give.

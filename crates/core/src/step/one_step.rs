@@ -96,6 +96,7 @@ impl<S: Space> Simulation<S> {
         let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
         self.free_systems(&mut free);
         self.add_predicted_contacts(&free);
+        self.reach_mean_places();
         self.initialise_contacts(info)?;
         report.timing.detect = clock.elapsed();
         Ok((start, free))

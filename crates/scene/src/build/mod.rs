@@ -2,6 +2,7 @@
 
 mod another_run;
 mod arch;
+mod attraction;
 mod blocks;
 mod elastic;
 mod elastic_grains;
@@ -339,7 +340,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let smallest = if smallest.is_finite() { smallest } else { 1.0 };
         let needed = case.interfaces.iter().filter_map(|i| i.bonds_within);
         let needed = needed.fold(0.05 * smallest, f64::max);
-        let alert = case.detection.alert.unwrap_or(needed);
+        let alert = attraction::alert(self.source, case, &laws, needed)?;
         let skin = case.detection.skin.unwrap_or(0.3 * smallest);
         let largest = self.radii().fold(0.0, f64::max);
         if largest > 0.0 && alert > 10.0 * largest {

@@ -210,12 +210,20 @@ impl<'a, S: Space> Sweep<'a, S> {
             }
         }
         let half = |k: usize| shapes[k].half_thickness();
+        let mut half_thickness = half(0).min(half(1));
+        // A point is not seen behind an open surface by more than the alert distance: it is followed in smaller parts.
+        if let (Shape::Ball(ball, _), Shape::Surface(surface)) = (&shapes[0], &shapes[1])
+            && ball.radius == 0.0
+            && !surface.shape.is_closed()
+        {
+            half_thickness = half_thickness.min(self.alert);
+        }
         Pair {
             names,
             approach,
             turning,
             image,
-            half_thickness: half(0).min(half(1)),
+            half_thickness,
             travel: self.h * (approach.norm() + turning),
             shapes,
         }
