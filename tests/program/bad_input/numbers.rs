@@ -137,6 +137,29 @@ fn an_alert_distance_that_makes_all_contacts() {
 }
 
 #[test]
+fn an_attraction_beyond_the_alert_distance() {
+    let cohesive = with(PLANE, "\"coulomb\"", "\"mohr-coulomb\"");
+    let range = |value: &str| {
+        with(
+            &cohesive,
+            "\"mu\": 0.3",
+            &format!("\"mu\": 0.3, \"range\": {value}"),
+        )
+    };
+    refused(
+        &with(
+            &range("‸1e-3"),
+            "    grains: [",
+            "    detection: (alert: 1e-4),\n    grains: [",
+        ),
+        &[
+            "acts up to a gap of 1e-3 m, and contacts are known up to 1e-4 m",
+            "detection.alert",
+        ],
+    );
+}
+
+#[test]
 fn checkpoints_that_come_at_no_time() {
     for (rule, said) in [
         (
