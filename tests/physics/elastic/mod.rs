@@ -4,6 +4,7 @@ mod ball_area;
 mod bar;
 mod bending;
 mod bonds;
+mod cases;
 mod closed_forms;
 mod elastica;
 mod extremes;
