@@ -50,6 +50,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.force.fill(0.0);
+        // Which axes yield to forces stays as it is over a run: phases that would change it are refused.
         let of = |s: &SystemStep<S>| [s.h, s.theta];
         if self.held() <= MAX_KEPT && self.step.as_ref().map(of) != Some(of(step)) {
             let cells = (0..self.fixed.grid.len() as u32).collect();
