@@ -122,6 +122,8 @@ pub(super) struct Pair<'a, S: Space> {
     image: S::Vector,
     /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
+    /// Length of which the smallest increment of the motion is [`STRIDE`] (m).
+    part: f64,
     /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
 }
@@ -136,7 +138,7 @@ impl<'a, S: Space> Pair<'a, S> {
     }
 }
 
-/// Smallest increment of the motion, as a fraction of the half thickness.
+/// Smallest increment of the motion, as a fraction of the half thickness or, of points, the alert distance.
 const STRIDE: f64 = 0.25;
 /// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
@@ -210,13 +212,16 @@ impl<'a, S: Space> Sweep<'a, S> {
             }
         }
         let half = |k: usize| shapes[k].half_thickness();
-        let mut half_thickness = half(0).min(half(1));
-        // A point is not seen behind an open surface by more than the alert distance: it is followed in smaller parts.
+        let half_thickness = half(0).min(half(1));
+        let mut part = half_thickness;
+        // A point is not seen behind an open surface by more than the alert distance, but behind a plane at any depth: it is followed
+        // in smaller parts.
         if let (Shape::Ball(ball, _), Shape::Surface(surface)) = (&shapes[0], &shapes[1])
             && ball.radius == 0.0
             && !surface.shape.is_closed()
+            && surface.shape.flat().is_none()
         {
-            half_thickness = half_thickness.min(self.alert);
+            part = part.min(self.alert);
         }
         Pair {
             names,
@@ -224,6 +229,7 @@ impl<'a, S: Space> Sweep<'a, S> {
             turning,
             image,
             half_thickness,
+            part,
             travel: self.h * (approach.norm() + turning),
             shapes,
         }
@@ -234,7 +240,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         if !pair.travel.is_finite() {
             return Course::Lost;
         }
-        let (travel, half) = (pair.travel, pair.half_thickness);
+        let (travel, part) = (pair.travel, pair.part);
         let (mut before, mut s) = (0.0, 0.0);
         for _ in 0..MAX_INSTANTS {
             let left = (1.0 - s) * travel;
@@ -254,7 +260,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 return Course::Clear;
             }
             before = s;
-            s = (s + (room / (self.h * closing)).max(STRIDE * half / travel)).min(1.0);
+            s = (s + (room / (self.h * closing)).max(STRIDE * part / travel)).min(1.0);
         }
         Course::Lost
     }
