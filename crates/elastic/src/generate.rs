@@ -1,7 +1,17 @@
 //! Meshes of simple bodies.
 
+mod cells;
+mod grid;
+#[cfg(test)]
+mod grid_tests;
+#[cfg(test)]
+mod tests;
+
 use crate::mesh::{Mesh, MeshError};
+use cells::{Cut, cells, cut};
 use fretwork_core::geometry::space::{Space, VectorLike};
+use grid::Place;
+pub use grid::{Coarsening, Grid, GridError};
 use std::collections::BTreeMap;
 
 /// Names of the sides of a block, at the low and the high end of each axis. In 2D `bottom` and `top` are those of y, in 3D
@@ -32,100 +42,96 @@ pub fn mapped_block<S: Space>(
     coordinates: &[Vec<f64>],
     map: impl Fn(&S::Vector) -> S::Vector,
 ) -> Result<Mesh<S>, MeshError> {
-    let d = S::D;
-    let counts: Vec<usize> = (0..d)
-        .map(|k| coordinates.get(k).map_or(0, Vec::len))
-        .collect();
-    if counts.iter().any(|n| *n < 2) {
+    let grid = Grid::new(coordinates).map_err(|_| MeshError::Empty(S::D))?;
+    mapped_grid(&grid, map)
+}
+
+/// The cells of a grid of as many axes as the space, whose points are moved before the cells are cut; its sides are parts as those
+/// of a [`block`].
+///
+/// A cell with a point of a smaller one on its side is cut by its centre, in triangles or, in 3D, in tetrahedra on the triangles of its faces, which its
+/// neighbours share.
+///
+/// # Errors
+/// Points or elements that the map makes invalid; a grid of another dimension.
+pub fn mapped_grid<S: Space>(
+    grid: &Grid,
+    map: impl Fn(&S::Vector) -> S::Vector,
+) -> Result<Mesh<S>, MeshError> {
+    let (d, up) = (S::D, grid.axis());
+    if grid.dimension() != d {
         return Err(MeshError::Empty(d));
     }
-    let index = |at: &[usize]| (0..d).rev().fold(0, |sum, k| sum * counts[k] + at[k]) as u32;
-    let total: usize = counts.iter().product();
-    let mut points = Vec::with_capacity(total);
-    for p in 0..total {
-        let (mut rest, mut point) = (p, S::Vector::zero());
-        for k in 0..d {
-            point[k] = coordinates[k][rest % counts[k]];
-            rest /= counts[k];
+    let lines = grid.lines();
+    let counts: Vec<usize> = lines.iter().map(Vec::len).collect();
+    let mut points = Vec::with_capacity(grid.points());
+    // The first point of each plane between rows, and how far the next along each axis is.
+    let mut planes: Vec<(usize, Place)> = Vec::with_capacity(grid.rows() + 1);
+    for k in 0..=grid.rows() {
+        let stops = grid.plane(k);
+        let (mut stride, mut total) = ([0; 3], 1);
+        for axis in (0..d).filter(|a| *a != up) {
+            stride[axis] = total;
+            total *= stops[axis].len();
         }
-        points.push(map(&point));
+        planes.push((points.len(), stride));
+        for p in 0..total {
+            let mut point = S::Vector::zero();
+            for axis in 0..d {
+                let stop = match axis == up {
+                    true => k,
+                    false => stops[axis][p / stride[axis] % stops[axis].len()],
+                };
+                point[axis] = lines[axis][stop];
+            }
+            points.push(map(&point));
+        }
     }
+    let index = |place: &Place| {
+        let (first, stride) = planes[place[up]];
+        let along = (0..d).filter(|a| *a != up).map(|axis| {
+            let (at, _) = grid.between(place[up], axis, [place[axis]; 2]);
+            at * stride[axis]
+        });
+        (first + along.sum::<usize>()) as u32
+    };
     let mut elements = Vec::new();
     let mut parts: BTreeMap<String, Vec<u32>> = BTreeMap::new();
-    let cells: usize = counts.iter().map(|n| n - 1).product();
-    for cell in 0..cells {
-        let (mut rest, mut at) = (cell, vec![0; d]);
-        for k in 0..d {
-            at[k] = rest % (counts[k] - 1);
-            rest /= counts[k] - 1;
-        }
-        if d == 2 {
-            let corner = |i: usize, j: usize| [at[0] + i, at[1] + j];
-            let around = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            let centre = points.len() as u32;
-            let middle = around.iter().fold(S::Vector::zero(), |sum, c| {
-                sum + points[index(c) as usize] * 0.25
-            });
-            points.push(middle);
-            for k in 0..4 {
-                let ends = [around[k], around[(k + 1) % 4]];
-                let edge = ends.map(|c| index(&c));
-                name_sides(2, &counts, &ends.map(Vec::from), &edge, &mut parts);
-                elements.extend([edge[0], edge[1], centre]);
+    for cell in (0..grid.rows()).flat_map(|row| cells(grid, row)) {
+        let (pieces, centre) = match cut(grid, &cell) {
+            Cut::Whole(pieces) => (pieces, None),
+            Cut::Around(pieces) => {
+                let corners = cell.corners(d);
+                let share = 1.0 / corners.len() as f64;
+                let middle = corners.iter().fold(S::Vector::zero(), |sum, c| {
+                    sum + points[index(c) as usize] * share
+                });
+                points.push(middle);
+                (pieces, Some(points.len() as u32 - 1))
             }
-            continue;
-        }
-        for element in cell_simplices(&at) {
-            let corner = |c: &Vec<usize>| index(c);
-            let corners: Vec<u32> = element.iter().map(corner).collect();
-            name_sides(d, &counts, &element, &corners, &mut parts);
-            elements.extend(corners);
+        };
+        for places in pieces {
+            let corners: Vec<u32> = places.iter().map(index).collect();
+            name_sides(&counts, &places, &corners, &mut parts);
+            elements.extend(corners.into_iter().chain(centre));
         }
     }
     Mesh::new(points, elements, &parts)
 }
 
-/// Tetrahedra of a cell, as the places of their points in the grid.
-fn cell_simplices(at: &[usize]) -> Vec<Vec<Vec<usize>>> {
-    // Permutations of the axes with their parity.
-    let orders: [([usize; 3], bool); 6] = [
-        ([0, 1, 2], false),
-        ([1, 2, 0], false),
-        ([2, 0, 1], false),
-        ([0, 2, 1], true),
-        ([2, 1, 0], true),
-        ([1, 0, 2], true),
-    ];
-    let mirrored = at.iter().filter(|i| *i % 2 == 1).count() % 2 == 1;
-    let one = |(order, odd): &([usize; 3], bool)| {
-        // The path from a corner to the opposite one, along one axis after the other.
-        let mut corner: Vec<usize> = at.iter().map(|i| i + i % 2).collect();
-        let mut path = vec![corner.clone()];
-        for axis in order {
-            corner[*axis] = at[*axis] + 1 - at[*axis] % 2;
-            path.push(corner.clone());
-        }
-        if *odd != mirrored {
-            path.swap(0, 1);
-        }
-        path
-    };
-    orders.iter().map(one).collect()
-}
-
-/// Adds the facets of an element, given by its points in the grid, that lie in sides of the block.
+/// Adds the facets between the given points of an element that lie in sides of the block.
 fn name_sides(
-    d: usize,
     counts: &[usize],
-    element: &[Vec<usize>],
+    places: &[Place],
     corners: &[u32],
     parts: &mut BTreeMap<String, Vec<u32>>,
 ) {
+    let d = counts.len();
     for (axis, names) in SIDES[d - 2].iter().enumerate() {
         for (end, name) in names.iter().enumerate() {
             let side = end * (counts[axis] - 1);
-            let on: Vec<u32> = (0..element.len())
-                .filter(|c| element[*c][axis] == side)
+            let on: Vec<u32> = (0..places.len())
+                .filter(|c| places[*c][axis] == side)
                 .map(|c| corners[c])
                 .collect();
             if on.len() == d {
@@ -153,44 +159,4 @@ pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Vec<f64> {
     }
     let last = sums[sums.len() - 1];
     sums.iter().map(|s| from + (to - from) * s / last).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::element::Simplex;
-    use fretwork_core::geometry::space::{Dim2, Dim3};
-
-    fn volume<S: Space>(mesh: &Mesh<S>) -> f64 {
-        mesh.elements()
-            .map(|e| Simplex::<S>::new(&mesh.corners(e)).unwrap().volume)
-            .sum()
-    }
-
-    #[test]
-    fn blocks_fill_their_box() {
-        let mesh = block::<Dim2>(&[even(0.0, 3.0, 5), even(-1.0, 1.0, 4)]).unwrap();
-        assert!((volume(&mesh) - 6.0).abs() < 1e-12);
-        assert_eq!((mesh.elements().len(), mesh.facets()), (80, 18));
-        assert_eq!(mesh.points_of("top").unwrap().len(), 6);
-        let mesh = block::<Dim3>(&[even(0.0, 3.0, 3), even(-1.0, 1.0, 2), even(0.0, 0.5, 4)]);
-        let mesh = mesh.unwrap();
-        assert!((volume(&mesh) - 3.0).abs() < 1e-12);
-        assert_eq!(mesh.facets(), 2 * 2 * (6 + 12 + 8));
-        let area = |name: &str| -> f64 {
-            let facets = mesh.part(name).unwrap().iter();
-            facets.map(|f| mesh.facet_area(*f as usize)).sum()
-        };
-        for (name, expected) in [("left", 1.0), ("back", 1.5), ("bottom", 6.0)] {
-            assert!((area(name) - expected).abs() < 1e-12, "{name}");
-        }
-    }
-
-    #[test]
-    fn graded_coordinates_end_where_they_should() {
-        let x = graded(0.0, -2.0, 0.1, 1.5);
-        assert_eq!((x[0], x[x.len() - 1]), (0.0, -2.0));
-        assert!((x[1] + 0.1).abs() < 0.02, "{x:?}");
-        assert!(x.windows(2).all(|w| w[1] < w[0]));
-    }
 }
