@@ -1,14 +1,15 @@
 //! Price of first bodies that deform: a step of a third body between two elastic bodies against the same step between rigid ones.
 //!
-//! `cargo bench --bench elastic` builds the same layer five times: 2,016 disks of oxide between two bodies of steel that are pressed
+//! `cargo bench --bench elastic` builds the same layer six times: 2,016 disks of oxide between two bodies of steel that are pressed
 //! together and sheared, with the step, inertia and solver of `cases/wheel_rail_fretting.ron` and its contact law, without bonds, which
 //! would add the same time to all. The first bodies are rigid profiles of 513 points, 500 of them along the layer; or elastic half-spaces with as many cells; or elastic bodies with
 //! the same points on their surfaces, as deep as the layer is long: once of triangles that grow in both directions
-//! with the depth (read from a file as of a mesh generator; `graded` has two rows of cells of each size, `coarse` one), once as a `Block`, whose columns of cells reach from side to side.
+//! with the depth (read from a file as of a mesh generator; `graded` has two rows of cells of each size, `coarse` one), once as a `Block` that coarsens with the depth (`block`), and once as one whose
+//! columns of cells reach from side to side (`columns`).
 //! Steps of all scenes alternate in one process on one thread; medians of processor time are printed, and for the parts of a step medians
 //! by the clock, which are longer where other processes run.
 //!
-//! Names (`half-space`, `coarse`, `graded`, `block`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
+//! Names (`half-space`, `coarse`, `graded`, `block`, `columns`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
 //! `cargo bench --bench elastic -- coulomb` has rigid contacts with Coulomb friction in place of springs. `STEPS` is the number of timed
 //! steps (200).
 
@@ -46,6 +47,7 @@ enum First {
     Graded,
     Coarse,
     Block,
+    Columns,
     HalfSpace,
 }
 
@@ -56,6 +58,7 @@ impl First {
             Self::Graded => "graded",
             Self::Coarse => "coarse",
             Self::Block => "block",
+            Self::Columns => "columns",
             Self::HalfSpace => "half-space",
         }
     }
@@ -168,7 +171,11 @@ fn elastic(first: First, push: &str, shear: &str, folder: &Path) -> String {
             } else {
                 ["top", "bottom"]
             };
-            (format!("Block(x: {x}, y: {y})"), sides)
+            let coarsen = match first {
+                First::Block => format!(", coarsen: (from: \"{}\")", sides[0]),
+                _ => String::new(),
+            };
+            (format!("Block(x: {x}, y: {y}{coarsen})"), sides)
         };
         let (at, x, y) = if up {
             (HEIGHT, shear, push)
@@ -399,6 +406,7 @@ fn main() {
         First::Coarse,
         First::Graded,
         First::Block,
+        First::Columns,
     ];
     let named = |first: &First| std::env::args().any(|a| a == first.name());
     let any = all.iter().any(named);

@@ -63,7 +63,9 @@ pub enum GridError {
     #[error("the block has a single column, and none that could join; leave `coarsen` out")]
     Single,
     /// More points than allowed.
-    #[error("the block has more than {0} points")]
+    #[error(
+        "the block has more than {0} points; make its elements larger, or let them grow away from `fine`"
+    )]
     TooMany(usize),
 }
 
@@ -180,6 +182,11 @@ impl Grid {
     /// Number of points of the cells, without those inside cells.
     pub fn points(&self) -> usize {
         (0..=self.rows.len()).map(|k| stops(self.plane(k))).sum()
+    }
+
+    /// Whether columns join.
+    pub fn is_coarsened(&self) -> bool {
+        self.sets.len() > 1
     }
 
     /// Number of columns of each row, along the axis of the rows.

@@ -1,21 +1,17 @@
 //! Deformable bodies: their meshes, supports and material.
 
+use super::mesh_block::BlockShape;
 use super::{Builder, Dimensional, Origin};
-use crate::case::{CellTouch, ElasticSpec, LineSpec, MeshSpec, RoundSpec, SupportSpec, TouchSpec};
+use crate::case::{CellTouch, ElasticSpec, MeshSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
 use crate::holders;
 use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
 use fretwork_core::geometry::space::VectorLike;
-use fretwork_elastic::generate::{block, even, graded, mapped_block};
 use fretwork_elastic::mesh::MeshError;
 use fretwork_elastic::{BodyError, BodySpec, Elasticity, Mesh, Support, Touching};
 use std::collections::BTreeMap;
-
-/// Most points of a block along an axis, and at all.
-const MAX_LINE: f64 = 1e5;
-const MAX_POINTS: usize = 1_000_000;
 
 impl<S: Dimensional> Builder<'_, S> {
     /// The deformable bodies of the case, in its order.
@@ -285,45 +281,14 @@ impl<S: Dimensional> Builder<'_, S> {
                 z,
                 round,
                 profile,
+                coarsen,
             } => {
-                let axes = match (S::D, z) {
-                    (2, Some(_)) => {
-                        let message = "a block in two dimensions has no z; leave it out";
-                        return Err(self.fail(format!("{here}.z"), message));
-                    }
-                    (3, None) => {
-                        return Err(self.fail(here, "a block in three dimensions needs `z`"));
-                    }
-                    (_, None) => vec![("x", x), ("y", y)],
-                    (_, Some(z)) => vec![("x", x), ("y", y), ("z", z)],
+                let shape = BlockShape {
+                    round: round.as_ref(),
+                    profile: profile.as_deref(),
+                    coarsen: coarsen.as_ref(),
                 };
-                let lines: Result<Vec<Vec<f64>>, _> = axes
-                    .iter()
-                    .map(|(axis, line)| {
-                        coordinates(line).map_err(|(below, why)| {
-                            self.fail(format!("{here}.{axis}.{below}"), why)
-                        })
-                    })
-                    .collect();
-                let lines = lines?;
-                let points: usize = lines.iter().map(Vec::len).product();
-                if points > MAX_POINTS {
-                    let message = format!(
-                        "the block has {points} points, more than {MAX_POINTS}; make its elements larger, or let them grow away from `fine`"
-                    );
-                    return Err(self.fail(here, message));
-                }
-                match (round, profile) {
-                    (None, None) => block::<S>(&lines).map_err(wrong),
-                    (Some(round), None) => self.rounded(&format!("{here}.round"), &lines, round),
-                    (None, Some(profile)) => {
-                        self.profiled(&format!("{here}.profile"), &lines, profile)
-                    }
-                    (Some(_), Some(_)) => {
-                        let message = "a block is `round` or has a `profile`; leave one out";
-                        Err(self.fail(format!("{here}.profile"), message))
-                    }
-                }
+                self.block(here, [Some(x), Some(y), z.as_ref()], &shape)
             }
             MeshSpec::Gmsh { file, scale } => {
                 if !(*scale > 0.0 && scale.is_finite()) {
@@ -348,104 +313,4 @@ impl<S: Dimensional> Builder<'_, S> {
             }
         }
     }
-
-    /// Bends a side of a block, and what is behind it less and less.
-    fn rounded(
-        &self,
-        here: &str,
-        lines: &[Vec<f64>],
-        round: &RoundSpec,
-    ) -> Result<Mesh<S>, InputError> {
-        let up = S::D - 1;
-        let ends: Vec<[f64; 2]> = lines.iter().map(|l| [l[0], l[l.len() - 1]]).collect();
-        let [bottom, top] = ends[up];
-        let into = match round.side.as_str() {
-            "bottom" => 1.0,
-            "top" => -1.0,
-            other => {
-                let message = format!("only `top` and `bottom` can be round, got `{other}`");
-                return Err(self.fail(format!("{here}.side"), message));
-            }
-        };
-        let curved = if round.cylinder { 1 } else { up };
-        let middle: Vec<f64> = ends.iter().map(|[a, b]| 0.5 * (a + b)).collect();
-        let squared: f64 = (0..curved).map(|k| (ends[k][1] - middle[k]).powi(2)).sum();
-        let deepest = round.radius - (round.radius * round.radius - squared).sqrt();
-        if !(round.radius > 0.0 && deepest < 0.9 * (top - bottom)) {
-            let message = format!(
-                "a radius of {} m does not fit: the side would recede by more than 0.9 of the height of the block, {} m",
-                round.radius,
-                top - bottom
-            );
-            return Err(self.fail(format!("{here}.radius"), message));
-        }
-        let map = |p: &S::Vector| {
-            let squared: f64 = (0..curved).map(|k| (p[k] - middle[k]).powi(2)).sum();
-            let sagitta = squared / (round.radius + (round.radius * round.radius - squared).sqrt());
-            let from = if into > 0.0 {
-                top - p[up]
-            } else {
-                p[up] - bottom
-            };
-            let mut out = *p;
-            out[up] += into * sagitta * from / (top - bottom);
-            out
-        };
-        mapped_block(lines, map).map_err(|e| self.fail(here, e.to_string()))
-    }
-}
-
-/// The points of a line, or the field that is wrong and why.
-fn coordinates(line: &LineSpec) -> Result<Vec<f64>, (&'static str, String)> {
-    let LineSpec {
-        from,
-        to,
-        size,
-        fine,
-        growth,
-    } = *line;
-    if !(from.is_finite() && to.is_finite() && to > from) {
-        return Err((
-            "to",
-            format!("`to` must be above `from`, got {from} and {to}"),
-        ));
-    }
-    if !(size > 0.0 && size.is_finite()) {
-        return Err((
-            "size",
-            format!("the size of an element must be positive, got {size}"),
-        ));
-    }
-    let (low, high) = fine.unwrap_or((from, to));
-    if !(from <= low && low < high && high <= to) {
-        let message =
-            format!("`fine` must lie within {from} and {to} and rise, got ({low}, {high})");
-        return Err(("fine", message));
-    }
-    if !(1.0..=10.0).contains(&growth) {
-        return Err((
-            "growth",
-            format!("a growth must be from 1 to 10, got {growth}"),
-        ));
-    }
-    let grown = |length: f64| {
-        if growth > 1.0 + 1e-9 {
-            (1.0 + length * (growth - 1.0) / size).ln() / growth.ln()
-        } else {
-            length / size
-        }
-    };
-    if (high - low) / size + grown(low - from) + grown(to - high) > MAX_LINE {
-        return Err((
-            "size",
-            format!("elements of {size} m are more than {MAX_LINE} in a line"),
-        ));
-    }
-    let cells = ((high - low) / size).round().max(1.0) as usize;
-    let before = graded(low, from, size, growth);
-    let after = graded(high, to, size, growth);
-    let before = before.iter().skip(1).rev().copied();
-    let before = before.filter(|_| low > from);
-    let after = after.iter().skip(1).copied().filter(|_| to > high);
-    Ok(before.chain(even(low, high, cells)).chain(after).collect())
 }

@@ -7,7 +7,7 @@ use crate::profile_file;
 use crate::source::InputError;
 use fretwork_core::geometry::space::VectorLike;
 use fretwork_elastic::Mesh;
-use fretwork_elastic::generate::mapped_block;
+use fretwork_elastic::generate::Grid;
 use std::f64::consts::TAU;
 
 /// Part of the height of a block by which a side may rise or fall.
@@ -47,10 +47,10 @@ impl<S: Dimensional> Builder<'_, S> {
     pub(super) fn profiled(
         &self,
         here: &str,
-        lines: &[Vec<f64>],
+        grid: &Grid,
         spec: &MeshProfileSpec,
     ) -> Result<Mesh<S>, InputError> {
-        let up = S::D - 1;
+        let (up, lines) = (S::D - 1, grid.lines());
         let ends = |k: usize| [lines[k][0], lines[k][lines[k].len() - 1]];
         let [bottom, top] = ends(up);
         let height = top - bottom;
@@ -89,7 +89,7 @@ impl<S: Dimensional> Builder<'_, S> {
             out[up] += outward * over(p) * from / height;
             out
         };
-        mapped_block(lines, map).map_err(|e| self.fail(here, e.to_string()))
+        self.mapped(here, grid, map)
     }
 
     fn heights(

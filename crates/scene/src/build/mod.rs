@@ -10,6 +10,7 @@ mod first_body;
 mod grains;
 mod half_space;
 mod load;
+mod mesh_block;
 mod mesh_profile;
 mod polygons;
 mod polyhedra;

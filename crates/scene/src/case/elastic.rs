@@ -79,6 +79,13 @@ pub enum MeshSpec {
             skip_serializing_if = "Option::is_none"
         )]
         profile: Option<Box<MeshProfileSpec>>,
+        /// Cells that double along the side, too, as they grow with the distance from it.
+        #[serde(
+            default,
+            deserialize_with = "some",
+            skip_serializing_if = "Option::is_none"
+        )]
+        coarsen: Option<CoarsenSpec>,
     },
     /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra (3D); its parts are the named
     /// physical groups of lines or triangles.
@@ -111,6 +118,17 @@ pub struct LineSpec {
     /// Ratio of the sizes of neighbours where they grow.
     #[serde(default = "growth")]
     pub growth: f64,
+}
+
+/// Columns of cells of a block that join in pairs with the distance from a side.
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoarsenSpec {
+    /// The side, of which all cells are kept.
+    pub from: String,
+    /// A pair joins where it is no wider than this many times the height of its row.
+    #[serde(default = "one")]
+    pub ratio: f64,
 }
 
 /// A side of a block as part of a circle (2D), a sphere or a cylinder (3D), whose middle touches the flat side that it replaces.

@@ -14,8 +14,8 @@ mod wear;
 
 pub use accuracy::{AccuracySpec, AccurateResult};
 pub use elastic::{
-    ElasticSpec, LineSpec, MeshProfileSpec, MeshSpec, ProfileShape, RoundSpec, SupportSpec,
-    TouchSpec,
+    CoarsenSpec, ElasticSpec, LineSpec, MeshProfileSpec, MeshSpec, ProfileShape, RoundSpec,
+    SupportSpec, TouchSpec,
 };
 pub use elastic_grain::ElasticGrainSpec;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
