@@ -8,6 +8,7 @@
 //! ```
 
 use super::*;
+use cpu_time::ThreadTime;
 use nalgebra::Vector2;
 
 /// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under 178.9 N/mm.
@@ -63,6 +64,29 @@ fn coordinates(n: usize) -> [Vec<f64>; 2] {
 /// of `finer` quarters of that number on a cylinder of steel.
 /// The solution is static: steps are long against all waves.
 fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<Dim2> {
+    pressed_as(counter, n, finer, share, |lines, _| {
+        Grid::new(lines).unwrap()
+    })
+}
+
+/// Columns that reach through all rows.
+fn whole(lines: &[Vec<f64>], _: &str) -> Grid {
+    Grid::new(lines).unwrap()
+}
+
+/// Columns that join with the distance from a side.
+fn joined(lines: &[Vec<f64>], from: &str) -> Grid {
+    Grid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
+}
+
+/// The same, of bodies of cells between coordinates that the last argument makes, away from the side of that name.
+fn pressed_as(
+    counter: Counter,
+    n: usize,
+    finer: usize,
+    share: f64,
+    cells: fn(&[Vec<f64>], &str) -> Grid,
+) -> Simulation<Dim2> {
     let normal = load(counter);
     let ramp = |from: f64, to: f64| TimeFunction::Ramp {
         from: 0.0,
@@ -89,7 +113,8 @@ fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<D
     let [x, y] = coordinates(n);
     let below: Vec<f64> = y.iter().map(|y| -y).rev().collect();
     let held = [support("bottom", &[Some(Dof::Fixed), Some(Dof::Fixed)])];
-    let mut flat = body(block::<Dim2>(&[x.clone(), below]).unwrap(), STEEL, &held);
+    let grid = cells(&[x, below], "top");
+    let mut flat = body(mapped_grid::<Dim2>(&grid, |p| *p).unwrap(), STEEL, &held);
     flat.touching = if rigid {
         Touching::Points("top")
     } else {
@@ -102,7 +127,8 @@ fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<D
             Vector2::new(p.x, p.y + sagitta * (1.0 - p.y / FAR))
         };
         let [x, y] = coordinates(finer * n / 4);
-        let mesh = mapped_block::<Dim2>(&[x, y], round).unwrap();
+        let grid = cells(&[x, y], "bottom");
+        let mesh = mapped_grid::<Dim2>(&grid, round).unwrap();
         let driven = [support(
             "top",
             &[Some(Dof::Force(along)), Some(Dof::Force(down))],
@@ -230,5 +256,41 @@ fn cattaneo_and_mindlin() {
         println!("{share}, {finer} to 4: c/a {c} for {stuck}, q off by {error:e}");
         near(stuck, c, 0.02);
         assert!(error < 0.02, "{share}: {error}");
+    }
+}
+
+/// Columns of cells that join with the depth leave the answer as it is, for fewer unknowns.
+#[test]
+fn hertz_on_cells_that_double_with_the_depth() {
+    let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
+    for n in [16, 32] {
+        let [whole, joined] = [whole, joined].map(|cells| {
+            let clock = ThreadTime::now();
+            let mut s = pressed_as(Counter::Steel, n, 4, 0.0, cells);
+            go(&mut s, 12);
+            let seconds = clock.elapsed().as_secs_f64();
+            let systems = (0..2).map(|k| s.state.systems.get(k).unwrap());
+            let unknowns: usize = systems.map(|system| system.freedoms()).sum();
+            let found = tractions(&s, n);
+            let total: f64 = found.iter().map(|t| t[1] * A / n as f64).sum();
+            near(load(Counter::Steel), total, 1e-4);
+            let error = off(&found, 1, |x| p0 * ellipse(x, A)) / p0;
+            let sunk = -holder(&s, 1, "top", 1).displacement;
+            println!(
+                "{n} over a: {unknowns} unknowns, {seconds:.2} s, a off by {:e}, p by {error:e} of p0, sunk {sunk:e} m",
+                half_width(&found) / A - 1.0
+            );
+            (unknowns as f64, seconds, half_width(&found), error, sunk)
+        });
+        println!(
+            "{n} over a: {:.2} of the unknowns, {:.2} of the time",
+            joined.0 / whole.0,
+            joined.1 / whole.1
+        );
+        assert!(joined.0 < 0.6 * whole.0);
+        near(A, joined.2, 0.005);
+        near(whole.2, joined.2, 0.002);
+        assert!(joined.3 < 0.25 / n as f64, "{}", joined.3);
+        near(whole.4, joined.4, 0.001);
     }
 }

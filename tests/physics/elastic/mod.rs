@@ -27,7 +27,7 @@ mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
-use fretwork::elastic::generate::{block, even, graded, mapped_block};
+use fretwork::elastic::generate::{Coarsening, Grid, block, even, graded, mapped_grid};
 use fretwork::elastic::{
     BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
 };

@@ -22,6 +22,19 @@ fn across(cells: usize, growth: f64) -> Vec<f64> {
 /// Two blocks between smooth walls, the upper one pressed on the lower: most difference of the stress across of an element, and of the pressure on a
 /// point, over the mean pressure.
 fn pressed(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64; 2] {
+    pressed_on(low, high, strain, mu, |x, _| {
+        block(&[x.to_vec(), even(0.0, HEIGHT, 4)]).unwrap()
+    })
+}
+
+/// The same of meshes of the given width, from zero to `HEIGHT`, that touch with the side of that name.
+fn pressed_on(
+    low: &[f64],
+    high: &[f64],
+    strain: Strain,
+    mu: f64,
+    mesh: impl Fn(&[f64], &str) -> Mesh<Dim2>,
+) -> [f64; 2] {
     let mut s = scene::<Dim2>(&Sketch {
         bodies: crate::extremes::bench::plane::<Dim2>("far", 0.0, 0.0, 1.0)
             .replace("shapes:", "position: [0.0, -1.0], shapes:"),
@@ -32,13 +45,13 @@ fn pressed(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64; 2] {
     let [left, right] = ["left", "right"].map(|part| support(part, &[Some(Dof::Fixed), None]));
     let floor = support("bottom", &[None, Some(Dof::Fixed)]);
     let lid = support("top", &[None, ramp(-SUNK, 10e-3)]);
-    let mesh = |x: &[f64], y: f64| block::<Dim2>(&[x.to_vec(), even(y, y + HEIGHT, 4)]).unwrap();
     let held = [left.clone(), right.clone(), floor];
-    let mut spec = body(mesh(low, -HEIGHT), STEEL, &held);
+    let below = mesh(low, "top").moved(&nalgebra::Vector2::new(0.0, -HEIGHT));
+    let mut spec = body(below, STEEL, &held);
     (spec.strain, spec.touching) = (strain, Touching::Surface("top"));
     add(&mut s, spec);
     let held = [left, right, lid];
-    let mut spec = body(mesh(high, 0.0), STEEL, &held);
+    let mut spec = body(mesh(high, "bottom"), STEEL, &held);
     (spec.name, spec.strain) = ("upper", strain);
     spec.touching = Touching::Points("bottom");
     add(&mut s, spec);
@@ -87,6 +100,33 @@ fn a_uniform_pressure_goes_through_meshes_that_do_not_match() {
                 "{} on {} cells, mu {mu}: stress off by {stress:e}, pressure by {pressure:e}",
                 high.len() - 1,
                 low.len() - 1
+            );
+            assert!(stress < 1e-6 && pressure < 1e-6, "{stress:e} {pressure:e}");
+        }
+    }
+}
+
+/// On cells that double with the distance from the contact, of even and odd numbers.
+#[test]
+fn a_uniform_pressure_goes_through_cells_that_double() {
+    let mesh = |x: &[f64], side: &str| {
+        let mut y = graded(0.0, HEIGHT, WIDTH / 40.0, 1.4);
+        if side == "top" {
+            y = y.iter().rev().map(|y| HEIGHT - y).collect();
+        }
+        let coarsening = Coarsening {
+            from: side,
+            ratio: 1.0,
+        };
+        let grid = Grid::coarsened(&[x.to_vec(), y], &coarsening, 100_000).unwrap();
+        mapped_grid::<Dim2>(&grid, |p| *p).unwrap()
+    };
+    for (low, high) in [(40, 40), (37, 28), (28, 37)] {
+        for strain in [Strain::Small, Strain::NeoHookean] {
+            let [stress, pressure] =
+                pressed_on(&across(low, 1.0), &across(high, 1.0), strain, 0.3, mesh);
+            println!(
+                "{high} on {low} cells that double: stress off by {stress:e}, pressure by {pressure:e}"
             );
             assert!(stress < 1e-6 && pressure < 1e-6, "{stress:e} {pressure:e}");
         }

@@ -11,6 +11,12 @@ const STEP: f64 = 1e-3;
 /// At the approach a^2/R the load as a share of Hertz's, and the half-width from the second moment of the pressure, 2 P a^2/5, as a
 /// share of that of the load.
 fn pressed(n: usize) -> (f64, f64) {
+    let (load, half_width, _) = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+    (load, half_width)
+}
+
+/// The same and the number of unknowns, on cells that the last argument makes.
+fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize) {
     let (far, size) = (16.0 * A, A / n as f64);
     let mut s = scene::<Dim3>(&Sketch {
         bodies: format!(
@@ -34,7 +40,8 @@ fn pressed(n: usize) -> (f64, f64) {
         "bottom",
         &[Some(Dof::Fixed), Some(Dof::Fixed), Some(Dof::Fixed)],
     )];
-    let mesh = block::<Dim3>(&[across.clone(), across, down]).unwrap();
+    let grid = cells(&[across.clone(), across, down]);
+    let mesh = mapped_grid::<Dim3>(&grid, |p| *p).unwrap();
     let mut flat = body(mesh, STEEL, &held);
     flat.touching = Touching::Points("top");
     add(&mut s, flat);
@@ -49,7 +56,9 @@ fn pressed(n: usize) -> (f64, f64) {
     }
     let expected = 4.0 * STEEL.plane_strain() * A.powi(3) / (3.0 * RADIUS);
     let half_width = (0.75 * total * RADIUS / STEEL.plane_strain()).cbrt();
-    (total / expected, (2.5 * moment / total).sqrt() / half_width)
+    let unknowns = s.state.systems.get(0).unwrap().freedoms();
+    let second = (2.5 * moment / total).sqrt();
+    (total / expected, second / half_width, unknowns)
 }
 
 /// Tetrahedra of constant strain are too stiff, by some per cent with four elements over the half-width (six: 1.5 %), and the
@@ -65,4 +74,26 @@ fn hertz_under_a_sphere() {
         (fine.1 - 1.0).abs() < (coarse.1 - 1.0).abs(),
         "{coarse:?}, {fine:?}"
     );
+}
+
+/// On cells that double with the depth load and half-width are those on whole columns.
+#[test]
+fn hertz_under_a_sphere_on_cells_that_double() {
+    let joined = |lines: &[Vec<f64>]| {
+        let from_top = Coarsening {
+            from: "top",
+            ratio: 1.0,
+        };
+        Grid::coarsened(lines, &from_top, 1_000_000).unwrap()
+    };
+    for n in [2, 3] {
+        let whole = pressed_on(n, &|lines| Grid::new(lines).unwrap());
+        let found = pressed_on(n, &joined);
+        println!(
+            "{n} over a: load, half-width, unknowns {whole:?}, of cells that double {found:?}"
+        );
+        near(whole.0, found.0, 0.005);
+        near(whole.1, found.1, 0.002);
+        assert!(found.2 < whole.2);
+    }
 }

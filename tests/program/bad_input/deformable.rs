@@ -1,9 +1,9 @@
-//! Deformable bodies that cannot be: their meshes, supports and materials.
+//! Deformable bodies that cannot be: their supports and materials.
 
 use super::trial::{MARK, PLANE, Trial, refused, with};
 
 /// The plane case without its period and with a deformable block of the given mesh and further fields.
-fn block(mesh: &str, more: &str) -> String {
+pub(super) fn block(mesh: &str, more: &str) -> String {
     let body = format!(
         "elastic: [(name: \"block\", material: \"grain\", mesh: {mesh}, {more})],\n    friction:"
     );
@@ -11,17 +11,17 @@ fn block(mesh: &str, more: &str) -> String {
     with(&open, "friction:", &body)
 }
 
-const MESH: &str =
+pub(super) const MESH: &str =
     "Block(x: (from: 0.0, to: 0.2, size: 0.05), y: (from: -0.3, to: -0.1, size: 0.05))";
-const HELD: &str = "supports: [(part: \"bottom\", x: Fixed, y: Fixed)]";
+pub(super) const HELD: &str = "supports: [(part: \"bottom\", x: Fixed, y: Fixed)]";
 
 /// The stone of the trials has no modulus.
-const STIFF: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"), properties: {
+pub(super) const STIFF: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"), properties: {
     "young": (value: 7e10, unit: "Pa", source: "chosen"), "poisson": (value: 0.2, unit: "", source: "chosen")})"#;
 
 /// The case is refused at its mark with these words, with a stone that has a modulus.
 #[track_caller]
-fn stiff_refused(marked: &str, words: &[&str]) {
+pub(super) fn stiff_refused(marked: &str, words: &[&str]) {
     let trial = Trial::new();
     trial.write("materials/stone.ron", STIFF);
     let (case, place) = trial.write_marked("case.ron", marked);
@@ -152,72 +152,5 @@ fn names_that_are_none_and_bodies_that_would_pass_through_each_other() {
     stiff_refused(
         &block(MESH, &format!("{HELD}, touches: ‸Points(\"top\")")),
         &["fit between the points of `block`"],
-    );
-}
-
-#[test]
-fn blocks_that_are_none() {
-    let wrong = |old: &str, new: &str, words: &[&str]| {
-        stiff_refused(&block(&MESH.replacen(old, new, 1), HELD), words);
-    };
-    wrong("to: 0.2", "to: ‸-0.2", &["`to` must be above `from`"]);
-    wrong("size: 0.05", "size: ‸0.0", &["must be positive"]);
-    wrong("size: 0.05", "size: ‸1e-9", &["in a line"]);
-    wrong(
-        "size: 0.05)",
-        "size: 0.05, fine: ‸(0.1, 0.3))",
-        &["`fine` must lie within"],
-    );
-    wrong(
-        "size: 0.05))",
-        "size: 0.05), round: (side: \"top\", radius: ‸0.09))",
-        &["does not fit"],
-    );
-}
-
-#[test]
-fn files_of_gmsh() {
-    let trial = |text: &str, words: &[&str]| {
-        let trial = Trial::new();
-        trial.write("materials/stone.ron", STIFF);
-        trial.write("block.msh", text);
-        let (case, place) =
-            trial.write_marked("case.ron", &block("Gmsh(file: ‸\"block.msh\")", HELD));
-        let said = trial.refuses(&case, &[], words);
-        assert!(said.starts_with(&place.unwrap()), "{said}");
-    };
-    trial("$MeshFormat\n4.1 1 8\n", &["line 2", "binary"]);
-    trial(
-        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n2\n1 0 0\n",
-        &["line 6", "4 numbers"],
-    );
-    trial("solid\n", &["no file of Gmsh"]);
-}
-
-#[test]
-fn a_side_with_a_profile_that_cannot_be() {
-    let shaped = |more: &str| {
-        let mesh = MESH.replace("size: 0.05))", &format!("size: 0.05), {more})"));
-        block(&mesh, HELD)
-    };
-    let wave = "shape: Wave(amplitude: 0.01, x: 0.1)";
-    stiff_refused(
-        &shaped(&format!("profile: (side: {MARK}\"left\", {wave})")),
-        &["only `top` and `bottom` can have a profile"],
-    );
-    stiff_refused(
-        &shaped(&format!(
-            "profile: (side: \"top\", shape: {MARK}Wave(amplitude: 0.15, x: 0.1))"
-        )),
-        &[
-            "more than half of the height of the block",
-            "make it smaller",
-        ],
-    );
-    stiff_refused(
-        &shaped(&format!(
-            "round: (side: \"top\", radius: 0.5), profile: {MARK}(side: \"top\", {wave})"
-        )),
-        &["leave one out"],
     );
 }

@@ -4,6 +4,7 @@
 mod circuit;
 mod command_line;
 mod deformable;
+mod deformable_mesh;
 mod files;
 mod geometry;
 mod half_space;
