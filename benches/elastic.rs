@@ -11,7 +11,7 @@
 //!
 //! Names (`half-space`, `coarse`, `graded`, `block`, `columns`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
 //! `cargo bench --bench elastic -- coulomb` has rigid contacts with Coulomb friction in place of springs. `STEPS` is the number of timed
-//! steps (200).
+//! steps (200), `GROWTH` the ratio of the heights of neighbouring rows of a `Block` (1.25).
 
 use cpu_time::ThreadTime;
 use fretwork::bodies::{DynamicalSystem, SystemStep};
@@ -163,8 +163,10 @@ fn elastic(first: First, push: &str, shear: &str, folder: &Path) -> String {
                 LENGTH + BEYOND
             );
             let y = format!(
-                "(from: {from:e}, to: {to:e}, size: {SIZE:e}, fine: ({:e}, {:e}), growth: 1.25)",
-                fine.0, fine.1
+                "(from: {from:e}, to: {to:e}, size: {SIZE:e}, fine: ({:e}, {:e}), growth: {:?})",
+                fine.0,
+                fine.1,
+                number("GROWTH", 1.25)
             );
             let sides = if up {
                 ["bottom", "top"]

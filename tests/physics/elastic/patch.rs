@@ -128,7 +128,7 @@ fn a_uniform_pressure_goes_through_cells_that_double() {
             println!(
                 "{high} on {low} cells that double: stress off by {stress:e}, pressure by {pressure:e}"
             );
-            assert!(stress < 1e-6 && pressure < 1e-6, "{stress:e} {pressure:e}");
+            assert!(stress < 1e-9 && pressure < 1e-9, "{stress:e} {pressure:e}");
         }
     }
 }
