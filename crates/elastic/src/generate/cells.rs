@@ -98,7 +98,7 @@ fn paths(cell: &Cell) -> Vec<Vec<Place>> {
     ];
     let ends = |k: usize| {
         let [low, high] = [cell.low[k], cell.high[k]];
-        if cell.at[k] % 2 == 0 {
+        if cell.at[k].is_multiple_of(2) {
             [low, high]
         } else {
             [high, low]

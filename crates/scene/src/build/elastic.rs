@@ -286,7 +286,7 @@ impl<S: Dimensional> Builder<'_, S> {
                 let shape = BlockShape {
                     round: round.as_ref(),
                     profile: profile.as_deref(),
-                    coarsen: coarsen.as_ref(),
+                    coarsen: coarsen.as_deref(),
                 };
                 self.block(here, [Some(x), Some(y), z.as_ref()], &shape)
             }

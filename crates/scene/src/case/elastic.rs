@@ -85,7 +85,7 @@ pub enum MeshSpec {
             deserialize_with = "some",
             skip_serializing_if = "Option::is_none"
         )]
-        coarsen: Option<CoarsenSpec>,
+        coarsen: Option<Box<CoarsenSpec>>,
     },
     /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra (3D); its parts are the named
     /// physical groups of lines or triangles.
