@@ -112,7 +112,7 @@ impl<S: Deformable> ElasticBody<S> {
             velocity: start,
             start: [vec![0.0; total], vec![0.0; total]],
             elastic: OnceLock::new(),
-            elastic_at_start: Vec::new(),
+            elastic_at_start: vec![0.0; total],
             moves: 0,
             jump: 0.0,
             contact: vec![0.0; total],
