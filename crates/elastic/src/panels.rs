@@ -136,6 +136,10 @@ fn eliminate<const W: usize>(first: usize, rows: &[u32], values: &[f64], x: &mut
         x[first + r] = y[r];
         at += r + 1;
     }
+    // What is loaded at a few points alone reaches a part of the panels.
+    if y == [0.0; W] {
+        return;
+    }
     for (row, l) in rows.iter().zip(below.chunks_exact(W)) {
         let of_panel: f64 = l.iter().zip(&y).map(|(l, y)| l * y).sum();
         x[*row as usize] -= of_panel;

@@ -98,6 +98,8 @@ pub(super) struct Loaded<S: Space> {
     blocks: Vec<[Vec<f64>; 3]>,
     /// Impulses since the velocities of all nodes were found (N s).
     since: Vec<S::Vector>,
+    /// Velocities of all nodes for an impulse on a point, kept for its memory.
+    response: Vec<f64>,
 }
 
 impl<S: Space> Loaded<S> {
@@ -109,6 +111,7 @@ impl<S: Space> Loaded<S> {
             velocity: Vec::new(),
             blocks: Vec::new(),
             since: Vec::new(),
+            response: Vec::new(),
         }
     }
 
@@ -173,12 +176,19 @@ impl<S: Space> Loaded<S> {
                 // With place for points that are loaded later.
                 let needed = (self.points.len() + SPARE) * S::D;
                 block.reserve(needed - block.len());
-                for a in &self.points[known..] {
-                    let mut response = S::Vector::zero();
-                    for (node, weight) in points.terms(point) {
-                        let of = &column(*node as usize)[axis * row..][..row];
-                        response += points.sum::<S>(*a, of) * *weight;
+                let of_node = |node: u32| &column(node as usize)[axis * row..][..row];
+                self.response.clear();
+                for (node, weight) in points.terms(point) {
+                    if self.response.is_empty() {
+                        let first = of_node(*node).iter().map(|v| v * weight);
+                        self.response.extend(first);
+                    } else {
+                        let both = self.response.iter_mut().zip(of_node(*node));
+                        both.for_each(|(sum, v)| *sum += v * weight);
                     }
+                }
+                for a in &self.points[known..] {
+                    let response = points.sum::<S>(*a, &self.response);
                     block.extend((0..S::D).map(|d| response[d]));
                 }
             }
