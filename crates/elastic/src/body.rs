@@ -27,7 +27,7 @@ use fretwork_core::bodies::{
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A body of finite elements.
 #[derive(Clone, Debug)]
@@ -40,6 +40,11 @@ pub struct ElasticBody<S: Space> {
     pub(crate) velocity: Vec<f64>,
     /// Both at the start of the step.
     pub(crate) start: [Vec<f64>; 2],
+    /// K q in small strain, now once it was asked for, and at the start of the step (N).
+    elastic: OnceLock<Vec<f64>>,
+    elastic_at_start: Vec<f64>,
+    /// Moves since the step began: after two it has ended.
+    moves: u32,
     /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
     jump: f64,
     /// Impulse of contacts on the coordinates in the step (N s).
@@ -106,6 +111,9 @@ impl<S: Deformable> ElasticBody<S> {
             displacement: vec![0.0; total],
             velocity: start,
             start: [vec![0.0; total], vec![0.0; total]],
+            elastic: OnceLock::new(),
+            elastic_at_start: vec![0.0; total],
+            moves: 0,
             jump: 0.0,
             contact: vec![0.0; total],
             iterate: Iterate::default(),
@@ -130,6 +138,20 @@ impl<S: Deformable> ElasticBody<S> {
         let at = q.iter().zip(&average).map(|(q, v)| q + h * theta * v);
         let at = at.collect();
         (average, at)
+    }
+
+    /// K q in small strain (N).
+    fn elastic(&self) -> &[f64] {
+        self.elastic.get_or_init(|| {
+            let strained = self.model.strained(&self.displacement);
+            self.model.stiffness.times(&strained)
+        })
+    }
+
+    /// K q in small strain at the start and at the end of the step (N), once it has ended.
+    pub(super) fn elastic_of_step(&self) -> Option<[&[f64]; 2]> {
+        let ended = self.model.large.is_none() && self.moves == 2;
+        ended.then(|| [&self.elastic_at_start[..], self.elastic()])
     }
 
     /// Time function of a drive at a step, at its theta-point.
@@ -174,6 +196,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         }
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
+        if model.large.is_none() {
+            self.elastic();
+            self.elastic_at_start = self.elastic.take().unwrap_or_default();
+        }
+        self.moves = 0;
         self.contact.fill(0.0);
         self.step = Some(*step);
         self.iterate.moved();
@@ -201,6 +228,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         for (q, v) in self.displacement.iter_mut().zip(&self.velocity) {
             *q += v * time;
         }
+        self.elastic.take();
+        self.moves += 1;
     }
 
     fn free_velocity(&self, step: &SystemStep<S>) -> Vec<f64> {
@@ -225,14 +254,17 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             .zip(&average)
             .map(|(q, v)| q + h * theta * v)
             .collect();
-        let [elastic, viscous] = model.internal(&at, &average);
+        let elastic = model.stiffness.times(&model.strained(&at));
         let free = model.freedoms.free;
         let mut impulse: Vec<f64> = (0..free)
             .map(|c| {
                 let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
-                h * (model.mass[c] * gravity - elastic[c] - viscous[c])
+                h * (model.mass[c] * gravity - elastic[c])
             })
             .collect();
+        for (p, f) in impulse.iter_mut().zip(model.viscous(&average)) {
+            *p -= h * f;
+        }
         for (c, drive) in model.freedoms.forces(&self.drives) {
             impulse[c] += h * Self::force(drive, step);
         }
@@ -265,13 +297,23 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 (viscous, h * dot(&elastic, &average) - stored)
             }
             None => {
-                let stretched = model.stiffness.times(&model.strained(&average));
-                let viscous = model.viscous(&average, &stretched);
-                (viscous, (theta - 0.5) * h * h * dot(&stretched, &average))
+                let viscous = model.viscous(&average);
+                let stored = match self.elastic_of_step() {
+                    Some([start, end]) => {
+                        let pairs = end.iter().zip(start).zip(&average);
+                        h * pairs.map(|((e, s), v)| (e - s) * v).sum::<f64>()
+                    }
+                    None => h * h * model.stiffness.form(&model.strained(&average)),
+                };
+                (viscous, (theta - 0.5) * stored)
             }
         };
         let mut work = SystemWork {
-            damping: h * dot(&viscous, &average),
+            damping: if viscous.is_empty() {
+                0.0
+            } else {
+                h * dot(&viscous, &average)
+            },
             scheme,
             external: self.jump,
             ..SystemWork::default()
@@ -302,7 +344,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             return large.energy(&self.displacement);
         }
         let strained = self.model.strained(&self.displacement);
-        0.5 * self.model.stiffness.form(&strained)
+        let pairs = strained.iter().zip(self.elastic());
+        0.5 * pairs.map(|(q, f)| q * f).sum::<f64>()
     }
 
     fn mass(&self) -> f64 {
@@ -461,6 +504,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         match read {
             Ok((q, v)) if q.len() == total && v.len() == total => {
                 self.start = [q.clone(), v.clone()];
+                self.elastic.take();
+                self.moves = 0;
                 (self.displacement, self.velocity) = (q, v);
                 true
             }

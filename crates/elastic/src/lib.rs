@@ -17,6 +17,7 @@ pub mod mesh;
 mod model;
 pub mod neo_hookean;
 mod newton;
+mod panels;
 pub mod rigid;
 pub mod small_strain;
 pub mod spec;

@@ -1,11 +1,15 @@
 //! Symmetric sparse matrices, and their Cholesky factors by `faer`.
 
-use faer::linalg::solvers::SolveCore;
-use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use crate::panels::Panels;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky,
+};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Side};
+use faer::{Conj, MatMut, Par, Side, Spec};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A symmetric matrix in compressed rows, both triangles stored, columns in increasing order.
 #[derive(Clone, Debug, Default)]
@@ -36,6 +40,17 @@ impl Sparse {
         out
     }
 
+    /// Number of rows.
+    fn rows(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Its pattern for `faer`; rows of a symmetric matrix are its columns.
+    fn pattern(&self) -> SymbolicSparseColMatRef<'_, u32> {
+        let n = self.rows();
+        SymbolicSparseColMatRef::new_checked(n, n, &self.starts, None, &self.columns)
+    }
+
     /// Where the entries of a row are.
     fn range(&self, row: usize) -> std::ops::Range<usize> {
         self.starts[row] as usize..self.starts[row + 1] as usize
@@ -50,8 +65,22 @@ impl Sparse {
 
     /// The product with a vector.
     pub fn times(&self, x: &[f64]) -> Vec<f64> {
-        let row = |r: usize| self.row(r).map(|(c, a)| a * x[c]).sum();
-        (0..self.starts.len() - 1).map(row).collect()
+        let row = |r: usize| {
+            let range = self.range(r);
+            let (columns, values) = (&self.columns[range.clone()], &self.values[range]);
+            // Two sums, so that one does not wait for the other.
+            let mut sums = [0.0; 2];
+            let (pairs, of) = (columns.chunks_exact(2), values.chunks_exact(2));
+            if let ([c], [a]) = (pairs.remainder(), of.remainder()) {
+                sums[0] = a * x[*c as usize];
+            }
+            for (c, a) in pairs.zip(of) {
+                sums[0] += a[0] * x[c[0] as usize];
+                sums[1] += a[1] * x[c[1] as usize];
+            }
+            sums[0] + sums[1]
+        };
+        (0..self.rows()).map(row).collect()
     }
 
     /// x . A x.
@@ -119,54 +148,89 @@ impl Sparse {
 }
 
 /// The Cholesky factor of a positive definite matrix; by default that of one without rows.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Factor {
-    factor: Option<Llt<u32, f64>>,
-}
-
-impl std::fmt::Debug for Factor {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Factor").finish_non_exhaustive()
-    }
+    pattern: Pattern,
+    values: Vec<f64>,
 }
 
 /// The pattern of a matrix with the order of elimination, for factors of several matrices that share it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Pattern {
     /// None without rows.
-    symbolic: Option<SymbolicLlt<u32>>,
+    order: Option<Arc<Order>>,
+}
+
+/// An order of elimination, and the pattern of the factor.
+#[derive(Debug)]
+struct Order {
+    symbolic: SymbolicCholesky<u32>,
+    /// How solutions walk a factor whose columns share few rows; none of one that `faer` keeps as dense blocks.
+    panels: Option<Panels>,
+}
+
+impl Order {
+    fn of(a: &Sparse) -> Option<Self> {
+        let (order, params) = Default::default();
+        let symbolic = factorize_symbolic_cholesky(a.pattern(), Side::Lower, order, params).ok()?;
+        let panels = match symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(columns) => {
+                Some(Panels::new(columns.col_ptr(), columns.row_idx())?)
+            }
+            SymbolicCholeskyRaw::Supernodal(_) => None,
+        };
+        Some(Self { symbolic, panels })
+    }
+
+    /// Where rows are in the order of elimination: the row of the matrix by the row of the factor.
+    fn rows(&self) -> Option<&[u32]> {
+        Some(self.symbolic.perm()?.arrays().0)
+    }
 }
 
 impl Pattern {
     /// That of a matrix; `None` where it has too many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
-        let n = a.starts.len() - 1;
-        if n == 0 {
-            return Some(Self { symbolic: None });
+        let order = (a.rows() > 0).then(|| Order::of(a).map(Arc::new));
+        match order {
+            Some(None) => None,
+            order => Some(Self {
+                order: order.flatten(),
+            }),
         }
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
-        let symbolic = SymbolicLlt::try_new(pattern, Side::Lower).ok()?;
-        Some(Self {
-            symbolic: Some(symbolic),
-        })
     }
 
     /// Factorises a matrix of this pattern; `None` where it is not positive definite.
     pub fn factor(&self, a: &Sparse) -> Option<Factor> {
-        let Some(symbolic) = &self.symbolic else {
-            return Some(Factor { factor: None });
+        let pattern = self.clone();
+        let Some(order) = &self.order else {
+            let values = Vec::new();
+            return Some(Factor { pattern, values });
         };
         if !a.values.iter().all(|x| x.is_finite()) {
             return None;
         }
-        // Rows of a symmetric matrix are its columns.
-        let n = a.starts.len() - 1;
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
-        let matrix = SparseColMatRef::new(pattern, &a.values);
-        let factor = Llt::try_new_with_symbolic(symbolic.clone(), matrix, Side::Lower).ok()?;
-        Some(Factor {
-            factor: Some(factor),
-        })
+        let matrix = SparseColMatRef::new(a.pattern(), &a.values[..]);
+        let symbolic = &order.symbolic;
+        let mut values = vec![0.0; symbolic.len_val()];
+        let needed = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+        let mut memory = MemBuffer::new(needed);
+        let factor = symbolic.factorize_numeric_llt(
+            &mut values,
+            matrix,
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Spec::default(),
+        );
+        factor.ok()?;
+        if let (Some(panels), SymbolicCholeskyRaw::Simplicial(columns)) =
+            (&order.panels, symbolic.raw())
+        {
+            values = panels.arrange(columns.col_ptr(), &values);
+        }
+        Some(Factor { pattern, values })
     }
 }
 
@@ -184,22 +248,20 @@ pub struct FactorSize {
 impl FactorSize {
     /// Of a matrix, in the order of elimination that [`Pattern::of`] takes; `None` where it has too many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
-        let n = a.starts.len() - 1;
-        if n == 0 {
+        if a.rows() == 0 {
             return Some(Self::default());
         }
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.starts, None, &a.columns);
-        let (order, params) = Default::default();
-        let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, order, params).ok()?;
+        let Order { symbolic, panels } = Order::of(a)?;
         let values = symbolic.len_val();
         let mut factorise = 0.0;
         // A column with k entries on and below the diagonal takes k^2.
-        let indices = match symbolic.raw() {
+        let bytes = match symbolic.raw() {
             SymbolicCholeskyRaw::Simplicial(columns) => {
                 for ends in columns.col_ptr().windows(2) {
                     factorise += ((ends[1] - ends[0]) as f64).powi(2);
                 }
-                columns.row_idx().len() + columns.col_ptr().len()
+                let columns = columns.row_idx().len() + columns.col_ptr().len();
+                panels.map_or(0, |panels| panels.bytes()) + columns * size_of::<u32>()
             }
             SymbolicCholeskyRaw::Supernodal(blocks) => {
                 for k in 0..blocks.n_supernodes() {
@@ -210,13 +272,13 @@ impl FactorSize {
                     }
                 }
                 // Rows of all blocks, the blocks of all rows, and for each block where it begins and ends.
-                2 * blocks.row_idx().len() + 6 * blocks.n_supernodes()
+                let indices = 2 * blocks.row_idx().len() + 6 * blocks.n_supernodes();
+                values * size_of::<f64>() + indices * size_of::<u32>()
             }
         };
-        // And the order of elimination with its inverse.
-        let indices = indices + 2 * n;
         Some(Self {
-            bytes: values * size_of::<f64>() + indices * size_of::<u32>(),
+            // And the order of elimination with its inverse.
+            bytes: bytes + 2 * a.rows() * size_of::<u32>(),
             factorise,
             solve: 4.0 * values as f64,
         })
@@ -231,10 +293,32 @@ impl Factor {
 
     /// x = A^-1 x, for as many columns as `x` holds one after the other.
     pub fn solve(&self, x: &mut [f64], columns: usize) {
-        if let Some(factor) = &self.factor {
-            let rows = x.len() / columns;
+        let Some(order) = &self.pattern.order else {
+            return;
+        };
+        let rows = x.len() / columns;
+        let Some(panels) = &order.panels else {
+            let symbolic = &order.symbolic;
+            let mut memory =
+                MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
+            let factor = LltRef::new(symbolic, &self.values);
             let matrix = MatMut::from_column_major_slice_mut(x, rows, columns);
-            factor.solve_in_place_with_conj(Conj::No, matrix);
+            factor.solve_in_place_with_conj(Conj::No, matrix, Par::Seq, MemStack::new(&mut memory));
+            return;
+        };
+        let Some(order) = order.rows() else {
+            let all = x.chunks_exact_mut(rows);
+            return all.for_each(|x| panels.solve(&self.values, x));
+        };
+        let mut eliminated = vec![0.0; rows];
+        for x in x.chunks_exact_mut(rows) {
+            for (of, row) in eliminated.iter_mut().zip(order) {
+                *of = x[*row as usize];
+            }
+            panels.solve(&self.values, &mut eliminated);
+            for (of, row) in eliminated.iter().zip(order) {
+                x[*row as usize] = *of;
+            }
         }
     }
 }

@@ -80,21 +80,17 @@ impl<S: Space> Model<S> {
             .collect()
     }
 
-    /// K q and C v.
-    pub fn internal(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
-        let elastic = self.stiffness.times(&self.strained(q));
-        let stretched = if self.damping.stiffness > 0.0 {
+    /// C v in small strain; nothing without damping.
+    pub fn viscous(&self, v: &[f64]) -> Vec<f64> {
+        let Rayleigh { mass, stiffness } = self.damping;
+        let mut viscous = if stiffness > 0.0 {
             self.stiffness.times(&self.strained(v))
-        } else {
+        } else if mass > 0.0 {
             vec![0.0; v.len()]
+        } else {
+            return Vec::new();
         };
-        [elastic, self.viscous(v, &stretched)]
-    }
-
-    /// C v, with K v.
-    pub fn viscous(&self, v: &[f64], stretched: &[f64]) -> Vec<f64> {
-        let factor = self.damping.stiffness;
-        let mut viscous = stretched.iter().map(|f| factor * f).collect::<Vec<_>>();
+        viscous.iter_mut().for_each(|f| *f *= stiffness);
         self.add_mass_damping(v, &mut viscous);
         viscous
     }

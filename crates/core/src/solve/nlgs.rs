@@ -7,6 +7,7 @@ use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
+use super::nodal::NodalSystem;
 use super::row::{Load, Row, SolverBodies, SolverBody, Update, Visit, visit};
 use super::schedule::Schedule;
 use crate::geometry::space::Space;
@@ -109,6 +110,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let mut report = Report::default();
     let mut acceleration = options.accelerated.then(Acceleration::default);
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
+    let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
     let mut next = every.div_ceil(2);
     loop {
@@ -125,8 +127,9 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         }
         let ended = report.iterations >= options.max_iterations;
         // The velocities have accumulated rounding errors: convergence is decided with velocities recomputed
-        // from the impulses. The first tests, which often succeed, recompute them at once.
-        let fresh = report.iterations <= every;
+        // from the impulses. The first tests, which often succeed, recompute them at once; so do all with large systems, where finding
+        // the velocities of all nodes costs the same in either way.
+        let fresh = report.iterations <= every || problem.systems.iter().any(NodalSystem::is_large);
         if fresh {
             problem.reload(options.parallel);
         } else {

@@ -1,7 +1,7 @@
 //! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and their compliance.
 
 use super::form::{ContactForm, Mobility, Place, Problem};
-use super::loaded::{Loaded, add_response, vector};
+use super::loaded::{Loaded, Points, add_response};
 use super::row::{MomentForm, SystemRow, Term};
 use super::side::Side;
 use crate::bodies::{Compliance, block_of};
@@ -21,11 +21,13 @@ pub struct NodalSystem<S: Space> {
     compliance: Columns<S>,
     /// Velocities of all nodes, one after the other (m/s); of a large system those at the last [`Self::settle`].
     velocity: Vec<f64>,
+    /// What contacts act on.
+    points: Points,
     /// What sweeps follow of a large system.
     loaded: Option<Loaded<S>>,
 }
 
-/// Fewest nodes of a large system, of which sweeps follow loaded nodes alone. Below that all columns fit in a cache.
+/// Fewest nodes of a large system, of which sweeps follow loaded points alone. Below that all columns fit in a cache.
 const LARGE: usize = 64;
 
 /// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an impulse on one are read in a row in each
@@ -75,7 +77,8 @@ impl<S: Space> NodalSystem<S> {
 
     fn with(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: Columns<S>) -> Self {
         let mut system = Self {
-            loaded: (nodes.len() >= LARGE).then(|| Loaded::new(nodes.len())),
+            loaded: (nodes.len() >= LARGE).then(Loaded::new),
+            points: Points::new(nodes.len()),
             velocity: Vec::with_capacity(S::D * nodes.len()),
             nodes,
             free,
@@ -111,34 +114,47 @@ impl<S: Space> NodalSystem<S> {
         all.map(S::Vector::from_slice).collect()
     }
 
-    /// The current velocity of a node (m/s). Of a large system it is exact for loaded nodes, and for the others after
-    /// [`Self::settle`].
-    #[inline]
-    pub(super) fn velocity(&self, at: u32) -> S::Vector {
-        let loaded = self.loaded.as_ref().and_then(|l| l.velocity(at));
-        loaded.unwrap_or_else(|| vector::<S>(&self.velocity, at as usize))
+    /// Adds a weighted sum of its nodes, by their places in the list; gives the index of the point. A node alone is a point with its place.
+    pub(super) fn add_point(&mut self, terms: &[(u32, f64)]) -> u32 {
+        self.points.add(terms)
     }
 
-    /// Adds what an impulse on a node does to velocities.
-    pub(super) fn push(&mut self, at: u32, impulse: &S::Vector) {
+    /// Whether sweeps follow loaded points alone, so that velocities are those of the last [`Self::settle`] elsewhere.
+    pub(super) fn is_large(&self) -> bool {
+        self.loaded.is_some()
+    }
+
+    /// The current velocity of a point (m/s). Of a large system it is exact for loaded points, and for the others after
+    /// [`Self::settle`].
+    #[inline]
+    pub(super) fn velocity(&self, point: u32) -> S::Vector {
+        let loaded = self.loaded.as_ref().and_then(|l| l.velocity(point));
+        loaded.unwrap_or_else(|| self.points.sum::<S>(point, &self.velocity))
+    }
+
+    /// Adds what an impulse on a point does to velocities.
+    pub(super) fn push(&mut self, point: u32, impulse: &S::Vector) {
         let (compliance, count) = (&self.compliance, self.nodes.len());
         let column = |b: usize| compliance.column(b, count);
         if let Some(loaded) = &mut self.loaded {
-            return loaded.push(at, impulse, &self.velocity, column);
+            return loaded.push(point, impulse, &self.points, &self.velocity, column);
         }
-        let (column, row) = (column(at as usize), S::D * count);
-        add_response::<S>(
-            &mut self.velocity,
-            |axis| &column[axis * row..][..row],
-            impulse,
-        );
+        let row = S::D * count;
+        for (node, weight) in self.points.terms(point) {
+            let column = column(*node as usize);
+            add_response::<S>(
+                &mut self.velocity,
+                |axis| &column[axis * row..][..row],
+                &(*impulse * *weight),
+            );
+        }
     }
 
     /// The same as one of many impulses: velocities are right after [`Self::settle`].
-    pub(super) fn load(&mut self, at: u32, impulse: &S::Vector) {
+    pub(super) fn load(&mut self, point: u32, impulse: &S::Vector) {
         match &mut self.loaded {
-            Some(loaded) => loaded.load(at, impulse),
-            None => self.push(at, impulse),
+            Some(loaded) => loaded.load(point, impulse),
+            None => self.push(point, impulse),
         }
     }
 
@@ -146,7 +162,9 @@ impl<S: Space> NodalSystem<S> {
     pub(super) fn settle(&mut self) {
         let (compliance, count) = (&self.compliance, self.nodes.len());
         if let Some(loaded) = &mut self.loaded {
-            loaded.settle(&mut self.velocity, |b| compliance.column(b, count));
+            loaded.settle(&self.points, &mut self.velocity, |b| {
+                compliance.column(b, count)
+            });
         }
     }
 
@@ -157,7 +175,7 @@ impl<S: Space> NodalSystem<S> {
             self.velocity.extend((0..S::D).map(|k| v[k]));
         }
         if let Some(loaded) = &mut self.loaded {
-            loaded.adopt(&self.velocity);
+            loaded.adopt(&self.points, &self.velocity);
         }
     }
 }
@@ -172,8 +190,8 @@ impl<S: Space> Problem<S> {
     /// acts on is said by the sides. False, and nothing is added, where a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_between(&mut self, contact: &ContactForm<S>, sides: &[Side<S>; 2]) -> bool {
-        let mut rigid = [None; 2];
-        let mut terms = Vec::new();
+        let (mut rigid, mut points) = ([None; 2], [None; 2]);
+        let mut terms: Vec<Term> = Vec::new();
         let mut block = S::Matrix::diagonal(&S::Vector::zero());
         for (k, (side, sign)) in sides.iter().zip([1.0, -1.0]).enumerate() {
             match side {
@@ -183,17 +201,22 @@ impl<S: Space> Problem<S> {
                     rigid[k] = Some((*body, *arm));
                 }
                 Side::Nodes { system, nodes } => {
+                    let Some(known) = self.systems.get_mut(*system as usize) else {
+                        return false;
+                    };
+                    let mut of_side = Vec::new();
                     for (node, weight) in nodes.terms() {
-                        let known = self.systems.get(*system as usize);
-                        let Some(Ok(at)) = known.map(|s| s.nodes.binary_search(&node)) else {
+                        let Ok(at) = known.nodes.binary_search(&node) else {
                             return false;
                         };
+                        of_side.push((at as u32, weight));
                         terms.push(Term {
                             system: *system,
                             node: at as u32,
                             weight: sign * weight,
                         });
                     }
+                    points[k] = Some((*system, known.add_point(&of_side), sign));
                 }
             }
         }
@@ -216,7 +239,7 @@ impl<S: Space> Problem<S> {
             })
         });
         self.of_systems
-            .push(SystemRow::new(contact, block, bodies, terms));
+            .push(SystemRow::new(contact, block, bodies, points, terms));
         true
     }
 

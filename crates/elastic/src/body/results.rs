@@ -27,17 +27,37 @@ impl<S: Deformable> ElasticBody<S> {
     pub(super) fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let (average, theta_point) = self.average(step);
-        let [elastic, viscous] = match &model.large {
-            Some(large) => self.internal_of_step(large, step, &average),
-            None => model.internal(&theta_point, &average),
-        };
         let free = model.freedoms.free;
-        (free..model.freedoms.total())
+        let imposed = free..model.freedoms.total();
+        let internal: Vec<f64> = match (&model.large, self.elastic_of_step()) {
+            (Some(large), _) => {
+                let [elastic, viscous] = self.internal_of_step(large, step, &average);
+                imposed.clone().map(|c| elastic[c] + viscous[c]).collect()
+            }
+            (None, of_step) => {
+                let viscous = model.viscous(&average);
+                let elastic: Vec<f64> = match of_step {
+                    Some([start, end]) => {
+                        let mean = |c: usize| (1.0 - step.theta) * start[c] + step.theta * end[c];
+                        imposed.clone().map(mean).collect()
+                    }
+                    None => {
+                        let all = model.stiffness.times(&model.strained(&theta_point));
+                        all[free..].to_vec()
+                    }
+                };
+                let viscous = imposed
+                    .clone()
+                    .map(|c| viscous.get(c).copied().unwrap_or(0.0));
+                elastic.iter().zip(viscous).map(|(e, v)| e + v).collect()
+            }
+        };
+        imposed
             .map(|c| {
                 let change = self.velocity[c] - self.start[1][c];
                 let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
                 let inertia = model.mass[c] * (change / step.h - gravity);
-                inertia + elastic[c] + viscous[c] - self.contact[c] / step.h
+                inertia + internal[c - free] - self.contact[c] / step.h
             })
             .collect()
     }

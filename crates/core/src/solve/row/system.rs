@@ -32,6 +32,9 @@ struct RigidSide<S: Space> {
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct SystemRow<S: Space> {
     rigid: [Option<RigidSide<S>>; 2],
+    /// By side of a system its index, the point of it, and 1 for the candidate's and -1 for the antagonist's.
+    points: [Option<(u32, u32, f64)>; 2],
+    /// The same by nodes.
     terms: Vec<Term>,
     contact: BlockContact<S>,
 }
@@ -44,6 +47,7 @@ impl<S: Space> SystemRow<S> {
         contact: &ContactForm<S>,
         block: S::Matrix,
         rigid: [Option<Rigid<S>>; 2],
+        points: [Option<(u32, u32, f64)>; 2],
         terms: Vec<Term>,
     ) -> Self {
         let rigid = rigid.map(|side| {
@@ -57,6 +61,7 @@ impl<S: Space> SystemRow<S> {
         });
         Self {
             rigid,
+            points,
             terms,
             contact: BlockContact::new(contact, block),
         }
@@ -79,18 +84,18 @@ impl<S: Space> SystemRow<S> {
             let body = &solver_bodies[side.body as usize];
             u += (body.v + S::spin_velocity(&body.s, &side.arm)) * sign;
         }
-        for term in &self.terms {
-            u += systems[term.system as usize].velocity(term.node) * term.weight;
+        for (system, point, sign) in self.points.iter().flatten() {
+            u += systems[*system as usize].velocity(*point) * *sign;
         }
         u
     }
 
-    /// Adds what an impulse does to the velocities of bodies, and gives `on_node` the system, the node and the impulse on it.
+    /// Adds what an impulse does to the velocities of bodies, and gives `on_point` the system, the point and the impulse on it.
     fn push(
         &self,
         p: &S::Vector,
         solver_bodies: &mut [SolverBody<S>],
-        mut on_node: impl FnMut(u32, u32, &S::Vector),
+        mut on_point: impl FnMut(u32, u32, &S::Vector),
     ) {
         if *p == S::Vector::zero() {
             return;
@@ -101,8 +106,8 @@ impl<S: Space> SystemRow<S> {
             body.v += p.scaled_by(&side.inverse_mass);
             body.s += side.inverse_spin.apply(&S::moment(&side.arm, &p));
         }
-        for term in &self.terms {
-            on_node(term.system, term.node, &(*p * term.weight));
+        for (system, point, sign) in self.points.iter().flatten() {
+            on_point(*system, *point, &(*p * *sign));
         }
     }
 
@@ -115,16 +120,16 @@ impl<S: Space> SystemRow<S> {
     ) {
         let u = self.relative(solver_bodies, systems);
         let change = self.contact.update(u, relaxation);
-        self.push(&change, solver_bodies, |system, node, p| {
-            systems[system as usize].push(node, p);
+        self.push(&change, solver_bodies, |system, point, p| {
+            systems[system as usize].push(point, p);
         });
     }
 
     /// Adds what the stored impulse does to the velocities; those of nodes are right once their systems are settled.
     pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
         let impulse = self.contact.impulse();
-        self.push(impulse, solver_bodies, |system, node, p| {
-            systems[system as usize].load(node, p);
+        self.push(impulse, solver_bodies, |system, point, p| {
+            systems[system as usize].load(point, p);
         });
     }
 
@@ -187,11 +192,11 @@ impl<S: Space> SystemRow<S> {
             let body = &solver_bodies[side.body as usize];
             body.v.dot(&body.v) + body.s.dot(&body.s)
         });
-        let nodes = self.terms.iter().map(|term| {
-            let v = systems[term.system as usize].velocity(term.node) * term.weight;
+        let points = self.points.iter().flatten().map(|(system, point, _)| {
+            let v = systems[*system as usize].velocity(*point);
             v.dot(&v)
         });
-        let own: f64 = rigid.chain(nodes).sum();
+        let own: f64 = rigid.chain(points).sum();
         Scale {
             free: speed,
             energy: self.contact.rho() * speed,
