@@ -129,7 +129,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         // The velocities have accumulated rounding errors: convergence is decided with velocities recomputed
         // from the impulses. The first tests, which often succeed, recompute them at once; so do all with large systems, where finding
         // the velocities of all nodes costs the same in either way.
-        let fresh = report.iterations <= every || problem.systems.iter().any(NodalSystem::is_large);
+        let fresh = report.iterations <= every || large;
         if fresh {
             problem.reload(options.parallel);
         } else {
