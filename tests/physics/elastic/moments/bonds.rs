@@ -135,3 +135,23 @@ fn a_bond_twists_a_sphere_as_on_rigid_ground() {
         closes(&s, 1e-9);
     }
 }
+
+/// Bonded over a vertex, pulled onto the next facet: the bond goes on there.
+#[test]
+fn a_bond_goes_on_at_the_next_facet() {
+    for pull in [PULL, -PULL] {
+        let mut s = BLOCK.under::<Dim2>(&bonded::<Dim2>(1.0, 1.0, 0.0, &[0.0, 0.0]), 1e9);
+        s.state.gravity = nalgebra::Vector2::new(pull, 0.0);
+        let mut turned = 0.0;
+        for _ in 0..12 {
+            go(&mut s, 1);
+            turned -= spin(&s)[0];
+        }
+        let [_, _, bending, _] = section(&s);
+        let expected = s.state.bodies.mass[ball(&s)] * pull * R / (K * bending);
+        println!("turned by {turned:e} of {expected:e} rad");
+        near(expected, turned, 1e-3);
+        assert_eq!(s.state.network.bonds_broken(), 0);
+        closes(&s, 1e-8);
+    }
+}
