@@ -4,6 +4,7 @@ mod another_run;
 mod arch;
 mod attraction;
 mod blocks;
+mod deformed;
 mod elastic;
 mod elastic_grains;
 mod first_body;
@@ -25,7 +26,7 @@ use super::case::Case;
 use super::interfaces;
 use super::material::{Material, MaterialLibrary, Sourced};
 use super::methods::{Demands, Service};
-use super::recorded::RecordReader;
+use super::recorded::{Deformed, RecordReader, ShapedGrain};
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
 use fretwork_core::bodies::{Bodies, DynamicalSystem};
@@ -80,6 +81,8 @@ pub struct Built<S: Space> {
     pub samples: Vec<String>,
     /// The entry of the case that made each body, by body index.
     pub origins: Vec<Origin>,
+    /// The grains that deform, without load, in the order of their systems.
+    pub deforming: Vec<ShapedGrain>,
 }
 
 impl Loaded {
@@ -125,6 +128,8 @@ impl Loaded {
             files: BTreeMap::new(),
             origins: Vec::new(),
             samples: Vec::new(),
+            deformed: BTreeMap::new(),
+            deforming: Vec::new(),
             scars: Vec::new(),
             bodies: Bodies::default(),
             shapes: Shapes {
@@ -161,6 +166,7 @@ impl Loaded {
             .collect();
         let samples = std::mem::take(&mut builder.samples);
         let origins = builder.origins.clone();
+        let deforming = std::mem::take(&mut builder.deforming);
         let mut densities = vec![0.0; builder.densities.len()];
         for (k, density) in builder.densities.values() {
             densities[usize::from(*k)] = *density;
@@ -173,6 +179,7 @@ impl Loaded {
             names,
             samples,
             origins,
+            deforming,
         })
     }
 
@@ -241,6 +248,10 @@ struct Builder<'a, S: Space> {
     origins: Vec<Origin>,
     /// See [`Built::samples`].
     samples: Vec<String>,
+    /// Grains that were deformed in a state of another run, by body, with their identity there.
+    deformed: BTreeMap<u32, (u64, Deformed)>,
+    /// See [`Built::deforming`].
+    deforming: Vec<ShapedGrain>,
     /// Surfaces that wear.
     scars: Vec<Scar<S>>,
 }

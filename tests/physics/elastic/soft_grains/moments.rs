@@ -221,8 +221,8 @@ fn spinning_friction_acts_between_two_that_deform() {
             ),
             more: format!(
                 "elastic: [(name: \"block\", material: \"soft\", strain: {strain}, damping: (mass: 0.0, stiffness: 1e-4), \
-                 mesh: Block(x: Even(from: -0.03, to: 0.03, parts: 3), y: Even(from: -0.03, to: 0.03, parts: 3), \
-                 z: Even(from: -0.02, to: 0.0, parts: 1)), touches: Surface(\"top\"), \
+                 mesh: Block(x: (from: -0.03, to: 0.03, size: 0.02), y: (from: -0.03, to: 0.03, size: 0.02), \
+                 z: (from: -0.02, to: 0.0, size: 0.02)), touches: Surface(\"top\"), \
                  supports: [(part: \"bottom\", x: Fixed, y: Fixed, z: Fixed)])],"
             ),
             tolerance: 1e-11,
