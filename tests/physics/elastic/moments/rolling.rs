@@ -11,6 +11,8 @@
 
 use super::*;
 use fretwork::geometry::space::Dim3;
+use fretwork::record::code::{decode, encode};
+use fretwork::step::State;
 
 const LENGTH: f64 = 0.05 * R;
 
@@ -146,5 +148,39 @@ fn spinning_friction_takes_angular_momentum() {
         go(&mut s, 600);
         assert!(spin(&s).norm() < 1e-6, "{:?}", spin(&s));
         closes(&s, 1e-9);
+    }
+}
+
+/// The same bits on any number of threads, and from a state saved on the way.
+#[test]
+fn rolling_gives_the_same_bits() {
+    let start = || {
+        GROUNDS[3].under::<Dim2>(
+            &Rolling {
+                of_contact: lengths(LENGTH, 0.0),
+                grains: grain(&[-5e-3, R], &[0.1, 0.0], &[-0.1 / R]),
+                ..Rolling::default()
+            },
+            1e7,
+        )
+    };
+    let mut s = start();
+    go(&mut s, 100);
+    let bytes = encode(&s.state).unwrap();
+    go(&mut s, 100);
+    let expected = encode(&s.state).unwrap();
+    let mut resumed = start();
+    let saved: State<Dim2> = decode(&bytes).unwrap();
+    assert!(resumed.restore(saved));
+    go(&mut resumed, 100);
+    assert!(encode(&resumed.state).unwrap() == expected);
+    for threads in [1, 2] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let found = pool.unwrap().install(|| {
+            let mut s = start();
+            go(&mut s, 200);
+            encode(&s.state).unwrap()
+        });
+        assert!(found == expected, "{threads} threads");
     }
 }
