@@ -24,10 +24,10 @@ use crate::small_strain;
 use crate::spec::BodySpec;
 use fretwork_core::bodies::{
     Compliance, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes,
-    SystemSize, SystemStep, SystemWork, TouchingSurface, block_of, compliance_by_solving,
+    SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
-use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use std::sync::Arc;
 
 /// A body of finite elements.
@@ -416,26 +416,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let Some(kept) = self.kept_compliance(nodes) else {
-            let formed = self.formed.as_ref();
-            let kept = formed.and_then(|f| Some((f, f.surface.as_ref()?)));
-            let found = kept.and_then(|(f, kept)| self.compliance_with_turning(f, kept, nodes));
-            return found.unwrap_or_else(|| compliance_by_solving(self, nodes));
+        let found = match self.kept_compliance(nodes) {
+            Some(kept) => turning::blocks_of_points::<S>(&kept, nodes),
+            None => self.compliance_with_turning(nodes),
         };
-        let places: Option<Vec<usize>> = nodes.iter().map(|n| kept.place(*n)).collect();
-        let Some(places) = places else {
-            return compliance_by_solving(self, nodes);
-        };
-        // Column by column, as they are kept.
-        let count = nodes.len();
-        let mut out = vec![S::Matrix::uniform(0.0); count * count];
-        for (of, b) in places.iter().enumerate() {
-            let column = kept.column(*b);
-            for (row, a) in places.iter().enumerate() {
-                out[row * count + of] = block_of::<S>(column, kept.nodes().len(), *a);
-            }
-        }
-        out
+        found.unwrap_or_else(|| compliance_by_solving(self, nodes))
     }
 
     fn kept_compliance(&self, touched: &[u32]) -> Option<Arc<Compliance<S>>> {

@@ -6,8 +6,7 @@
 use super::ElasticBody;
 use crate::compiled::Deformable;
 use crate::facet_spin::FacetSpin;
-use crate::model::Formed;
-use fretwork_core::bodies::{Compliance, Contactor, ContactorShape};
+use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, block_of};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
 impl<S: Deformable> ElasticBody<S> {
@@ -41,13 +40,10 @@ impl<S: Deformable> ElasticBody<S> {
         Some((node, self.facet_spin(node)?.length))
     }
 
-    /// Compliance of nodes of which some turn, by the kept columns of the points that touch.
-    pub(super) fn compliance_with_turning(
-        &self,
-        formed: &Formed<S>,
-        kept: &Compliance<S>,
-        nodes: &[u32],
-    ) -> Option<Vec<S::Matrix>> {
+    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; none where these are not kept.
+    pub(super) fn compliance_with_turning(&self, nodes: &[u32]) -> Option<Vec<S::Matrix>> {
+        let formed = self.formed.as_ref()?;
+        let kept = formed.surface.as_ref()?;
         let spins: Vec<_> = nodes.iter().map(|n| self.facet_spin(*n)).collect();
         let of_nodes = nodes.iter().zip(&spins).flat_map(|(node, spin)| {
             let points = spin.iter().flat_map(FacetSpin::points);
@@ -93,6 +89,24 @@ impl<S: Deformable> ElasticBody<S> {
         }
         Some(out)
     }
+}
+
+/// Compliance of points by their kept columns; none where one is not kept.
+pub(super) fn blocks_of_points<S: Space>(
+    kept: &Compliance<S>,
+    nodes: &[u32],
+) -> Option<Vec<S::Matrix>> {
+    let places: Option<Vec<usize>> = nodes.iter().map(|n| kept.place(*n)).collect();
+    let (places, count) = (places?, nodes.len());
+    let mut out = vec![S::Matrix::uniform(0.0); count * count];
+    // Column by column, as they are kept.
+    for (of, b) in places.iter().enumerate() {
+        let column = kept.column(*b);
+        for (row, a) in places.iter().enumerate() {
+            out[row * count + of] = block_of::<S>(column, kept.nodes().len(), *a);
+        }
+    }
+    Some(out)
 }
 
 /// The moment of an impulse on a node that turns with a length (m).
