@@ -247,10 +247,14 @@ impl<'a, S: Space> Narrow<'a, S> {
             // The contact of the same feature, or else the nearest of those no longer found.
             let matched = match left {
                 Some(k) if heir == Some(&touch.feature) => Some(k),
-                _ => of_feature(network, &old, touch.feature).or_else(|| {
-                    let mut others = old.clone().filter(|k| Some(*k) != left);
-                    others.find(|k| !taken[k - old.start] && is_gone(network, *k, &touches))
-                }),
+                _ => {
+                    let free = |k: &usize| !taken[k - old.start] && Some(*k) != left;
+                    let of = u64::from(touch.feature);
+                    let mut all = old.clone().filter(free);
+                    let same = all.find(|k| network.old[*k].key.feature == of);
+                    let mut others = old.clone().filter(free);
+                    same.or_else(|| others.find(|k| is_gone(network, *k, &touches)))
+                }
             };
             let matched = matched.filter(|k| !taken[k - old.start]);
             let gap = touch.distance - ball.radius;
