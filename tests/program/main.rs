@@ -12,6 +12,7 @@ mod bad_input;
 mod certify;
 mod check_features;
 mod check_methods;
+mod deformed_state;
 mod fclib;
 mod grains;
 mod holders;

@@ -12,6 +12,7 @@
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
 mod results;
+mod turning;
 
 use crate::compiled::Deformable;
 use crate::error::BodyError;
@@ -23,10 +24,10 @@ use crate::small_strain;
 use crate::spec::BodySpec;
 use fretwork_core::bodies::{
     Compliance, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes,
-    SystemSize, SystemStep, SystemWork, TouchingSurface, block_of, compliance_by_solving,
+    SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
-use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use std::sync::{Arc, OnceLock};
 
 /// A body of finite elements.
@@ -119,6 +120,11 @@ impl<S: Deformable> ElasticBody<S> {
             iterate: Iterate::default(),
             step: None,
         })
+    }
+
+    /// Where a point of the mesh is now (m).
+    fn point_now(&self, point: u32) -> S::Vector {
+        self.model.mesh.points()[point as usize] + self.displacement(point)
     }
 
     /// Displacement of a point of the mesh (m).
@@ -375,16 +381,31 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn node_position(&self, node: u32) -> S::Vector {
-        self.model.mesh.points()[node as usize] + self.displacement(node)
+        match self.facet_spin(node) {
+            Some(spin) => spin.middle(|p| self.point_now(p)),
+            None => self.point_now(node),
+        }
     }
 
     fn node_velocity(&self, node: u32, velocity: &[f64]) -> S::Vector {
-        self.model.of(velocity, node)
+        match self.facet_spin(node) {
+            Some(spin) => spin.velocity(|p| self.model.of(velocity, p)),
+            None => self.model.of(velocity, node),
+        }
     }
 
     fn add_impulse(&self, node: u32, impulse: &S::Vector, generalised: &mut [f64]) {
-        for axis in 0..S::D {
-            generalised[self.model.freedoms.of(node, axis)] += impulse[axis];
+        let mut add = |(point, p): (u32, S::Vector)| {
+            for axis in 0..S::D {
+                generalised[self.model.freedoms.of(point, axis)] += p[axis];
+            }
+        };
+        match self.facet_spin(node) {
+            Some(spin) => {
+                let forces = spin.forces(turning::moment::<S>(impulse, spin.length));
+                forces.for_each(add);
+            }
+            None => add((node, *impulse)),
         }
     }
 
@@ -395,17 +416,21 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     fn contact_nodes(&self, contactor: &Contactor, arm: &S::Vector) -> Nodes {
         match &self.model.part {
             Some(part) if contactor.shape == ContactorShape::Surface => {
-                let at = self.node_position(part.origin()) + *arm;
-                part.nodes::<S>(&at, |p| self.node_position(p))
+                let at = self.point_now(part.origin()) + *arm;
+                part.nodes::<S>(&at, |p| self.point_now(p))
             }
             _ => contactor.nodes,
         }
     }
 
+    fn turning_node(&self, contactor: &Contactor, arm: &S::Vector) -> Option<(u32, f64)> {
+        self.turning(contactor, arm)
+    }
+
     fn neighbours(&self, contactor: usize) -> Option<[Option<S::Vector>; 2]> {
         let part = self.model.part.as_ref()?;
         let found = part.neighbours(contactor)?;
-        Some(found.map(|p| p.map(|p| self.node_position(p))))
+        Some(found.map(|p| p.map(|p| self.point_now(p))))
     }
 
     fn vertex_nodes(&self, contactor: &Contactor, weights: &[(u32, f64)]) -> Option<Nodes> {
@@ -428,29 +453,17 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let Some(part) = &self.model.part else {
             return Vec::new();
         };
-        let origin = self.node_position(part.origin());
+        let origin = self.point_now(part.origin());
         let points = part.points.iter();
-        points.map(|p| self.node_position(*p) - origin).collect()
+        points.map(|p| self.point_now(*p) - origin).collect()
     }
 
     fn compliance(&self, nodes: &[u32]) -> Vec<S::Matrix> {
-        let Some(kept) = self.kept_compliance(nodes) else {
-            return compliance_by_solving(self, nodes);
+        let found = match self.kept_compliance(nodes) {
+            Some(kept) => turning::blocks_of_points::<S>(&kept, nodes),
+            None => self.compliance_with_turning(nodes),
         };
-        let places: Option<Vec<usize>> = nodes.iter().map(|n| kept.place(*n)).collect();
-        let Some(places) = places else {
-            return compliance_by_solving(self, nodes);
-        };
-        // Column by column, as they are kept.
-        let count = nodes.len();
-        let mut out = vec![S::Matrix::uniform(0.0); count * count];
-        for (of, b) in places.iter().enumerate() {
-            let column = kept.column(*b);
-            for (row, a) in places.iter().enumerate() {
-                out[row * count + of] = block_of::<S>(column, kept.nodes().len(), *a);
-            }
-        }
-        out
+        found.unwrap_or_else(|| compliance_by_solving(self, nodes))
     }
 
     fn kept_compliance(&self, touched: &[u32]) -> Option<Arc<Compliance<S>>> {

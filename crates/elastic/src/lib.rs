@@ -6,6 +6,7 @@ pub mod compiled;
 pub mod corotational;
 pub mod element;
 pub mod error;
+mod facet_spin;
 pub mod freedom;
 pub mod generate;
 pub mod grain;

@@ -14,6 +14,8 @@ pub struct SurfacePart {
     pub points: Vec<u32>,
     /// The D vertices of each facet, by their place in `points`; outside is where they are anticlockwise (3D).
     pub facets: Vec<[u32; 3]>,
+    /// Points of the mesh with the facets at them, in their order.
+    around: Vec<(u32, u32)>,
     /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
     single_valued: bool,
     dimension: usize,
@@ -36,11 +38,13 @@ impl SurfacePart {
         let points: BTreeSet<u32> = facets.iter().flat_map(|f| f.iter().copied()).collect();
         let points: Vec<u32> = points.into_iter().collect();
         let local = |p: u32| points.binary_search(&p).map_or(0, |k| k as u32);
+        let facets: Vec<[u32; 3]> = facets
+            .iter()
+            .map(|f| [local(f[0]), local(f[1]), local(f[2])])
+            .collect();
         Ok(Self {
-            facets: facets
-                .iter()
-                .map(|f| [local(f[0]), local(f[1]), local(f[2])])
-                .collect(),
+            around: around(&points, &facets, 3),
+            facets,
             points,
             single_valued: false,
             dimension: 3,
@@ -68,9 +72,12 @@ impl SurfacePart {
         let at = |k: usize| mesh.points()[points[k] as usize];
         let along = at(points.len() - 1) - at(0);
         let rises = |k: usize| (at(k + 1) - at(k)).dot(&along) > 0.0;
+        let single_valued = (0..facets.len()).all(rises);
+        let facets: Vec<[u32; 3]> = (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect();
         Ok(Self {
-            single_valued: (0..facets.len()).all(rises),
-            facets: (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect(),
+            single_valued,
+            around: around(&points, &facets, 2),
+            facets,
             points,
             dimension: 2,
         })
@@ -98,7 +105,33 @@ impl SurfacePart {
     /// mesh (m).
     pub fn nodes<S: Space>(&self, at: &S::Vector, position: impl Fn(u32) -> S::Vector) -> Nodes {
         let vertex = |k: u32| self.points[k as usize];
-        let corners = |f: usize| self.facets[f].map(|k| position(vertex(k)));
+        let (facet, weights) = self.nearest::<S>(at, position);
+        let corners = self.facets[facet].iter().zip(weights).take(self.dimension);
+        let terms: Vec<(u32, f64)> = corners.map(|(k, w)| (vertex(*k), w)).collect();
+        Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
+    }
+
+    /// The points of the mesh at the corners of a facet, of which the first D count.
+    pub fn corners(&self, facet: usize) -> [u32; 3] {
+        self.facets[facet].map(|k| self.points[k as usize])
+    }
+
+    /// The facets at a point of the mesh.
+    pub fn facets_at(&self, point: u32) -> impl Iterator<Item = usize> {
+        let first = self.around.partition_point(|(p, _)| *p < point);
+        let all = self.around[first..].iter();
+        all.take_while(move |(p, _)| *p == point)
+            .map(|(_, f)| *f as usize)
+    }
+
+    /// The facet that is nearest to a place, the first of equally near ones, with the weights of its corners at the nearest point.
+    /// `position` gives the current place of a point of the mesh (m).
+    pub fn nearest<S: Space>(
+        &self,
+        at: &S::Vector,
+        position: impl Fn(u32) -> S::Vector,
+    ) -> (usize, [f64; 3]) {
+        let corners = |f: usize| self.corners(f).map(&position);
         let found = if self.dimension == 2 {
             let off = |f: usize| on_facet::<S>(at, &corners(f));
             self.nearest_segment::<S>(at, &position, off)
@@ -109,10 +142,7 @@ impl SurfacePart {
                 .min_by(|a, b| a.1.0.total_cmp(&b.1.0))
                 .map(|(f, (_, weights))| (f, weights))
         };
-        let (facet, weights) = found.unwrap_or((0, [1.0, 0.0, 0.0]));
-        let corners = self.facets[facet].iter().zip(weights).take(self.dimension);
-        let terms: Vec<(u32, f64)> = corners.map(|(k, w)| (vertex(*k), w)).collect();
-        Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
+        found.unwrap_or((0, [1.0, 0.0, 0.0]))
     }
 
     /// Area (m^2; length in the plane, m) that each point stands for: an equal share of each facet at it.
@@ -163,6 +193,17 @@ impl SurfacePart {
             }
         }
     }
+}
+
+/// Points of the mesh with the facets at them, in order.
+fn around(points: &[u32], facets: &[[u32; 3]], corners: usize) -> Vec<(u32, u32)> {
+    let of = |(f, facet): (usize, &[u32; 3])| {
+        let facet = *facet;
+        (0..corners).map(move |k| (points[facet[k] as usize], f as u32))
+    };
+    let mut out: Vec<(u32, u32)> = facets.iter().enumerate().flat_map(of).collect();
+    out.sort_unstable();
+    out
 }
 
 /// Distance of a place from a facet (m), of which the first D corners count, and the weights of its corners at the nearest point,

@@ -142,24 +142,40 @@ pub fn triples<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
     vectors.iter().flat_map(V::padded).collect()
 }
 
-/// Fields inside a body of finite elements.
-pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
+/// A mesh that deforms, with the velocity of its points.
+trait Meshed<S: Space> {
+    fn mesh(&self) -> &DeformedMesh<S>;
+    fn velocity(&self) -> &[S::Vector];
+}
+
+impl<S: Space> Meshed<S> for BodyState<S> {
+    fn mesh(&self) -> &DeformedMesh<S> {
+        &self.mesh
+    }
+    fn velocity(&self) -> &[S::Vector] {
+        &self.velocity
+    }
+}
+
+impl<S: Space> Meshed<S> for GrainsState<S> {
+    fn mesh(&self) -> &DeformedMesh<S> {
+        &self.mesh
+    }
+    fn velocity(&self) -> &[S::Vector] {
+        &self.velocity
+    }
+}
+
+/// What bodies of finite elements and grains have alike: velocity and stress.
+fn of_meshes<S: Space, T: Meshed<S>>() -> [MeshField<T>; 3] {
     [
-        MeshField {
-            name: "displacement",
-            unit: "m",
-            doc: "displacement from the place without load",
-            at: At::Points,
-            width: 3,
-            values: |b| triples(&b.mesh.displacement),
-        },
         MeshField {
             name: "velocity",
             unit: "m/s",
             doc: "velocity",
             at: At::Points,
             width: 3,
-            values: |b| triples(&b.velocity),
+            values: |b| triples(b.velocity()),
         },
         MeshField {
             name: "stress",
@@ -167,7 +183,7 @@ pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
             doc: STRESS,
             at: At::Cells,
             width: 6,
-            values: |b| in_vtk_order(&b.mesh.stress),
+            values: |b| in_vtk_order(&b.mesh().stress),
         },
         MeshField {
             name: "von_mises",
@@ -175,55 +191,45 @@ pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
             doc: "von Mises stress",
             at: At::Cells,
             width: 1,
-            values: |b| b.mesh.stress.iter().map(von_mises).collect(),
+            values: |b| b.mesh().stress.iter().map(von_mises).collect(),
         },
     ]
 }
 
+/// Fields inside a body of finite elements.
+pub fn of_bodies<S: Space>() -> [MeshField<BodyState<S>>; 4] {
+    let [velocity, stress, von_mises] = of_meshes();
+    let displacement = MeshField::<BodyState<S>> {
+        name: "displacement",
+        unit: "m",
+        doc: "displacement from the place without load",
+        at: At::Points,
+        width: 3,
+        values: |b| triples(&b.mesh.displacement),
+    };
+    [displacement, velocity, stress, von_mises]
+}
+
 /// Fields inside grains that deform.
 pub fn of_grains<S: Space>() -> [MeshField<GrainsState<S>>; 5] {
-    [
-        MeshField {
-            name: "displacement",
-            unit: "m",
-            doc: "way of the point since the start of the run, with the motion of the grain",
-            at: At::Points,
-            width: 3,
-            values: |g| triples(&g.travel),
-        },
-        MeshField {
-            name: "deformation",
-            unit: "m",
-            doc: "displacement of the point against the frame that moves with the grain, in world axes",
-            at: At::Points,
-            width: 3,
-            values: |g| triples(&g.mesh.displacement),
-        },
-        MeshField {
-            name: "velocity",
-            unit: "m/s",
-            doc: "velocity",
-            at: At::Points,
-            width: 3,
-            values: |g| triples(&g.velocity),
-        },
-        MeshField {
-            name: "stress",
-            unit: "Pa",
-            doc: STRESS,
-            at: At::Cells,
-            width: 6,
-            values: |g| in_vtk_order(&g.mesh.stress),
-        },
-        MeshField {
-            name: "von_mises",
-            unit: "Pa",
-            doc: "von Mises stress",
-            at: At::Cells,
-            width: 1,
-            values: |g| g.mesh.stress.iter().map(von_mises).collect(),
-        },
-    ]
+    let [velocity, stress, von_mises] = of_meshes();
+    let displacement = MeshField::<GrainsState<S>> {
+        name: "displacement",
+        unit: "m",
+        doc: "way of the point since the start of the run, with the motion of the grain",
+        at: At::Points,
+        width: 3,
+        values: |g| triples(&g.travel),
+    };
+    let deformation = MeshField::<GrainsState<S>> {
+        name: "deformation",
+        unit: "m",
+        doc: "displacement of the point against the frame that moves with the grain, in world axes",
+        at: At::Points,
+        width: 3,
+        values: |g| triples(&g.mesh.displacement),
+    };
+    [displacement, deformation, velocity, stress, von_mises]
 }
 
 /// What the components of a stress are.

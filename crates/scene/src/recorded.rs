@@ -85,6 +85,21 @@ pub struct ShapedGrain {
     pub pieces: Vec<ShapedPiece>,
     /// Position and velocity.
     pub motion: Motion,
+    /// How it is deformed, if it deforms.
+    pub deformed: Option<Deformed>,
+}
+
+/// How a grain that deforms is deformed: of each point of its mesh, in world axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Deformed {
+    /// Where it is (m), beside the place of the grain where there is a period.
+    pub places: Vec<[f64; 3]>,
+    /// Its displacement against the frame that moves with the grain (m).
+    pub deformation: Vec<[f64; 3]>,
+    /// Its velocity (m/s).
+    pub velocity: Vec<[f64; 3]>,
+    /// Von Mises stress of each element (Pa).
+    pub von_mises: Vec<f64>,
 }
 
 /// The grains of one state, without first bodies and without grains that were removed.

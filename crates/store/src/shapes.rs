@@ -6,9 +6,11 @@ use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_core::step::Simulation;
+use fretwork_scene::recorded::ShapedGrain;
 
-/// The grains other than single balls, with the densities of the materials (kg/m^3).
-pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64]) -> Shaped {
+/// The grains other than single balls, with the densities of the materials (kg/m^3), and those that deform as they are without load, in
+/// the order of their systems.
+pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64], deforming: &[ShapedGrain]) -> Shaped {
     let grains = shaped(s);
     let (bodies, shapes) = (&s.state.bodies, &s.shapes);
     let mut out = Shaped::default();
@@ -45,12 +47,28 @@ pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64]) -> Shaped {
             inertia: inertia(bodies, b),
         });
     }
+    for (grain, id) in deforming.iter().zip(ids_of_grains(s)) {
+        out.bodies.push(ShapedBody { id, ..grain.body });
+        let balls = grain.balls.iter().cloned();
+        out.balls
+            .extend(balls.map(|b| ShapedBall { body: id, ..b }));
+        let pieces = grain.pieces.iter().cloned();
+        out.pieces
+            .extend(pieces.map(|p| ShapedPiece { body: id, ..p }));
+    }
     out
 }
 
-/// Whether there are grains other than single balls; states then have orientations.
+/// Identities of the grains that deform, in the order of their systems.
+fn ids_of_grains<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = u64> {
+    let systems = &s.state.systems;
+    let grains = (0..systems.len()).filter(|k| systems.get(*k).is_some_and(|g| g.is_grain()));
+    grains.filter_map(|k| Some(s.state.bodies.id[*systems.bodies(k).first()? as usize]))
+}
+
+/// Whether there are grains other than single balls, or that deform; states then have orientations.
 pub fn needed<S: Space>(s: &Simulation<S>) -> bool {
-    shaped(s).contains(&true)
+    shaped(s).contains(&true) || ids_of_grains(s).next().is_some()
 }
 
 /// Which bodies are grains other than single balls.

@@ -10,6 +10,7 @@ use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
+use fretwork_scene::recorded::ShapedGrain;
 
 /// References to the built scene.
 #[derive(Debug)]
@@ -20,6 +21,8 @@ pub struct Made<'a, S: Space> {
     pub materials: &'a [(String, String)],
     /// Densities of the materials (kg/m^3).
     pub densities: &'a [f64],
+    /// The grains that deform, without load, in the order of their systems.
+    pub deforming: &'a [ShapedGrain],
 }
 
 /// What the file says before the first step, with the columns of the statistics and those of the grains that observers have.
@@ -48,7 +51,7 @@ pub fn header<S: Space>(
         plugins: summary.plugins.clone(),
         seed: loaded.case.seed,
         dimension: S::D,
-        shapes: shapes::of(built.simulation, built.densities),
+        shapes: shapes::of(built.simulation, built.densities, built.deforming),
         meshes: meshes::of(&loaded.case, built.simulation),
         version: summary.version.clone(),
         statistics: statistics.to_vec(),

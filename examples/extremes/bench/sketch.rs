@@ -27,6 +27,8 @@ pub struct Sketch {
     pub mu: f64,
     /// Normal restitution of the only interface, if its law has it.
     pub restitution: Option<f64>,
+    /// Further parameters of its contact law, with a leading comma.
+    pub of_contact: String,
     /// Further fields of the interface, with a trailing comma.
     pub interface: &'static str,
     /// Further parameters of its laws, with a leading comma.
@@ -54,6 +56,7 @@ impl Default for Sketch {
             contact: "coulomb",
             mu: 0.3,
             restitution: None,
+            of_contact: String::new(),
             interface: "",
             parameters: String::new(),
             solver: "tolerance: 1e-10, max_iterations: 100000,".to_owned(),
@@ -127,8 +130,8 @@ impl Sketch {
                 let _ = writeln!(
                     interfaces,
                     "(name: \"i{a}{b}\", between: (\"m{a}\", \"m{b}\"), contact: \"{}\", {} \
-                     parameters: (contact: {{\"mu\": {:?}{restitution}}}{})),",
-                    self.contact, self.interface, self.mu, self.parameters,
+                     parameters: (contact: {{\"mu\": {:?}{restitution}{}}}{})),",
+                    self.contact, self.interface, self.mu, self.of_contact, self.parameters,
                 );
             }
         }

@@ -451,6 +451,7 @@ fn create_results<S: Dimensional>(
         simulation: &built.simulation,
         materials: &built.materials,
         densities: &built.densities,
+        deforming: &built.deforming,
     };
     let (statistics, grains) = (observers.columns(), observers.grain_columns());
     let header = views::header(loaded, &made, summary, &statistics, &grains);

@@ -55,6 +55,7 @@ fn grain(share: f64) -> (f64, f64, f64) {
         rotation: 0.0,
         velocity: Vector2::zeros(),
         spin: nalgebra::Vector1::zeros(),
+        displacement: Default::default(),
     });
     s.add_system(system.unwrap());
     go(&mut s, STEPS);

@@ -110,17 +110,5 @@ fn fields_of_grains_are_those_of_the_other_files_and_of_their_motion() {
             }
         }
     }
-    // No other case takes their state over: their deformation is not part of it.
-    let from = CASE.find("List(").unwrap();
-    let to = CASE.find("    elastic_grains:").unwrap();
-    let state = "State(results: \"results\", material: \"soft\")],\n";
-    let text = format!("{}{state}{}", &CASE[..from], &CASE[to..]);
-    std::fs::write(&case, text).unwrap();
-    let (output, _) = run(case.to_str().unwrap(), &out.join("again"), &sets);
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    for words in ["grains that deform", "--resume"] {
-        assert!(said.contains(words), "{said}");
-    }
     std::fs::remove_dir_all(out).ok();
 }

@@ -116,8 +116,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
 /// Every method of the solver serves systems: sweeps apply the compliance impulse by impulse, gradients to all nodes at
 /// a time, and Newton and the interior point form W, of which the blocks between all contacts of a system are filled. Where these have
 /// more than some ten million entries there are products alone, and methods that need W are refused
-/// ([`crate::solve::refusal`]). A law that resists rotation needs a [`turning_node`](DynamicalSystem::turning_node), and is refused
-/// without ([`crate::step::StepError::SystemRotation`]); so is the projection of overlaps with any system.
+/// ([`crate::solve::refusal`]). A law that resists rotation acts on a [`turning_node`](DynamicalSystem::turning_node); where there is none the
+/// system does not turn, and what holds it takes the moment. The projection of overlaps is refused with any system.
 ///
 /// # Systems that are not linear
 /// With internal forces f(q) in place of K q a step is taken with the tangent: `linearise` forms K = df/dq and A at the state
@@ -233,10 +233,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         contactor.nodes
     }
 
-    /// A node that turns with a contactor, after those of points, and a length (m): the velocity of the node is the angular velocity of the
-    /// contactor times this length (in the plane along x), and an impulse p on it is a moment of p times the length. Laws that resist
-    /// rotation act on it. None of contactors that take up no moments.
-    fn turning_node(&self, _contactor: &Contactor) -> Option<(u32, f64)> {
+    /// A node that turns with a contactor where a contact acts, at an arm from its origin in world axes (m), and a length (m). Such nodes come
+    /// after those of points: the velocity of one is the angular velocity of the contactor there times its length (in the plane along x), and
+    /// an impulse p on it is a moment of p times the length. Laws that resist rotation act on it.
+    ///
+    /// Here none: the contactor does not turn, whatever moment acts on it, so that moments on it have no power.
+    fn turning_node(&self, _contactor: &Contactor, _arm: &S::Vector) -> Option<(u32, f64)> {
         None
     }
 

@@ -24,4 +24,4 @@ pub use dynamical_system::{
 pub use stages::Stage;
 pub use state::Bodies;
 pub use system_report::{SystemSize, TouchingSurface};
-pub use systems::{Carrier, HeldAxis, Systems};
+pub use systems::{Carrier, HeldAxis, Systems, TurningNode};

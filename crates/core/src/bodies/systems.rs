@@ -26,6 +26,17 @@ pub struct Carrier {
     pub grain: bool,
 }
 
+/// A node that turns with a part of a system, see [`DynamicalSystem::turning_node`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurningNode {
+    /// Index of the system.
+    pub system: u32,
+    /// Its id in the system.
+    pub node: u32,
+    /// Its velocity over its angular velocity (m).
+    pub length: f64,
+}
+
 /// A held part of a system along an axis.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct HeldAxis {
@@ -292,19 +303,29 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
-    /// Angular velocity of a contactor's body at the start of the step (rad/s).
-    pub fn spin_at_start(&self, carrier: Carrier) -> S::Spin {
+    /// The node that turns with a contactor's body at an arm from its centre (m); see [`DynamicalSystem::turning_node`].
+    pub fn turning_node(&self, carrier: Carrier, arm: &S::Vector) -> Option<TurningNode> {
         let entry = &self.entries[carrier.system as usize];
         let contactor = &entry.contactors[carrier.contactor as usize];
-        let (_, spin) = entry.system.contactor_velocity(contactor, &entry.start);
-        spin
+        let (node, length) = entry.system.turning_node(contactor, arm)?;
+        Some(TurningNode {
+            system: carrier.system,
+            node,
+            length,
+        })
     }
 
-    /// The node that turns with a contactor's body, with its length (m); see [`DynamicalSystem::turning_node`].
-    pub fn turning_node(&self, carrier: Carrier) -> Option<(u32, f64)> {
-        let entry = &self.entries[carrier.system as usize];
-        let contactor = &entry.contactors[carrier.contactor as usize];
-        entry.system.turning_node(contactor)
+    /// Angular velocities that a node turns with, at the start of the step and now (rad/s).
+    pub fn spins(&self, of: &TurningNode) -> [S::Spin; 2] {
+        let entry = &self.entries[of.system as usize];
+        [&entry.start[..], entry.system.velocity()].map(|velocity| {
+            let moves = entry.system.node_velocity(of.node, velocity);
+            let mut spin = S::Spin::zero();
+            for k in 0..S::Spin::N {
+                spin[k] = moves[k] / of.length;
+            }
+            spin
+        })
     }
 
     /// Where the points next to a contactor's are, see [`DynamicalSystem::neighbours`].

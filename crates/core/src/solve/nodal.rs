@@ -4,7 +4,7 @@ use super::form::{ContactForm, Mobility, Place, Problem};
 use super::loaded::{Loaded, Points, add_response};
 use super::row::{MomentForm, SystemRow, Term};
 use super::side::Side;
-use crate::bodies::{Compliance, block_of};
+use crate::bodies::{Compliance, TurningNode, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
@@ -243,29 +243,28 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by side of a system that turns its index, the
-    /// node that turns with it, and the length (m) by which the velocity of that is its spin. False, and nothing is added, where a side
-    /// names a system or a node that was not pushed.
+    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by side of a system that turns the node that
+    /// turns with it. False, and nothing is added, where a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_moment_between(
         &mut self,
         form: &MomentForm<S>,
         contact: &ContactForm<S>,
-        sides: [Option<(u32, u32, f64)>; 2],
+        sides: [Option<TurningNode>; 2],
     ) -> bool {
         let mut terms = [None; 2];
         for ((side, term), sign) in sides.into_iter().zip(&mut terms).zip([1.0, -1.0]) {
-            let Some((system, node, length)) = side else {
+            let Some(side) = side else {
                 continue;
             };
-            let known = self.systems.get(system as usize);
-            let Some(Ok(at)) = known.map(|s| s.nodes.binary_search(&node)) else {
+            let known = self.systems.get(side.system as usize);
+            let Some(Ok(at)) = known.map(|s| s.nodes.binary_search(&side.node)) else {
                 return false;
             };
             *term = Some(Term {
-                system,
+                system: side.system,
                 node: at as u32,
-                weight: sign / length,
+                weight: sign / side.length,
             });
         }
         let row = self.moment_row(form, contact);

@@ -74,12 +74,10 @@ impl<S: Space> Simulation<S> {
         before.relative.extend(relative);
         before.turning.clear();
         if self.laws.iter().any(Interface::rotates) {
-            let spins = &self.state.bodies.spin;
-            let relative =
-                |c: &Contact<S>| spins[c.bodies[0] as usize] - spins[c.bodies[1] as usize];
+            let contacts = self.state.network.contacts.iter();
             before
                 .turning
-                .extend(self.state.network.contacts.iter().map(relative));
+                .extend(contacts.map(|c| self.relative_spin_before(c)));
         }
         before.overlap.clear();
         before.effective_mass.clear();
@@ -185,18 +183,10 @@ impl<S: Space> Simulation<S> {
         let mut moment_steps = std::mem::take(&mut self.workspace.solved.moment_steps);
         moment_steps.clear();
         let theta = self.options.scheme.theta;
-        let average = |b: u32| {
-            let b = b as usize;
-            let before = match self.state.bodies.carrier(b) {
-                Some(carrier) => self.state.systems.spin_at_start(carrier),
-                None => start.spin(b),
-            };
-            before * (1.0 - theta) + self.state.bodies.spin[b] * theta
-        };
-        let turn = |(form, moment): (&MomentForm<S>, solve::MomentSolution<S>)| {
+        let turn = |(k, (form, moment)): (usize, (&MomentForm<S>, solve::MomentSolution<S>))| {
             let contact = &self.state.network.contacts[moment.contact as usize];
-            let [i, j] = contact.bodies;
-            let spin = average(i) - average(j);
+            let [before, after] = self.relative_spins_of_moment(k, |b| start.spin(b));
+            let spin = before * (1.0 - theta) + after * theta;
             let (twist, bend) = S::split_spin(&contact.normal, &spin);
             MomentStep {
                 spin,
@@ -209,7 +199,7 @@ impl<S: Space> Simulation<S> {
             .moments
             .iter()
             .zip(self.workspace.problem.moments());
-        moment_steps.extend(solved.map(turn));
+        moment_steps.extend(solved.enumerate().map(turn));
         self.workspace.solved.moment_steps = moment_steps;
     }
 }

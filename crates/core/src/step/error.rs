@@ -49,17 +49,6 @@ pub enum StepError {
         /// What it said.
         source: ProcessError,
     },
-    /// A law resists rotation at a contact with a dynamical system that takes up forces alone.
-    #[error(
-        "step {step}: the law of a contact with the system `{system}` resists rotation (rolling friction, spinning friction or \
-         bending of a bond), which it does not take up: of all that deforms only grains do; use a law without it there"
-    )]
-    SystemRotation {
-        /// Number of the step.
-        step: u64,
-        /// Name of the system.
-        system: String,
-    },
     /// Overlaps are to be removed by displacements, which dynamical systems do not take part in.
     #[error(
         "step {step}: solver.projection moves grains and first bodies apart, not the system `{system}`; set solver.projection to 0, \

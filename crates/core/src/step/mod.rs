@@ -40,6 +40,7 @@ mod run;
 mod simulation;
 mod state;
 mod systems;
+mod turning;
 mod workspace;
 
 pub use columns::ContactRow;

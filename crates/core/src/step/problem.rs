@@ -8,7 +8,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::columns::StepInfo;
 use crate::solve::local::solver::Method;
-use crate::solve::{self, ContactForm, MomentForm};
+use crate::solve::{self, ContactForm};
 use std::time::Instant;
 
 impl<S: Space> Simulation<S> {
@@ -118,20 +118,6 @@ impl<S: Space> Simulation<S> {
     /// Checks that the method supports the current forms; some requirements of laws appear only during a
     /// step.
     fn check_method(&self) -> Result<(), StepError> {
-        let moment_steps =
-            |m: &MomentForm<S>| self.state.network.contacts[m.contact as usize].bodies;
-        let moments = self.workspace.moments.iter();
-        let carrier = moments
-            .flat_map(moment_steps)
-            .filter_map(|b| self.state.bodies.carrier(b as usize))
-            .find(|carrier| self.state.systems.turning_node(*carrier).is_none());
-        if let Some(carrier) = carrier {
-            let system = self.state.systems.get(carrier.system as usize);
-            return Err(StepError::SystemRotation {
-                step: self.state.steps + 1,
-                system: system.map_or_else(String::new, |s| s.name().to_owned()),
-            });
-        }
         let (method, operator) = (
             self.options.solver.method,
             self.workspace.problem.operator(),

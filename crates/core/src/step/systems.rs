@@ -2,7 +2,7 @@
 //! those of rigid bodies.
 
 use super::{Simulation, StepError};
-use crate::bodies::{Compliance, ContactorShape, DynamicalSystem, Nodes, SystemStep};
+use crate::bodies::{Compliance, ContactorShape, DynamicalSystem, Nodes, SystemStep, TurningNode};
 use crate::contact::{Contact, detect};
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
@@ -22,7 +22,9 @@ pub(super) struct SystemContacts<S: Space> {
     /// What the solver knows of each system: nodes, or points between them.
     nodal: Vec<NodalSystem<S>>,
     /// By system the points that stand for nodes; empty where nodes stand for themselves.
-    points: Vec<Vec<Nodes>>,
+    pub(super) points: Vec<Vec<Nodes>>,
+    /// The nodes that the moments of the step turn, by side.
+    pub(super) turned: Vec<[Option<TurningNode>; 2]>,
 }
 
 /// Of a contact without systems.
@@ -36,6 +38,7 @@ impl<S: Space> Default for SystemContacts<S> {
             touched: Vec::new(),
             nodal: Vec::new(),
             points: Vec::new(),
+            turned: Vec::new(),
         }
     }
 }
@@ -55,7 +58,7 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
 }
 
 /// A point as the solver knows it: its place among the points of the system where there are any, or itself.
-fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
+pub(super) fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
     let at = points.binary_search_by(|other| other.order(point));
     at.map_or(*point, |at| Nodes::one(at as u32))
 }
@@ -217,6 +220,7 @@ impl<S: Space> Simulation<S> {
         self.workspace.systems.touched.clear();
         self.workspace.systems.nodal.clear();
         self.workspace.systems.points.clear();
+        self.workspace.systems.turned.clear();
     }
 
     /// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
@@ -232,16 +236,6 @@ impl<S: Space> Simulation<S> {
             self.find_touched_nodes(&moments);
         }
         self.workspace.moments = moments;
-    }
-
-    /// By side of a contact the system that its moment turns, with the node and its length (m).
-    fn turned(&self, contact: u32) -> [Option<(u32, u32, f64)>; 2] {
-        let bodies = self.state.network.contacts[contact as usize].bodies;
-        bodies.map(|body| {
-            let carrier = self.state.bodies.carrier(body as usize)?;
-            let (node, length) = self.state.systems.turning_node(carrier)?;
-            Some((carrier.system, node, length))
-        })
     }
 
     fn find_touched_nodes(&mut self, moments: &[MomentForm<S>]) {
@@ -263,10 +257,11 @@ impl<S: Space> Simulation<S> {
                 touched[*system as usize].extend(nodes.terms().map(|(node, _)| node));
             }
         }
-        let turned = moments.iter().flat_map(|form| self.turned(form.contact));
-        let turned: Vec<_> = turned.flatten().collect();
-        for (system, node, _) in &turned {
-            touched[*system as usize].push(*node);
+        let contacts = &self.state.network.contacts;
+        let turned = moments.iter().map(|form| &contacts[form.contact as usize]);
+        found.turned = turned.map(|contact| self.turned(contact)).collect();
+        for at in found.turned.iter().flatten().flatten() {
+            touched[at.system as usize].push(at.node);
         }
         let mut kept = Vec::with_capacity(systems);
         for (system, nodes) in touched.iter_mut().enumerate() {
@@ -283,9 +278,9 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
-        for (system, node, _) in turned {
-            if kept[system as usize].is_none() {
-                points[system as usize].push(Nodes::one(node));
+        for at in found.turned.iter().flatten().flatten() {
+            if kept[at.system as usize].is_none() {
+                points[at.system as usize].push(Nodes::one(at.node));
             }
         }
         let before = std::mem::take(&mut self.workspace.systems);
@@ -363,28 +358,6 @@ impl<S: Space> Simulation<S> {
                     debug_assert!(known, "all nodes of the sides were pushed");
                 }
             }
-        }
-    }
-
-    /// Hands the moments of contacts to the solver.
-    pub(super) fn pose_moments(&mut self) {
-        for k in 0..self.workspace.moments.len() {
-            let form = self.workspace.moments[k];
-            let sides = match self.state.systems.is_empty() {
-                true => [None; 2],
-                false => self.turned(form.contact),
-            };
-            let points = &self.workspace.systems.points;
-            let sides = sides.map(|side| {
-                let (system, node, length) = side?;
-                let node = place_among(&points[system as usize], &Nodes::one(node));
-                let (node, _) = node.terms().next()?;
-                Some((system, node, length))
-            });
-            let contact = &self.workspace.forms[form.contact as usize];
-            let problem = &mut self.workspace.problem;
-            let known = problem.push_moment_between(&form, contact, sides);
-            debug_assert!(known, "the nodes that turn were pushed");
         }
     }
 

@@ -296,7 +296,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
         self.nodes_at(&S::unrotate(&self.state.rotation, arm))
     }
 
-    fn turning_node(&self, contactor: &Contactor) -> Option<(u32, f64)> {
+    fn turning_node(&self, contactor: &Contactor, _arm: &S::Vector) -> Option<(u32, f64)> {
         Some((self.vertices.len() as u32, contactor.radius))
     }
 

@@ -54,6 +54,8 @@ pub struct ElasticGrainSpec<S: Space> {
     pub velocity: S::Vector,
     /// Its angular velocity (rad/s).
     pub spin: S::Spin,
+    /// Displacements of the points of its mesh in the frame (m), and their rates (m/s); empty of a grain without strain.
+    pub displacement: [Vec<S::Vector>; 2],
 }
 
 /// What is known for the length of a step.
@@ -168,12 +170,20 @@ impl<S: Deformable> ElasticGrain<S> {
         };
         let mut velocity: Vec<f64> = (0..S::D).map(|k| spec.velocity[k]).collect();
         velocity.extend((0..S::Spin::N).map(|k| spec.spin[k]));
-        velocity.resize(velocity.len() + model.rates.len(), 0.0);
+        let amplitudes = |of: &[S::Vector]| {
+            let own = model.shape.amplitudes(of).into_iter();
+            own.map(|a| a / model.scale).collect::<Vec<f64>>()
+        };
+        let [amplitudes, rates] = spec.displacement.each_ref().map(|of| match of.is_empty() {
+            true => vec![0.0; model.rates.len()],
+            false => amplitudes(of),
+        });
+        velocity.extend(rates);
         let state = State {
             position: spec.position,
             rotation: spec.rotation,
             momentum: S::turned_tensor(&spec.rotation, &model.inertia).apply(&spec.spin),
-            amplitudes: vec![0.0; model.rates.len()],
+            amplitudes,
             velocity,
         };
         let mut grain = Self {

@@ -169,6 +169,20 @@ impl<S: Space> GrainShape<S> {
         sum::<S>(&self.modes, amplitudes, self.mesh.points().len())
     }
 
+    /// The amplitudes of the modes of displacements of all points, as many as the mesh has: what [`Self::displacements`] gives, less any rigid
+    /// motion. Modes are orthogonal by the masses of the points.
+    pub fn amplitudes(&self, displacements: &[S::Vector]) -> Vec<f64> {
+        let masses = self.masses();
+        let weighed: Vec<f64> = displacements
+            .iter()
+            .zip(&masses)
+            .flat_map(|(u, m)| (0..S::D).map(move |axis| m * u[axis]))
+            .collect();
+        let modes = self.modes.chunks_exact(weighed.len().max(1));
+        let along = |mode: &[f64]| mode.iter().zip(&weighed).map(|(phi, u)| phi * u).sum();
+        modes.map(along).collect()
+    }
+
     /// Displacements of the vertices.
     pub fn of_vertices(&self, amplitudes: &[f64]) -> Vec<S::Vector> {
         sum::<S>(&self.by_mode, amplitudes, self.vertices.len())

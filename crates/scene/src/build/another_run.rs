@@ -53,8 +53,18 @@ impl<S: Dimensional> Builder<'_, S> {
             0 => String::new(),
             n => format!(" ({balls} balls, {n} of other shapes)"),
         };
+        let deformed = read.shaped.iter().filter(|g| g.deformed.is_some()).count();
+        let deform = self.case.elastic_grains.iter();
+        let deform = deform.map(|e| &e.material).any(|m| *m == spec.material);
+        let strain = match (deformed, deform) {
+            (0, _) => String::new(),
+            (n, true) => format!(", {n} with their deformation"),
+            (n, false) => format!(
+                ", without the deformation of {n}, which are rigid here: their strain energy and vibration are left out"
+            ),
+        };
         self.samples.push(format!(
-            "grains.{k}: {} grains{which} of state {} of {}, {:e} s",
+            "grains.{k}: {} grains{which} of state {} of {}, {:e} s{strain}",
             balls + others,
             read.frame,
             path.display(),
@@ -120,6 +130,9 @@ impl<S: Dimensional> Builder<'_, S> {
         let first = S::Vector::from_slice(&first);
         let at = S::Vector::from_slice(&motion.at) - S::rotate(&rotation, &first);
         let body = self.weighing(&grain.body, at, density)?;
+        if let Some(deformed) = grain.deformed {
+            self.deformed.insert(body, (grain.body.id, deformed));
+        }
         let b = body as usize;
         self.bodies.rotation[b] = rotation;
         self.bodies.velocity[b] = S::Vector::from_slice(&motion.velocity);

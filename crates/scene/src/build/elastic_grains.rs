@@ -24,9 +24,9 @@ pub(super) type ElasticGrains<S> = Vec<(Box<dyn DynamicalSystem<S>>, Origin)>;
 type ShapeKey = (usize, Vec<u64>);
 
 /// The collision shapes of a grain.
-struct Shapes<'a, S: Space> {
-    balls: Vec<&'a Ball<S>>,
-    pieces: Vec<&'a ConvexCollider<S>>,
+pub(super) struct Shapes<'a, S: Space> {
+    pub balls: Vec<&'a Ball<S>>,
+    pub pieces: Vec<&'a ConvexCollider<S>>,
 }
 
 impl<S: Space> Shapes<'_, S> {
@@ -124,6 +124,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let mut out = Vec::new();
         let mut kept = vec![true; self.bodies.len()];
         let mut used = BTreeSet::new();
+        let mut unloaded = Vec::new();
         for (b, own) in shapes.iter().enumerate() {
             let ball = own.balls.first().map(|ball| ball.material);
             let material = ball.or_else(|| own.pieces.first().map(|piece| piece.material));
@@ -136,6 +137,8 @@ impl<S: Dimensional> Builder<'_, S> {
             let shape =
                 self.grain_shape(own, origin, (*elements, elasticity.poisson), &mut known)?;
             let (shape, size) = shape;
+            let of = (&*shape, size, elasticity);
+            let displacement = self.taken_over(b as u32, here, &spec.material, of)?;
             let grain = Grain {
                 name: format!("grain_{}", out.len()),
                 shape,
@@ -148,7 +151,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 rotation: self.bodies.rotation[b],
                 velocity: self.bodies.velocity[b],
                 spin: self.bodies.spin[b],
+                displacement,
             };
+            unloaded.push(self.unloaded(b, own, material.unwrap_or_default()));
             let bound = own.bound();
             for (k, name) in ["x", "y", "z"].into_iter().enumerate() {
                 let period = self.shapes.periodic.period[k];
@@ -170,6 +175,7 @@ impl<S: Dimensional> Builder<'_, S> {
             return Err(self.fail(format!("{here}.material"), message));
         }
         self.keep_bodies(&kept);
+        self.deforming = unloaded;
         Ok(out)
     }
 

@@ -15,6 +15,7 @@
 
 mod dataset;
 mod declare;
+mod deformed;
 mod events;
 mod growth;
 mod mesh_view;

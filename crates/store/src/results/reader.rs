@@ -68,6 +68,11 @@ impl Reader {
         self.names.iter().any(|n| n == name)
     }
 
+    /// Names of all datasets, with their groups.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(String::as_str)
+    }
+
     /// Whether it has a dataset in this group, or in a group of it.
     pub fn has_group(&self, name: &str) -> bool {
         let inside = |n: &String| {

@@ -1,4 +1,4 @@
-//! Shapes of the grains other than single balls in `results.h5`, stored once in the grains' own frames.
+//! Shapes of the grains other than single balls, and of those that deform, without load, in `results.h5`, stored once in the grains' own frames.
 //!
 //! ```text
 //! /shapes/bodies/id, mass, density, length, inertia     one row per grain; inertia has 9 numbers, row by row
@@ -14,7 +14,7 @@ use super::reader::Reader;
 use super::store::{ResultsError, Store};
 pub use fretwork_scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
-/// All grains other than single balls, with their parts, in the order of the grains' view.
+/// All grains other than single balls, and those that deform, with their parts, in the order of the grains' view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaped {
     /// The grains.

@@ -1,5 +1,6 @@
 //! Reads the grains of a recorded state of `results.h5`, also of a truncated file or a running run.
 
+use super::deformed;
 use super::reader::Reader;
 use super::shapes::Shaped;
 use fretwork_core::fields::ORIENTATION;
@@ -60,8 +61,6 @@ pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State
 
 /// Group of the grains' view.
 const ROOT: &str = "views/grains";
-/// Group of the meshes of grains that deform.
-const DEFORM: &str = "views/elastic_grains";
 
 struct Grains {
     reader: Reader,
@@ -134,6 +133,7 @@ impl Grains {
         fn at<const N: usize>(columns: &[Vec<f64>], k: usize) -> [f64; N] {
             std::array::from_fn(|axis| columns.get(axis).map_or(0.0, |c| c[k]))
         }
+        let mut deformed = deformed::read(&self.reader, frame)?;
         let mut sorted = Sorted::of(shaped.unwrap_or_default())?;
         let mut state = State {
             frame,
@@ -159,14 +159,11 @@ impl Grains {
             }
             let body = id[k] as u64;
             match sorted.take(body, motion) {
-                Known::First(grain) => state.shaped.push(*grain),
-                Known::Again => {}
-                Known::Not if corners[k] > 0.0 && self.reader.has_group(DEFORM) => {
-                    return Err(format!(
-                        "state {frame} holds grains that deform (`elastic_grains`), which no other case takes over: begin from a run in which they are \
-                         rigid, or let the run itself go on with `--resume` and a later `time.end`"
-                    ));
+                Known::First(mut grain) => {
+                    grain.deformed = deformed.remove(&body);
+                    state.shaped.push(*grain);
                 }
+                Known::Again => {}
                 Known::Not if corners[k] > 0.0 => return Err(shapeless(frame)),
                 Known::Not => {
                     balls.push(body);
@@ -214,6 +211,7 @@ impl Sorted {
                 balls: Vec::new(),
                 pieces: Vec::new(),
                 motion: Motion::default(),
+                deformed: None,
                 body,
             };
             grains.insert(grain.body.id, Some(Box::new(grain)));

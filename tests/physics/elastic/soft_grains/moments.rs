@@ -195,3 +195,58 @@ fn methods_agree_on_moments() {
         near(expected, spin(method), 1e-7);
     }
 }
+
+/// The same cube on a block of finite elements that deforms too, in small and in large strain: normals are upright but for what falls with the
+/// modulus.
+#[test]
+fn spinning_friction_acts_between_two_that_deform() {
+    for (strain, young) in [
+        ("Small", 1e7),
+        ("Small", 1e9),
+        ("NeoHookean", 1e7),
+        ("NeoHookean", 1e9),
+    ] {
+        let mut s = Soft {
+            step: 2e-4,
+            theta: 0.5,
+            young,
+            elements: 1,
+            damping: 1e-5,
+            mu: 0.0,
+            contact: (
+                "rolling-friction",
+                ", \"spinning\": 0.001, \"rolling_factor\": 0.0".to_owned(),
+            ),
+            gravity: down(3),
+            bodies: wall("far", &[0.0, 0.0, 1.0], &[0.0, 0.0, -1.0], ""),
+            grains: cuboid(
+                "soft",
+                [0.0, 0.0, 0.01],
+                [0.02; 3],
+                "spin: [0.0, 0.0, 20.0]",
+            ),
+            more: format!(
+                "elastic: [(name: \"block\", material: \"soft\", strain: {strain}, damping: (mass: 0.0, stiffness: 1e-4), \
+                 mesh: Block(x: (from: -0.03, to: 0.03, size: 0.02), y: (from: -0.03, to: 0.03, size: 0.02), \
+                 z: (from: -0.02, to: 0.0, size: 0.02)), touches: Surface(\"top\"), \
+                 supports: [(part: \"bottom\", x: Fixed, y: Fixed, z: Fixed)])],"
+            ),
+            tolerance: 1e-11,
+            ..Soft::default()
+        }
+        .build::<Dim3>();
+        let is_grain = |k: &usize| s.state.systems.get(*k).unwrap().is_grain();
+        let grain = (0..2).find(is_grain).unwrap();
+        let start = momenta(&s, grain).1.z;
+        go(&mut s, 250);
+        let lost = start - momenta(&s, grain).1.z;
+        let mass = s.state.systems.get(grain).unwrap().mass();
+        let pressed = mass * (G * s.state.time + velocity_of(&s, grain).z);
+        println!(
+            "{strain}, {young:e} Pa: lost {:e} of l int N dt",
+            lost / (1e-3 * pressed)
+        );
+        near(1e-3 * pressed, lost, 1e3 / young);
+        closes(&s, 1e-9);
+    }
+}

@@ -3,6 +3,7 @@
 
 mod convex_pair;
 mod extents;
+mod margin;
 mod narrow;
 mod neighbours;
 mod order;

@@ -7,6 +7,7 @@ use crate::contact::network::{Contact, ContactGeometry, Key, Network};
 use crate::geometry::convex::{ConvexCollider, Core};
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
+use std::ops::Range;
 
 /// One pass over the candidate pairs, in order, in parallel with the old contacts.
 pub(super) struct Narrow<'a, S: Space> {
@@ -234,19 +235,28 @@ impl<'a, S: Space> Narrow<'a, S> {
             1.0
         };
         let size = ball.size(&self.bodies.length);
+        // A bond whose facet is no longer touched goes on at the nearest one, also where that had a contact without a bond.
+        let left = old
+            .clone()
+            .find(|k| is_gone(network, *k, &touches) && held(network, Some(*k)));
+        let heir = alone
+            .iter()
+            .find(|f| !held(network, of_feature(network, &old, **f)));
+        let left = left.filter(|_| heir.is_some());
         for touch in &touches {
             // The contact of the same feature, or else the nearest of those no longer found.
-            let same = old.clone().find(|k| {
-                !taken[k - old.start] && network.old[*k].key.feature == u64::from(touch.feature)
-            });
-            let matched = same.or_else(|| {
-                old.clone().find(|k| {
-                    !taken[k - old.start]
-                        && !touches
-                            .iter()
-                            .any(|t| u64::from(t.feature) == network.old[*k].key.feature)
-                })
-            });
+            let matched = match left {
+                Some(k) if heir == Some(&touch.feature) => Some(k),
+                _ => {
+                    let free = |k: &usize| !taken[k - old.start] && Some(*k) != left;
+                    let of = u64::from(touch.feature);
+                    let mut all = old.clone().filter(free);
+                    let same = all.find(|k| network.old[*k].key.feature == of);
+                    let mut others = old.clone().filter(free);
+                    same.or_else(|| others.find(|k| is_gone(network, *k, &touches)))
+                }
+            };
+            let matched = matched.filter(|k| !taken[k - old.start]);
             let gap = touch.distance - ball.radius;
             if gap >= network.alert && !held(network, matched) {
                 continue;
@@ -293,7 +303,7 @@ impl<'a, S: Space> Narrow<'a, S> {
 
     /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the same
     /// extension within a step, and the displacement of its bodies in the step.
-    pub(super) fn reach(&self, network: &Network<S>, old: std::ops::Range<usize>) -> f64 {
+    pub(super) fn reach(&self, network: &Network<S>, old: Range<usize>) -> f64 {
         let stretch = |k: usize| {
             let old = &network.old[k];
             let bond = network.bond(old).filter(|b| b.intact())?;
@@ -371,4 +381,20 @@ impl<'a, S: Space> Narrow<'a, S> {
         }
         network.contacts.push(found);
     }
+}
+
+/// The old contact of a pair with a feature of its surface.
+fn of_feature<S: Space>(network: &Network<S>, old: &Range<usize>, feature: u32) -> Option<usize> {
+    let mut all = old.clone();
+    all.find(|k| network.old[*k].key.feature == u64::from(feature))
+}
+
+/// Whether no touch has the feature of an old contact.
+fn is_gone<S: Space>(
+    network: &Network<S>,
+    old: usize,
+    touches: &[ClosestPoint<S::Vector>],
+) -> bool {
+    let of = network.old[old].key.feature;
+    touches.iter().all(|t| u64::from(t.feature) != of)
 }

@@ -1,7 +1,7 @@
 //! Order of the impacts predicted in one step. The first impact of a body changes the motion from which its
 //! later ones were predicted.
 
-use super::prediction::TOLERATED;
+use super::margin::TOLERATED;
 use super::sweep::{Course, Sweep};
 use crate::bodies::Bodies;
 use crate::contact::network::Contact;

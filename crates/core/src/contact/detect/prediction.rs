@@ -3,6 +3,7 @@
 //! pay for a comparison of speeds.
 
 use super::extents::Extents;
+use super::margin::{Stage, margin};
 use super::order::{PredictedMeeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
 use super::{CHUNK, LawTable, centres, rebuild};
@@ -13,12 +14,6 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use rayon::prelude::*;
 
-/// Penetration, as a fraction of the fast motion, from which a pair without a contact gets one.
-pub(super) const TOLERATED: f64 = 0.05;
-/// Fraction of the half thickness by which a pair may penetrate before it is reported.
-const PASSED: f64 = 0.25;
-/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on its normal may turn over.
-const PASSED_SPRING: f64 = 1.0;
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
 const HEADROOM: f64 = 1.5;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
@@ -34,17 +29,6 @@ pub struct Motion<'a, S: Space> {
     pub h: f64,
     /// Whether pairs are distributed over threads; the results are the same.
     pub parallel: bool,
-}
-
-/// Stage of the step at which pairs are examined.
-#[derive(Clone, Copy, PartialEq)]
-enum Stage {
-    /// Before the solve, with the free velocities.
-    Before,
-    /// After the solve, with its velocities.
-    After,
-    /// After the solve, to report only.
-    Report,
 }
 
 /// Returns whether no two bodies can move fast relative to each other in the step, so that no contact has to
@@ -430,49 +414,6 @@ impl<'a, S: Space> Search<'a, S> {
         meeting.passing = meeting.contacts.is_empty() && self.stage == Stage::After;
         Some(meeting)
     }
-}
-
-/// Accepted penetration of a pair (m).
-struct Margin {
-    /// Penetration from which the pair is treated.
-    deepest: f64,
-    /// Penetration from which the pair is kept from closing.
-    begins: f64,
-}
-
-/// Returns the accepted penetration of a pair; `None` if the pair need not be examined.
-fn margin<S: Space>(
-    network: &Network<S>,
-    names: (u32, u32),
-    pair: &Pair<S>,
-    stage: Stage,
-    compliant: bool,
-) -> Option<Margin> {
-    let contacts = &network.contacts;
-    let first = contacts.partition_point(|c| c.key.pair() < names);
-    let of_pair = contacts[first..]
-        .iter()
-        .take_while(|c| c.key.pair() == names);
-    let (mut any, mut overlap) = (false, 0.0f64);
-    for contact in of_pair {
-        // An intact bond keeps its gap.
-        if network.bond(contact).is_some_and(|b| b.intact()) {
-            return None;
-        }
-        any = true;
-        if !contact.closing {
-            overlap = overlap.max(-contact.gap);
-        }
-    }
-    let begins = TOLERATED * network.fast + overlap;
-    let deepest = match stage {
-        Stage::Before if any => return None,
-        Stage::After if any => network.fast + overlap,
-        Stage::Before | Stage::After => begins,
-        Stage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
-        Stage::Report => PASSED * pair.half_thickness + overlap,
-    };
-    Some(Margin { deepest, begins })
 }
 
 impl<S: Space> Network<S> {

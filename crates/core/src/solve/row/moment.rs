@@ -107,6 +107,11 @@ impl<S: Space> MomentRow<S> {
         self
     }
 
+    /// Whether a moment turns anything.
+    pub fn turns(&self) -> bool {
+        self.iw > 0.0
+    }
+
     /// The nodes that it acts on.
     pub fn terms(&self) -> &[Term] {
         &self.terms

@@ -205,14 +205,14 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         k: usize,
     ) -> Places {
         let mut places = Places::default();
-        let turns = |b: &u32| problem.masses[*b as usize].turns();
         let Some(of) = self.places[form.contact as usize].contact else {
             return places;
         };
-        let nodes = problem.moments[k].terms();
-        if nodes.is_empty() && !contact.bodies.iter().any(turns) {
+        let row = &problem.moments[k];
+        if !row.turns() {
             return places;
         }
+        let nodes = row.terms();
         let axes: [Axis<S>; D] = spins::<S, D>(&contact.normal).map(|spin| Axis {
             linear: S::Vector::zero(),
             angular: [spin; 2],

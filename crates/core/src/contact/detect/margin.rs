@@ -1,0 +1,66 @@
+//! How far two bodies may penetrate before a contact between them is predicted, or reported.
+
+use super::sweep::Pair;
+use crate::contact::network::Network;
+use crate::geometry::space::Space;
+
+/// Penetration, as a fraction of the fast motion, from which a pair without a contact gets one.
+pub(super) const TOLERATED: f64 = 0.05;
+/// Fraction of the half thickness by which a pair may penetrate before it is reported.
+const PASSED: f64 = 0.25;
+/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on its normal may turn over.
+const PASSED_SPRING: f64 = 1.0;
+
+/// Stage of the step at which pairs are examined.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Stage {
+    /// Before the solve, with the free velocities.
+    Before,
+    /// After the solve, with its velocities.
+    After,
+    /// After the solve, to report only.
+    Report,
+}
+
+/// Accepted penetration of a pair (m).
+pub(super) struct Margin {
+    /// Penetration from which the pair is treated.
+    pub deepest: f64,
+    /// Penetration from which the pair is kept from closing.
+    pub begins: f64,
+}
+
+/// Returns the accepted penetration of a pair; `None` if the pair need not be examined.
+pub(super) fn margin<S: Space>(
+    network: &Network<S>,
+    names: (u32, u32),
+    pair: &Pair<S>,
+    stage: Stage,
+    compliant: bool,
+) -> Option<Margin> {
+    let contacts = &network.contacts;
+    let first = contacts.partition_point(|c| c.key.pair() < names);
+    let of_pair = contacts[first..]
+        .iter()
+        .take_while(|c| c.key.pair() == names);
+    let (mut any, mut overlap) = (false, 0.0f64);
+    for contact in of_pair {
+        // An intact bond keeps its gap.
+        if network.bond(contact).is_some_and(|b| b.intact()) {
+            return None;
+        }
+        any = true;
+        if !contact.closing {
+            overlap = overlap.max(-contact.gap);
+        }
+    }
+    let begins = TOLERATED * network.fast + overlap;
+    let deepest = match stage {
+        Stage::Before if any => return None,
+        Stage::After if any => network.fast + overlap,
+        Stage::Before | Stage::After => begins,
+        Stage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
+        Stage::Report => PASSED * pair.half_thickness + overlap,
+    };
+    Some(Margin { deepest, begins })
+}

@@ -1,0 +1,91 @@
+//! A block that nothing holds and a grain that is bonded to it: angular momentum is kept.
+
+use super::*;
+use fretwork::geometry::space::Dim3;
+
+/// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a (D + 1)-th of each element at its corners.
+fn angular<S: Space>(s: &Simulation<S>) -> S::Spin {
+    let system = s.state.systems.get(0).unwrap();
+    let mesh = system.deformed_mesh().unwrap();
+    let mut sum = S::Spin::zero();
+    for element in mesh.elements.chunks_exact(S::D + 1) {
+        let corners: Vec<S::Vector> = element.iter().map(|p| mesh.points[*p as usize]).collect();
+        let volume = fretwork::elastic::element::Simplex::<S>::new(&corners).unwrap();
+        let share = RUBBER.density * volume.volume / (S::D + 1) as f64;
+        for p in element {
+            let v = system.node_velocity(*p, system.velocity());
+            sum += S::moment(&system.node_position(*p), &(v * share));
+        }
+    }
+    let (b, bodies) = (ball(s), &s.state.bodies);
+    let inertia = S::BALL_INERTIA * bodies.mass[b] * R * R;
+    let orbit = S::moment(&bodies.position[b], &(bodies.velocity[b] * bodies.mass[b]));
+    sum + orbit + bodies.spin[b] * inertia
+}
+
+/// A free block of rubber that spins, under a grain on its upper side.
+fn on_a_free_block<S: Dimensional>(case: &Rolling, strain: Strain) -> Simulation<S> {
+    let mut s = case.build::<S>(false);
+    let mut lines = vec![even(-0.02, 0.02, 4); S::D - 1];
+    lines.push(even(-0.02, 0.0, 2));
+    let mut spec = body(block::<S>(&lines).unwrap(), RUBBER, &[]);
+    (spec.strain, spec.touching) = (strain, Touching::Surface("top"));
+    for k in 0..S::Spin::N {
+        spec.spin[k] = 4.0;
+    }
+    add(&mut s, spec);
+    s
+}
+
+/// A grain that spins, in a place on the block where it moves with it.
+fn spinning<S: Space>(gap: f64) -> String {
+    let mut at = vec![0.003; S::D];
+    at[S::D - 1] = R + gap;
+    grain(&at, &vec![0.0; S::D], &vec![-10.0; S::Spin::N])
+}
+
+/// Held by a bond that bends without shear, which would act over its opening.
+fn bonded<S: Space>(step: f64) -> Rolling {
+    Rolling {
+        step,
+        theta: 0.5,
+        gravity: 0.0,
+        mu: 0.0,
+        contact: "coulomb",
+        interface: "cohesion: \"parallel-bond\", bonds: Start,",
+        parameters: ", cohesion: {\"k_n\": 1e8, \"k_t\": 1.0, \"sigma_c\": 1e20, \"tau_c\": 1e20}"
+            .to_owned(),
+        grains: spinning::<S>(0.0),
+        ..Rolling::default()
+    }
+}
+
+/// Forces of contacts act in the middle of a step by the velocities at its start, those of strain by both: what angular momentum is off falls with the
+/// square of the step.
+fn keeps<S: Dimensional + Steps>(strain: Strain) {
+    let time = 5e-3;
+    let off = [1e-4, 5e-5, 2.5e-5].map(|step| {
+        let mut s = on_a_free_block::<S>(&bonded::<S>(step), strain);
+        let start = angular(&s);
+        go(&mut s, (time / step) as usize);
+        let off = (angular(&s) - start).norm() / start.norm();
+        let own = S::BALL_INERTIA * s.state.bodies.mass[ball(&s)] * R * R;
+        let turned = own * (spin(&s) - S::Spin::from_slice(&vec![-10.0; S::Spin::N])).norm();
+        println!(
+            "{}D {strain:?}, {step:e} s: angular momentum off by {off:e}, {:e} of it went from the grain to the block",
+            S::D,
+            turned / start.norm(),
+        );
+        closes(&s, 1e-9);
+        off
+    });
+    assert!(off[2] < 1e-6 && off[2] < off[1] / 3.0, "{off:?}");
+}
+
+#[test]
+fn a_bond_keeps_angular_momentum() {
+    for strain in LARGE {
+        keeps::<Dim2>(strain);
+        keeps::<Dim3>(strain);
+    }
+}
