@@ -355,14 +355,17 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 let at = self.node_position(part.origin()) + *arm;
                 part.nodes::<S>(&at, |p| self.node_position(p))
             }
-            _ => contactor.nodes,
+            _ => contactor.nodes.clone(),
         }
     }
 
-    fn neighbours(&self, contactor: usize) -> Option<[Option<S::Vector>; 2]> {
-        let part = self.model.part.as_ref()?;
-        let found = part.neighbours(contactor)?;
-        Some(found.map(|p| p.map(|p| self.node_position(p))))
+    fn facets_at(&self, contactor: usize) -> Vec<([S::Vector; 3], usize)> {
+        let part = self.model.part.as_ref();
+        let of = self.model.contactors.get(contactor);
+        let part = part.filter(|_| of.is_some_and(|c| c.shape == ContactorShape::Point));
+        let found = part.into_iter().flat_map(|p| p.facets_at(contactor));
+        let now = found.map(|(points, place)| (points.map(|p| self.node_position(p)), place));
+        now.collect()
     }
 
     fn vertex_nodes(&self, contactor: &Contactor, weights: &[(u32, f64)]) -> Option<Nodes> {

@@ -14,6 +14,8 @@ pub struct SurfacePart {
     pub points: Vec<u32>,
     /// The D vertices of each facet, by their place in `points`; outside is where they are anticlockwise (3D).
     pub facets: Vec<[u32; 3]>,
+    /// By point the facets at it, and its place among the corners of each.
+    about: Vec<Vec<(u32, u8)>>,
     /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
     single_valued: bool,
     dimension: usize,
@@ -36,11 +38,13 @@ impl SurfacePart {
         let points: BTreeSet<u32> = facets.iter().flat_map(|f| f.iter().copied()).collect();
         let points: Vec<u32> = points.into_iter().collect();
         let local = |p: u32| points.binary_search(&p).map_or(0, |k| k as u32);
+        let facets: Vec<[u32; 3]> = facets
+            .iter()
+            .map(|f| [local(f[0]), local(f[1]), local(f[2])])
+            .collect();
         Ok(Self {
-            facets: facets
-                .iter()
-                .map(|f| [local(f[0]), local(f[1]), local(f[2])])
-                .collect(),
+            about: about(&facets, points.len(), 3),
+            facets,
             points,
             single_valued: false,
             dimension: 3,
@@ -68,9 +72,12 @@ impl SurfacePart {
         let at = |k: usize| mesh.points()[points[k] as usize];
         let along = at(points.len() - 1) - at(0);
         let rises = |k: usize| (at(k + 1) - at(k)).dot(&along) > 0.0;
+        let single_valued = (0..facets.len()).all(rises);
+        let facets: Vec<[u32; 3]> = (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect();
         Ok(Self {
-            single_valued: (0..facets.len()).all(rises),
-            facets: (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect(),
+            single_valued,
+            about: about(&facets, points.len(), 2),
+            facets,
             points,
             dimension: 2,
         })
@@ -81,14 +88,16 @@ impl SurfacePart {
         self.points[self.points.len() / 2]
     }
 
-    /// The points before and after one of a chain, by its place in `points`; none in space.
-    pub fn neighbours(&self, k: usize) -> Option<[Option<u32>; 2]> {
-        let before = k.checked_sub(1).map(|b| self.points[b]);
-        let after = self.points.get(k + 1).copied();
-        (self.dimension == 2).then_some([before, after])
+    /// The facets at a point, by its place in `points`: the points of each, and which of them it is. Of a chain the third point stands for nothing.
+    pub fn facets_at(&self, k: usize) -> impl Iterator<Item = ([u32; 3], usize)> + '_ {
+        let facets = self.about.get(k).into_iter().flatten();
+        facets.map(|(facet, place)| {
+            let points = self.facets[*facet as usize].map(|v| self.points[v as usize]);
+            (points, usize::from(*place))
+        })
     }
 
-    /// The nodes of a weighted sum of vertices; none of too many.
+    /// The nodes of a weighted sum of vertices; none of no vertex.
     pub fn of_vertices(&self, weights: &[(u32, f64)]) -> Option<Nodes> {
         let terms = weights.iter().map(|(k, w)| (self.points[*k as usize], *w));
         Nodes::sum(&terms.collect::<Vec<_>>())
@@ -163,6 +172,17 @@ impl SurfacePart {
             }
         }
     }
+}
+
+/// By vertex the facets at it, of D corners, and its place among these.
+fn about(facets: &[[u32; 3]], vertices: usize, dimension: usize) -> Vec<Vec<(u32, u8)>> {
+    let mut out = vec![Vec::new(); vertices];
+    for (f, facet) in facets.iter().enumerate() {
+        for (place, vertex) in facet[..dimension].iter().enumerate() {
+            out[*vertex as usize].push((f as u32, place as u8));
+        }
+    }
+    out
 }
 
 /// Distance of a place from a facet (m), of which the first D corners count, and the weights of its corners at the nearest point,
