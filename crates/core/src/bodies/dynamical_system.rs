@@ -20,8 +20,8 @@
 
 use super::compliance::Compliance;
 use super::contactor::{Contactor, ContactorMotion};
-use super::nodes::Nodes;
 use super::drive::Dof;
+use super::nodes::Nodes;
 use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};

@@ -96,7 +96,9 @@ mod tests {
     #[test]
     fn any_number_of_nodes_is_kept_in_order() {
         for count in [1u32, 8, 9, 40] {
-            let terms: Vec<(u32, f64)> = (0..count).map(|k| (3 * k, 1.0 / f64::from(k + 1))).collect();
+            let terms: Vec<(u32, f64)> = (0..count)
+                .map(|k| (3 * k, 1.0 / f64::from(k + 1)))
+                .collect();
             let nodes = Nodes::sum(&terms).unwrap();
             assert_eq!(nodes.terms().collect::<Vec<_>>(), terms);
             assert!(nodes.order(&nodes.clone()).is_eq());

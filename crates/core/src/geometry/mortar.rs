@@ -91,7 +91,8 @@ impl Facet {
         self.one += one;
         if one > 0.0 {
             let parts = vertices.iter().zip(parts);
-            self.vertices.extend(parts.map(|(k, (alone, with))| (*k, alone, with)));
+            self.vertices
+                .extend(parts.map(|(k, (alone, with))| (*k, alone, with)));
         }
         one
     }
@@ -109,7 +110,10 @@ impl Facet {
                 if determinant <= FLAT * xx * yy {
                     return None;
                 }
-                [(xy * y - yy * x) / determinant, (xy * x - xx * y) / determinant]
+                [
+                    (xy * y - yy * x) / determinant,
+                    (xy * x - xx * y) / determinant,
+                ]
             }
         };
         let sum = self.one + b[0] * x + b[1] * y;
@@ -120,7 +124,10 @@ impl Facet {
 impl Star {
     /// The facets at a point, each with its D corners in coordinates from the point and the place of the point among them. None where there
     /// is no facet, or one that does not face a surface whose facets are positive.
-    pub fn new(facets: impl IntoIterator<Item = ([Along; 3], usize)>, count: usize) -> Option<Self> {
+    pub fn new(
+        facets: impl IntoIterator<Item = ([Along; 3], usize)>,
+        count: usize,
+    ) -> Option<Self> {
         let facet = |(corners, point): ([Along; 3], usize)| {
             let size = -signed_size(&corners[..count]);
             (size > 0.0).then(|| Facet {

@@ -125,7 +125,7 @@ mod tests {
         let inner = [[0.1, 0.1], [0.1, 0.3], [0.4, 0.1]];
         // A square of side 1/2 and two cut corners of it.
         let cut = [[0.5, 0.5], [-2.0, 0.5], [0.5, -2.0]];
-        let expected = [0.25, 0.0625, 1.0 / 96.0];
+        let expected = [0.25, 0.0625, 1.0 / 48.0];
         for (other, expected) in [(&cut, expected), (&whole, [0.5, 1.0 / 6.0, 1.0 / 12.0])] {
             for one in [whole, [whole[0], whole[2], whole[1]]] {
                 for found in [integrals(&one, other), integrals(other, &one)] {
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn segments_and_their_shape_functions() {
         let found = integrals(&[[2.0, 0.0], [0.0, 0.0]], &[[1.0, 0.0], [5.0, 0.0]]);
-        assert_eq!(&found[..2], [1.0, 1.5]);
+        assert!((found[0] - 1.0).abs() < 1e-15 && (found[1] - 1.5).abs() < 1e-15);
         let corners = [[0.1, 0.2], [1.1, 0.0], [0.3, 0.9]];
         let shares = [0.2, 0.5, 0.3];
         let mut at = [0.0; 2];

@@ -22,7 +22,12 @@ fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
     let mut triangles = Vec::new();
     for j in 0..n - 1 {
         for i in 0..n - 1 {
-            let [a, b, c, d] = [j * n + i, j * n + i + 1, (j + 1) * n + i + 1, (j + 1) * n + i];
+            let [a, b, c, d] = [
+                j * n + i,
+                j * n + i + 1,
+                (j + 1) * n + i + 1,
+                (j + 1) * n + i,
+            ];
             let cut = match (i + j) % 2 {
                 0 => [[a, b, c], [a, c, d]],
                 _ => [[a, b, d], [b, c, d]],
@@ -63,7 +68,8 @@ fn on_grid(
 fn a_uniform_pressure_stays_uniform() {
     let points = [0.0, 0.3, 0.5, 0.9, 1.3, 1.6];
     let vertices = [0.0, 0.22, 0.61, 0.7, 1.1, 1.25, 1.6];
-    let stands_for = |all: &[f64], k: usize| 0.5 * (all[(k + 1).min(all.len() - 1)] - all[k.saturating_sub(1)]);
+    let stands_for =
+        |all: &[f64], k: usize| 0.5 * (all[(k + 1).min(all.len() - 1)] - all[k.saturating_sub(1)]);
     let mut carried = [0.0; 7];
     for (k, at) in points.iter().enumerate() {
         let weights = on_chain(&points, k, &vertices).unwrap();
