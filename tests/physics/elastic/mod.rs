@@ -22,6 +22,7 @@ mod profile;
 mod rotation;
 mod soft_grains;
 mod soft_strain;
+mod sphere_on_block;
 mod wear;
 mod wear_in_space;
 

@@ -71,6 +71,7 @@ fn pressed<S: Deformable + Dimensional>(
     let stresses = [0, 1].map(|b| mesh_stress(&s, b));
     let off = |zz: &f64| (zz / -pressure - 1.0).abs();
     let stress = stresses.iter().flatten().map(off).fold(0.0, f64::max);
+    assert!(s.acted_on_mean_places().all(|(_, mean)| mean));
     let upper = s.state.systems.get(1).unwrap();
     let touching = upper.touching_surface().unwrap();
     let mut on_points = vec![0.0; touching.points.len()];

@@ -21,7 +21,7 @@ pub(super) enum Reach<S: Space> {
     Mean(Nodes, S::Vector),
     /// The nearest place, because the mean one is not to be found.
     Nearest,
-    /// The nearest place, of a contact that is none of a point of a mesh with the surface of another.
+    /// The nearest place, of a contact that is none of a point of a deformable body with the surface of another.
     Other,
 }
 
@@ -122,12 +122,15 @@ impl<S: Space> Simulation<S> {
             return Reach::Other;
         };
         let surface = &*self.shapes.surfaces[surface].shape;
-        if surface.is_closed() {
+        let ball = contact.key.ball().map(|ball| &self.shapes.balls[ball]);
+        let is_point = ball.is_some_and(|ball| ball.radius == 0.0) && !point.grain;
+        if surface.is_closed() || !is_point {
             return Reach::Other;
         }
-        let facets = self.state.systems.facets_at(point);
-        if facets.is_empty() {
-            return Reach::Other;
+        let systems = &self.state.systems;
+        let facets = systems.facets_at(point);
+        if facets.is_empty() || systems.vertex_nodes(carrier, &[(0, 1.0)]).is_none() {
+            return Reach::Nearest;
         }
         let b = contact.bodies[1] as usize;
         let (origin, rotation) = (self.state.bodies.position[b], self.state.bodies.rotation[b]);
@@ -148,13 +151,37 @@ impl<S: Space> Simulation<S> {
         };
         let vertices = surface.moving_vertices();
         let mean = weights().and_then(|weights| {
-            let nodes = self.state.systems.vertex_nodes(carrier, &weights)?;
+            let nodes = systems.vertex_nodes(carrier, &weights)?;
             let mean = weights.iter().fold(S::Vector::zero(), |sum, (k, w)| {
                 sum + vertices[*k as usize] * *w
             });
             Some(Reach::Mean(nodes, origin + S::rotate(&rotation, &mean)))
         });
         mean.unwrap_or(Reach::Nearest)
+    }
+
+    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place that its point faces, or of the contact
+    /// point. None where that side, 0 of the candidate or 1 of the antagonist, is rigid.
+    pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
+        let carrier = self.state.bodies.carrier(contact.bodies[side] as usize)?;
+        match self.reach(contact) {
+            Reach::Mean(nodes, _) if side == 1 => Some(nodes),
+            _ => {
+                let systems = &self.state.systems;
+                Some(systems.contact_nodes(carrier, &contact.arms[side]))
+            }
+        }
+    }
+
+    /// The contacts of points of deformable bodies with surfaces of others in the last step, no grains, and whether each acted on the place
+    /// that its point faces on average; the others acted on the nearest place.
+    pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
+        let contacts = self.state.network.contacts.iter();
+        contacts.filter_map(|contact| match self.workspace.means.known(contact)? {
+            Reach::Mean(..) => Some((contact, true)),
+            Reach::Nearest => Some((contact, false)),
+            Reach::Other => None,
+        })
     }
 
     /// Has the contacts that were found at the places of this step reach to the place that their point faces on average. `anew` says that
