@@ -419,7 +419,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 let at = self.point_now(part.origin()) + *arm;
                 part.nodes::<S>(&at, |p| self.point_now(p))
             }
-            _ => contactor.nodes,
+            _ => contactor.nodes.clone(),
         }
     }
 
@@ -427,10 +427,13 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         self.turning(contactor, arm)
     }
 
-    fn neighbours(&self, contactor: usize) -> Option<[Option<S::Vector>; 2]> {
-        let part = self.model.part.as_ref()?;
-        let found = part.neighbours(contactor)?;
-        Some(found.map(|p| p.map(|p| self.point_now(p))))
+    fn facets_at(&self, contactor: usize) -> Vec<([S::Vector; 3], usize)> {
+        let part = self.model.part.as_ref();
+        let of = self.model.contactors.get(contactor);
+        let part = part.filter(|_| of.is_some_and(|c| c.shape == ContactorShape::Point));
+        let found = part.into_iter().flat_map(|p| p.facets_at(contactor));
+        let now = found.map(|(points, place)| (points.map(|p| self.point_now(p)), place));
+        now.collect()
     }
 
     fn vertex_nodes(&self, contactor: &Contactor, weights: &[(u32, f64)]) -> Option<Nodes> {

@@ -14,8 +14,8 @@ pub struct SurfacePart {
     pub points: Vec<u32>,
     /// The D vertices of each facet, by their place in `points`; outside is where they are anticlockwise (3D).
     pub facets: Vec<[u32; 3]>,
-    /// Points of the mesh with the facets at them, in their order.
-    around: Vec<(u32, u32)>,
+    /// By point the facets at it, and its place among the corners of each.
+    about: Vec<Vec<(u32, u8)>>,
     /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
     single_valued: bool,
     dimension: usize,
@@ -43,7 +43,7 @@ impl SurfacePart {
             .map(|f| [local(f[0]), local(f[1]), local(f[2])])
             .collect();
         Ok(Self {
-            around: around(&points, &facets, 3),
+            about: about(&facets, points.len(), 3),
             facets,
             points,
             single_valued: false,
@@ -76,7 +76,7 @@ impl SurfacePart {
         let facets: Vec<[u32; 3]> = (0..facets.len() as u32).map(|k| [k, k + 1, 0]).collect();
         Ok(Self {
             single_valued,
-            around: around(&points, &facets, 2),
+            about: about(&facets, points.len(), 2),
             facets,
             points,
             dimension: 2,
@@ -88,14 +88,16 @@ impl SurfacePart {
         self.points[self.points.len() / 2]
     }
 
-    /// The points before and after one of a chain, by its place in `points`; none in space.
-    pub fn neighbours(&self, k: usize) -> Option<[Option<u32>; 2]> {
-        let before = k.checked_sub(1).map(|b| self.points[b]);
-        let after = self.points.get(k + 1).copied();
-        (self.dimension == 2).then_some([before, after])
+    /// The facets at a point, by its place in `points`: the points of each, and which of them it is. Of a chain the third point stands for nothing.
+    pub fn facets_at(&self, k: usize) -> impl Iterator<Item = ([u32; 3], usize)> + '_ {
+        let facets = self.about.get(k).into_iter().flatten();
+        facets.map(|(facet, place)| {
+            let points = self.facets[*facet as usize].map(|v| self.points[v as usize]);
+            (points, usize::from(*place))
+        })
     }
 
-    /// The nodes of a weighted sum of vertices; none of too many.
+    /// The nodes of a weighted sum of vertices; none of no vertex.
     pub fn of_vertices(&self, weights: &[(u32, f64)]) -> Option<Nodes> {
         let terms = weights.iter().map(|(k, w)| (self.points[*k as usize], *w));
         Nodes::sum(&terms.collect::<Vec<_>>())
@@ -116,12 +118,14 @@ impl SurfacePart {
         self.facets[facet].map(|k| self.points[k as usize])
     }
 
-    /// The facets at a point of the mesh.
-    pub fn facets_at(&self, point: u32) -> impl Iterator<Item = usize> {
-        let first = self.around.partition_point(|(p, _)| *p < point);
-        let all = self.around[first..].iter();
-        all.take_while(move |(p, _)| *p == point)
-            .map(|(_, f)| *f as usize)
+    /// The facets at a point of the mesh, by their places in `facets`.
+    pub fn facets_around(&self, point: u32) -> impl Iterator<Item = usize> + '_ {
+        let at = self.points.iter().position(|p| *p == point);
+        let facets = at.and_then(|k| self.about.get(k));
+        facets
+            .into_iter()
+            .flatten()
+            .map(|(facet, _)| *facet as usize)
     }
 
     /// The facet that is nearest to a place, the first of equally near ones, with the weights of its corners at the nearest point.
@@ -195,14 +199,14 @@ impl SurfacePart {
     }
 }
 
-/// Points of the mesh with the facets at them, in order.
-fn around(points: &[u32], facets: &[[u32; 3]], corners: usize) -> Vec<(u32, u32)> {
-    let of = |(f, facet): (usize, &[u32; 3])| {
-        let facet = *facet;
-        (0..corners).map(move |k| (points[facet[k] as usize], f as u32))
-    };
-    let mut out: Vec<(u32, u32)> = facets.iter().enumerate().flat_map(of).collect();
-    out.sort_unstable();
+/// By vertex the facets at it, of D corners, and its place among these.
+fn about(facets: &[[u32; 3]], vertices: usize, dimension: usize) -> Vec<Vec<(u32, u8)>> {
+    let mut out = vec![Vec::new(); vertices];
+    for (f, facet) in facets.iter().enumerate() {
+        for (place, vertex) in facet[..dimension].iter().enumerate() {
+            out[*vertex as usize].push((f as u32, place as u8));
+        }
+    }
     out
 }
 

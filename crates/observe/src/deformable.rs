@@ -3,6 +3,7 @@
 
 use super::chart::{Axis, Chart, Series, Style};
 use super::map::of_contact;
+use super::nearest_places::NearestPlaces;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
@@ -29,6 +30,8 @@ pub struct Deformable {
     distortions: Vec<Option<[f64; 2]>>,
     /// Of each body the largest share of a force on its border.
     borders: Vec<f64>,
+    /// Contacts that act on nearest places.
+    nearest: NearestPlaces,
     /// Largest strain and rotation of grains that deform, and the names of their materials.
     grains: Option<[f64; 2]>,
     materials: Vec<String>,
@@ -120,6 +123,7 @@ impl Deformable {
             bodies: systems().map(|s| s.name().to_owned()).collect(),
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
             borders: vec![0.0; systems().count()],
+            nearest: NearestPlaces::default(),
             grains: strain_of_grains(s),
             materials: case
                 .elastic_grains
@@ -203,6 +207,7 @@ impl<S: Space> Observer<S> for Deformable {
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let systems = || first_bodies(s);
+        self.nearest = self.nearest.larger(NearestPlaces::of(s));
         self.grains = larger(self.grains, strain_of_grains(s));
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
@@ -257,6 +262,7 @@ impl<S: Space> Observer<S> for Deformable {
                 });
             }
         }
+        summary.nearest_places = Some(self.nearest).filter(|n| n.contacts > 0);
         let strain = larger(self.grains, strain_of_grains(end.simulation));
         if let Some([strain, rotation]) = strain {
             summary.small_strain.push(SmallStrain {
@@ -268,11 +274,11 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        encode(&(&self.distortions, &self.borders, self.grains))
+        encode(&(&self.distortions, &self.borders, self.grains, self.nearest))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.distortions, self.borders, self.grains) = decode(from)?;
+        (self.distortions, self.borders, self.grains, self.nearest) = decode(from)?;
         Ok(())
     }
 

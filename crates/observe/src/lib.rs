@@ -26,6 +26,7 @@ pub mod loops;
 pub mod map;
 pub mod measure;
 pub mod mesh_fields;
+pub mod nearest_places;
 pub mod observer;
 pub mod output;
 pub mod picture;

@@ -1,7 +1,7 @@
 //! Tractions along the surface of a deformable body, and where it sticks and slips: forces of contacts shared out to the points of the
 //! surface by its shape functions, over the areas that these stand for. The sum of pressure times area is the normal force of all contacts.
 
-use fretwork_core::bodies::{Carrier, TouchingSurface};
+use fretwork_core::bodies::TouchingSurface;
 use fretwork_core::contact::Contact;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
@@ -78,7 +78,10 @@ impl<S: Space> SurfaceState<S> {
         let (mut pressure, mut share) = (vec![0.0; count], vec![0.0; count]);
         let mut slipping = vec![[0.0; 2]; count];
         for acting in loaded(s, system) {
-            for (node, weight) in acting.nodes(s).terms() {
+            let Some(nodes) = acting.nodes(s) else {
+                continue;
+            };
+            for (node, weight) in nodes.terms() {
                 let Some(&k) = at.get(&node) else { continue };
                 force[k] += acting.force * weight;
                 tangential[k] += acting.along * weight;
@@ -144,7 +147,6 @@ pub(crate) struct Acting<'a, S: Space> {
     pub contact: &'a Contact<S>,
     /// Which of the bodies of the contact is the system's.
     pub side: usize,
-    carrier: Carrier,
     /// Force on the system (N; N/m in 2D).
     pub force: S::Vector,
     /// Its part along the normal, positive in compression, and its part along the surface.
@@ -153,9 +155,8 @@ pub(crate) struct Acting<'a, S: Space> {
 }
 
 impl<S: Space> Acting<'_, S> {
-    fn nodes(&self, s: &Simulation<S>) -> fretwork_core::bodies::Nodes {
-        let arm = &self.contact.arms[self.side];
-        s.state.systems.contact_nodes(self.carrier, arm)
+    fn nodes(&self, s: &Simulation<S>) -> Option<fretwork_core::bodies::Nodes> {
+        s.nodes_of_side(self.contact, self.side)
     }
 }
 
@@ -171,13 +172,13 @@ pub(crate) fn loaded<S: Space>(
         }
         let carrier = |b: u32| {
             let carrier = s.state.bodies.carrier(b as usize);
-            carrier.filter(|c| c.system as usize == system)
+            carrier.is_some_and(|c| c.system as usize == system)
         };
         let [first, second] = contact.bodies.map(carrier);
-        let (side, carrier) = match (first, second) {
-            (Some(carrier), _) => (0, carrier),
-            (None, Some(carrier)) => (1, carrier),
-            (None, None) => return None,
+        let side = match (first, second) {
+            (true, _) => 0,
+            (false, true) => 1,
+            (false, false) => return None,
         };
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let force = contact.impulse * (1.0 / h);
@@ -185,7 +186,6 @@ pub(crate) fn loaded<S: Space>(
         Some(Acting {
             contact,
             side,
-            carrier,
             force: force * sign,
             normal,
             along: (force - contact.normal * normal) * sign,

@@ -6,6 +6,7 @@ use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Simulation;
 use fretwork_observe::error_estimate::Change;
+use fretwork_observe::nearest_places::NearestPlaces;
 pub use fretwork_observe::warning::{NOT_REACHED, Warning};
 use fretwork_scene::methods::{Demands, Service};
 
@@ -344,6 +345,8 @@ fn notes(summary: &Summary) -> Vec<Warning> {
             format!("friction has no interval: {why}; let it run longer (time.end)")
         }),
     );
+    let nearest = summary.nearest_places.as_ref();
+    note("NEAREST PLACES", nearest.and_then(NearestPlaces::warning));
     note("COARSE DRIVE", drives(summary, false));
     note("POSITION CORRECTION", correction(summary));
     let missed = summary.accuracy.as_ref().and_then(|a| a.shortfall());

@@ -23,12 +23,15 @@ mod profile;
 mod rotation;
 mod soft_grains;
 mod soft_strain;
+mod sphere_on_block;
 mod wear;
 mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
-use fretwork::elastic::generate::{Coarsening, Grid, block, even, graded, mapped_grid};
+use fretwork::elastic::generate::{
+    Coarsening, Grid, block, even, graded, mapped_block, mapped_grid,
+};
 use fretwork::elastic::{
     BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
 };

@@ -272,7 +272,7 @@ impl<S: Space> DynamicalSystem<S> for Spring<S> {
 
     fn contact_nodes(&self, contactor: &Contactor, _: &S::Vector) -> Nodes {
         Calls::count(&self.calls.contact_nodes);
-        contactor.nodes
+        contactor.nodes.clone()
     }
 
     fn is_driven(&self) -> bool {

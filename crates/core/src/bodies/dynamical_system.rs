@@ -19,8 +19,9 @@
 //! "The non-smooth contact dynamics method", same volume.
 
 use super::compliance::Compliance;
-use super::contactor::{Contactor, ContactorMotion, Nodes};
+use super::contactor::{Contactor, ContactorMotion};
 use super::drive::Dof;
+use super::nodes::Nodes;
 use super::system_report::{SystemSize, TouchingSurface};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -230,7 +231,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// The nodes that a contact acts on, at an arm from the contactor's origin, in world axes (m): those of the origin, of a
     /// contactor that does not turn.
     fn contact_nodes(&self, contactor: &Contactor, _arm: &S::Vector) -> Nodes {
-        contactor.nodes
+        contactor.nodes.clone()
     }
 
     /// A node that turns with a contactor where a contact acts, at an arm from its origin in world axes (m), and a length (m). Such nodes come
@@ -242,14 +243,15 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         None
     }
 
-    /// Of a contactor that is a point on a line of points whose displacement is linear between them: where the points before and after it
-    /// on that line are (m). None of others, and in space.
-    fn neighbours(&self, _contactor: usize) -> Option<[Option<S::Vector>; 2]> {
-        None
+    /// Of a contactor that is a point of a surface whose displacement is linear on its facets: the facets at it, each with its D corners as
+    /// they are now, outside being where they are anticlockwise, in the plane on their right (m), and the place of the point among them. None of
+    /// others.
+    fn facets_at(&self, _contactor: usize) -> Vec<([S::Vector; 3], usize)> {
+        Vec::new()
     }
 
     /// The nodes of a weighted sum of vertices of the surface of a contactor, whose displacement is linear between them; none of
-    /// surfaces of which it is not, and of more than [`Nodes::MAX`].
+    /// surfaces of which it is not.
     fn vertex_nodes(&self, _contactor: &Contactor, _weights: &[(u32, f64)]) -> Option<Nodes> {
         None
     }

@@ -6,6 +6,7 @@ pub mod delay;
 pub mod drive;
 pub mod dynamical_system;
 pub mod integral;
+pub mod nodes;
 pub mod path;
 pub mod pressure;
 pub mod stages;
@@ -15,12 +16,13 @@ pub mod systems;
 pub mod tensor;
 
 pub use compliance::{Compliance, block_of, column_of};
-pub use contactor::{Contactor, ContactorMotion, ContactorShape, Nodes};
+pub use contactor::{Contactor, ContactorMotion, ContactorShape};
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{
     DeformedMesh, DynamicalSystem, Holder, SystemStep, SystemWork, compliance_by_solving,
     compliance_of_points, von_mises,
 };
+pub use nodes::Nodes;
 pub use stages::Stage;
 pub use state::Bodies;
 pub use system_report::{SystemSize, TouchingSurface};

@@ -1,9 +1,10 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
 use super::compliance::Compliance;
-use super::contactor::{Contactor, ContactorShape, Nodes};
+use super::contactor::{Contactor, ContactorShape};
 use super::drive::Dof;
 use super::dynamical_system::{DynamicalSystem, SystemStep, SystemWork};
+use super::nodes::Nodes;
 use super::state::Bodies;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
@@ -328,10 +329,10 @@ impl<S: Space> Systems<S> {
         })
     }
 
-    /// Where the points next to a contactor's are, see [`DynamicalSystem::neighbours`].
-    pub(crate) fn neighbours(&self, carrier: Carrier) -> Option<[Option<S::Vector>; 2]> {
+    /// The facets at a contactor that is a point, see [`DynamicalSystem::facets_at`].
+    pub(crate) fn facets_at(&self, carrier: Carrier) -> Vec<([S::Vector; 3], usize)> {
         let entry = &self.entries[carrier.system as usize];
-        entry.system.neighbours(carrier.contactor as usize)
+        entry.system.facets_at(carrier.contactor as usize)
     }
 
     /// The nodes of a weighted sum of vertices, see [`DynamicalSystem::vertex_nodes`].

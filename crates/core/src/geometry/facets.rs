@@ -124,7 +124,9 @@ pub fn touches_within(
         if (arm.dot(&up) < 0.0) != inside && length > tiny {
             continue;
         }
-        let face = f.corners == 3;
+        // Nor has its part across the normal: a point that touches a seam of a plane would be pushed along it.
+        let aligned = (arm - up * arm.dot(&up)).norm() <= tiny;
+        let face = f.corners == 3 || aligned;
         let rises = |g: &Facet<V>| {
             let over =
                 |c: &V| (c - f.closest_point).dot(&up) > BEHIND * (c - f.closest_point).norm();

@@ -2,7 +2,7 @@
 
 use super::facets::{self, Facet};
 use super::recede::Recede;
-use super::shape::{ClosestPoint, Surface, at_vertex};
+use super::shape::{ClosestPoint, MovingFacet, Surface, at_vertex};
 use super::space::Dim3;
 use super::worn_mesh::Worn;
 use nalgebra::Vector3;
@@ -19,6 +19,8 @@ pub struct Mesh {
     pub(super) points: Vec<V>,
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) tree: RTree<Placed>,
+    /// The triangles on the other side of the edges of each, from its first corner on.
+    beside: Vec<[Option<u32>; 3]>,
     /// Whether its points move.
     pub(super) deforms: bool,
     /// Whether it encloses a grain.
@@ -107,7 +109,13 @@ impl Mesh {
             }
         }
         let tree = boxes(&points, &triangles);
+        let across = |t: &[u32; 3], side: usize| known.get(&(t[(side + 1) % 3], t[side]));
+        let beside = triangles
+            .iter()
+            .map(|t| [0, 1, 2].map(|side| across(t, side).map(|k| *k as u32)))
+            .collect();
         Ok(Self {
+            beside,
             points,
             triangles,
             tree,
@@ -192,6 +200,17 @@ impl Surface<Dim3> for Mesh {
 
     fn moving_vertices(&self) -> &[V] {
         if self.deforms { &self.points } else { &[] }
+    }
+
+    fn facet_of(&self, feature: u32) -> u32 {
+        feature / 8
+    }
+
+    fn moving_facet(&self, facet: u32) -> Option<MovingFacet> {
+        self.deforms.then(|| MovingFacet {
+            vertices: self.triangles[facet as usize],
+            beside: self.beside[facet as usize],
+        })
     }
 
     fn vertices_within(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {

@@ -9,6 +9,7 @@ pub mod grid;
 pub mod height_field;
 pub mod mesh;
 pub mod mortar;
+pub mod overlap;
 pub mod periodic;
 pub mod polyline;
 pub mod recede;

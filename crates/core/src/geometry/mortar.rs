@@ -1,187 +1,207 @@
-//! The place on a chain of segments that a point of another chain faces on average over the segments at the point: the mortar method with
-//! dual shape functions. Contacts of points with their nearest place alone do not carry a uniform pressure from one mesh to another that
-//! does not match; with these weights they do.
+//! The place on a surface that a point of another surface faces on average over the facets at the point: the mortar method with dual shape
+//! functions. Contacts of points with their nearest place alone do not carry a uniform pressure from one mesh to another that does not
+//! match; with these weights they do. Facets are segments in the plane and triangles in space.
 //!
-//! With the coordinate t along the contact and the dual function psi of the point, which is 2 - 3 s on the segment to a neighbour at
-//! s = 1, and the shape function phi_k of a vertex of the other chain,
+//! With the coordinates t along the contact from the point, the dual function psi of the point, the shape function phi_k of a vertex of the
+//! other surface, and C the part of a facet at the point that the other surface covers, seen along the normal,
 //!
 //! ```text
-//! w_k = int psi phi_k dt / int psi dt        gap = n . (x - sum_k w_k x_k)
+//! w_k = int_C psi phi_k dt / int_C psi dt        gap = n . (x - sum_k w_k x_k)
+//! psi = c (1 + b . t)        int_C psi t dt = 0        int_C psi dt = int_C phi dt
 //! ```
 //!
-//! psi is orthogonal to the shape functions of all other points of its chain, so that the contact acts on its point alone. The weights sum
-//! to 1, and sum w_k t_k is the t of the point. They may be negative.
+//! psi is orthogonal to the shape functions of all other points of its surface, so that the contact acts on its point alone; these are the
+//! linear functions that vanish at the point. On a facet that is covered as a whole psi is 2 - 3 s on a segment, s = 1 at its other end, and
+//! 3 phi - phi_2 - phi_3 on a triangle with the shape functions phi_2, phi_3 of the other corners. Where the other surface ends below a facet psi is found
+//! anew on what is covered. The weights sum to 1, and sum w_k t_k is the place of the point. They may be negative.
 //!
-//! Source: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005)
-//! 3147.
+//! Sources: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005)
+//! 3147; M. A. Puso and T. A. Laursen, Comput. Methods Appl. Mech. Eng. 193 (2004) 601 (facets in space); T. Cichosz and M. Bischoff,
+//! Comput. Methods Appl. Mech. Eng. 200 (2011) 1317 (facets that are covered in part).
 
-/// Coordinates along a contact of a point of one chain and of its neighbours (m), one or two, on either side of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Footprint {
-    /// Of the point.
-    pub at: f64,
-    /// Of the neighbours before and after it.
-    pub neighbours: [Option<f64>; 2],
+use super::overlap::{Along, integrate, shape_functions, signed_size};
+
+/// Share of a facet that counts for nothing: what is covered of it, or is covered twice, or by which the point lies beside the other surface.
+const ROUNDING: f64 = 1e-6;
+/// Weights of rounding.
+const NONE: f64 = 1e-12;
+/// Smallest determinant of the second moments of what is covered, over the product of these, from which on it is an area.
+const FLAT: f64 = 1e-12;
+
+/// The facets at a point, and what of another surface they face.
+#[derive(Clone, Debug)]
+pub struct Star {
+    facets: Vec<Facet>,
+    /// Whether the point itself faces the other surface.
+    covered: bool,
 }
 
-/// Most vertices that a point is weighed over.
-const MOST: usize = 64;
-/// Share of a segment by which the end of one chain may lie beyond that of the other and still be taken for it.
-const BEYOND: f64 = 1e-6;
-/// Weights of rounding.
-const NONE: f64 = 1e-9;
+/// A facet at the point.
+#[derive(Clone, Debug)]
+struct Facet {
+    /// D corners.
+    corners: [Along; 3],
+    count: usize,
+    /// The point among them.
+    point: usize,
+    /// Length (m) or area (m^2).
+    size: f64,
+    /// Over what is covered of it the integrals of 1, the coordinates, their squares, and their product.
+    one: f64,
+    first: Along,
+    squares: Along,
+    product: f64,
+    /// Over the same the integrals of the shape function of a vertex of the other surface, alone and with the coordinates.
+    vertices: Vec<(u32, f64, Along)>,
+    /// Integral of the shape function of the point over the same.
+    own: f64,
+}
 
-impl Footprint {
-    /// From where to where it reaches.
-    fn reach(&self) -> [f64; 2] {
-        let ends = self.neighbours.map(|t| t.unwrap_or(self.at));
-        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+/// From where to where corners reach along an axis (m).
+fn range(corners: &[Along], axis: usize) -> [f64; 2] {
+    let along = corners.iter().map(|c| c[axis]);
+    along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+        [low.min(x), high.max(x)]
+    })
+}
+
+impl Facet {
+    fn corners(&self) -> &[Along] {
+        &self.corners[..self.count]
     }
 
-    /// Whether its neighbours are on either side of it.
-    fn straddles(&self) -> bool {
-        match self.neighbours {
-            [None, None] => false,
-            [Some(a), Some(b)] => (a - self.at) * (b - self.at) < 0.0,
-            [Some(t), None] | [None, Some(t)] => t != self.at,
+    /// Adds what it has in common with a facet of the other surface; gives its size.
+    fn face(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
+        let own = self.corners;
+        let (mut one, mut parts) = (0.0, [(0.0, [0.0; 2]); 3]);
+        integrate(&own[..self.count], at, |t, weight| {
+            one += weight;
+            self.own += weight * shape_functions(&own[..self.count], t)[self.point];
+            for axis in 0..2 {
+                self.first[axis] += weight * t[axis];
+                self.squares[axis] += weight * t[axis] * t[axis];
+            }
+            self.product += weight * t[0] * t[1];
+            for (part, phi) in parts.iter_mut().zip(shape_functions(at, t)) {
+                part.0 += weight * phi;
+                part.1[0] += weight * phi * t[0];
+                part.1[1] += weight * phi * t[1];
+            }
+        });
+        self.one += one;
+        if one > 0.0 {
+            let parts = vertices.iter().zip(parts);
+            self.vertices
+                .extend(parts.map(|(k, (alone, with))| (*k, alone, with)));
         }
+        one
     }
 
-    /// The vertices of a chain that it faces and their weights, which sum to 1. `along` has the coordinate of vertex `k` (m), of `count`
-    /// vertices, and rises with k; `near` is a segment close to the point. None where the chain does not cover it or turns back.
-    pub fn weights(
-        &self,
+    /// b and c of the dual function; none where nothing, or a line of no area, is covered.
+    fn dual(&self) -> Option<(Along, f64)> {
+        if self.one <= ROUNDING * self.size {
+            return None;
+        }
+        let ([x, y], [xx, yy], xy) = (self.first, self.squares, self.product);
+        let b = match self.count {
+            2 => [-x / xx, 0.0],
+            _ => {
+                let determinant = xx * yy - xy * xy;
+                if determinant <= FLAT * xx * yy {
+                    return None;
+                }
+                [
+                    (xy * y - yy * x) / determinant,
+                    (xy * x - xx * y) / determinant,
+                ]
+            }
+        };
+        let sum = self.one + b[0] * x + b[1] * y;
+        (sum > FLAT * self.one).then(|| (b, self.own / sum))
+    }
+}
+
+impl Star {
+    /// The facets at a point, each with its D corners in coordinates from the point and the place of the point among them. None where there
+    /// is no facet, or one that does not face a surface whose facets are positive.
+    pub fn new(
+        facets: impl IntoIterator<Item = ([Along; 3], usize)>,
         count: usize,
-        near: usize,
-        along: impl Fn(usize) -> f64,
-    ) -> Option<Vec<(u32, f64)>> {
-        if count < 2 || !self.straddles() {
+    ) -> Option<Self> {
+        let facet = |(corners, point): ([Along; 3], usize)| {
+            let size = -signed_size(&corners[..count]);
+            (size > 0.0).then(|| Facet {
+                corners,
+                count,
+                point,
+                size,
+                one: 0.0,
+                first: [0.0; 2],
+                squares: [0.0; 2],
+                product: 0.0,
+                vertices: Vec::new(),
+                own: 0.0,
+            })
+        };
+        let facets: Option<Vec<Facet>> = facets.into_iter().map(facet).collect();
+        let facets = facets.filter(|all| !all.is_empty())?;
+        let covered = false;
+        Some(Self { facets, covered })
+    }
+
+    /// Whether a facet of the other surface may face it.
+    pub fn is_near(&self, at: &[Along]) -> bool {
+        let meets = |own: &[Along]| {
+            (0..2).all(|axis| {
+                let [from, to] = range(own, axis);
+                let [low, high] = range(at, axis);
+                low <= to && from <= high
+            })
+        };
+        self.facets.iter().any(|f| meets(f.corners()))
+    }
+
+    /// Takes a facet of the other surface, its D vertices and their coordinates; gives whether it covers more than rounding.
+    pub fn face(&mut self, vertices: &[u32], at: &[Along]) -> bool {
+        let mut covers = false;
+        for facet in &mut self.facets {
+            covers |= facet.face(vertices, at) > ROUNDING * facet.size;
+        }
+        let shares = &shape_functions(at, [0.0; 2])[..at.len()];
+        self.covered |= shares.iter().all(|share| *share >= -ROUNDING);
+        covers
+    }
+
+    /// The vertices of the other surface that the point faces, in increasing order, and their weights, which sum to 1. None where the point
+    /// is beside the other surface, or faces two layers of it.
+    pub fn weights(&self) -> Option<Vec<(u32, f64)>> {
+        let twice = |f: &Facet| f.one > (1.0 + ROUNDING) * f.size;
+        if !self.covered || self.facets.iter().any(twice) {
             return None;
         }
-        let [low, high] = self.reach();
-        let last = count - 2;
-        let mut first = near.min(last);
-        for _ in 0..MOST {
-            if first == 0 || along(first) <= low {
-                break;
+        let mut all: Vec<(u32, f64)> = Vec::new();
+        for facet in &self.facets {
+            if let Some((b, c)) = facet.dual() {
+                let terms = facet.vertices.iter();
+                all.extend(terms.map(|(k, phi, t)| (*k, c * (phi + b[0] * t[0] + b[1] * t[1]))));
             }
-            first -= 1;
         }
-        let mut weights: Vec<(u32, f64)> = Vec::new();
-        let mut total = 0.0;
-        for k in first..(first + MOST).min(last + 1) {
-            let [mut from, mut to] = [along(k), along(k + 1)];
-            let [start, size] = [from, to - from];
-            if start >= high {
-                break;
-            }
-            if size <= 0.0 {
-                return None;
-            }
-            let slack = BEYOND * size;
-            if k == 0 && low >= from - slack {
-                from = from.min(low);
-            }
-            if k == last && high <= to + slack {
-                to = to.max(high);
-            }
-            let (mut of_first, mut of_second) = (0.0, 0.0);
-            for neighbour in self.neighbours.into_iter().flatten() {
-                let [one, other] = [self.at.min(neighbour), self.at.max(neighbour)];
-                let [p, q] = [one.max(from), other.min(to)];
-                if q <= p {
-                    continue;
-                }
-                let psi = |t: f64| 2.0 - 3.0 * (t - self.at) / (neighbour - self.at);
-                let phi = |t: f64| (t - start) / size;
-                // Simpson's rule is exact for the product of two linear functions.
-                for (t, share) in [(p, 1.0), (0.5 * (p + q), 4.0), (q, 1.0)] {
-                    let part = share / 6.0 * (q - p) * psi(t);
-                    of_first += part * (1.0 - phi(t));
-                    of_second += part * phi(t);
-                }
-                total += q - p;
-            }
+        all.sort_by_key(|(vertex, _)| *vertex);
+        let mut weights: Vec<(u32, f64)> = Vec::with_capacity(all.len());
+        for (vertex, weight) in all {
             match weights.last_mut() {
-                Some((vertex, weight)) if *vertex == k as u32 => *weight += of_first,
-                _ => weights.push((k as u32, of_first)),
+                Some((last, sum)) if *last == vertex => *sum += weight,
+                _ => weights.push((vertex, weight)),
             }
-            weights.push((k as u32 + 1, of_second));
         }
-        if (total - (high - low)).abs() > BEYOND * (high - low) {
-            return None;
-        }
-        let sum: f64 = weights.iter().map(|(_, w)| w).sum();
+        let total = |weights: &[(u32, f64)]| weights.iter().map(|w| w.1).sum::<f64>();
+        let sum = total(&weights);
         weights.retain(|(_, w)| w.abs() > NONE * sum);
-        let sum: f64 = weights.iter().map(|(_, w)| w).sum();
+        let sum = total(&weights);
         weights.iter_mut().for_each(|(_, w)| *w /= sum);
-        Some(weights)
+        (!weights.is_empty()).then_some(weights)
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A uniform pressure p on the points, p times the length that each stands for, is a uniform pressure on the vertices; and the mean
-    /// place of linear coordinates is that of the point.
-    #[test]
-    fn a_uniform_pressure_stays_uniform() {
-        let points = [0.0, 0.3, 0.5, 0.9, 1.3, 1.6];
-        let vertices = [0.0, 0.22, 0.61, 0.7, 1.1, 1.25, 1.6];
-        let mut carried = [0.0; 7];
-        for (k, at) in points.iter().enumerate() {
-            let before = k.checked_sub(1).map(|b| points[b]);
-            let after = points.get(k + 1).copied();
-            let footprint = Footprint {
-                at: *at,
-                neighbours: [before, after],
-            };
-            let stands_for = 0.5 * (after.unwrap_or(*at) - before.unwrap_or(*at));
-            for near in 0..6 {
-                let weights = footprint.weights(7, near, |v| vertices[v]).unwrap();
-                let sum: f64 = weights.iter().map(|w| w.1).sum();
-                let mean: f64 = weights.iter().map(|(v, w)| vertices[*v as usize] * w).sum();
-                assert!((sum - 1.0).abs() < 1e-14 && (mean - at).abs() < 1e-14);
-                if near == k.min(5) {
-                    for (v, w) in weights {
-                        carried[v as usize] += w * stands_for;
-                    }
-                }
-            }
-        }
-        for (v, carried) in carried.iter().enumerate() {
-            let before = vertices[v.saturating_sub(1)];
-            let after = vertices[(v + 1).min(6)];
-            assert!((carried - 0.5 * (after - before)).abs() < 1e-14, "{v}");
-        }
-    }
-
-    #[test]
-    fn points_of_matching_meshes_face_one_vertex() {
-        let along = |k: usize| 0.1 * k as f64;
-        for k in 0..=10usize {
-            let footprint = Footprint {
-                at: along(k),
-                neighbours: [k.checked_sub(1).map(along), (k < 10).then(|| along(k + 1))],
-            };
-            let weights = footprint.weights(11, k.min(9), along).unwrap();
-            assert_eq!(weights, [(k as u32, 1.0)]);
-        }
-    }
-
-    #[test]
-    fn a_chain_that_does_not_cover_the_segments_of_a_point_has_no_weights() {
-        let along = |k: usize| 0.1 * k as f64;
-        let beyond = Footprint {
-            at: 0.95,
-            neighbours: [Some(0.85), Some(1.05)],
-        };
-        assert_eq!(beyond.weights(11, 9, along), None);
-        let alone = Footprint {
-            at: 0.5,
-            neighbours: [None, None],
-        };
-        assert_eq!(alone.weights(11, 5, along), None);
-    }
-}
+mod tests;

@@ -91,6 +91,15 @@ pub struct Corner<V> {
     pub feature: u32,
 }
 
+/// A facet of a surface that deforms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovingFacet {
+    /// Its D vertices, by their places in [`Surface::moving_vertices`]: outside is where they are anticlockwise, in the plane on their left.
+    pub vertices: [u32; 3],
+    /// The facets on the other side of its edges, in the plane before and after it.
+    pub beside: [Option<u32>; 3],
+}
+
 /// The surface of a first body: solid on one side, open on the other.
 pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach`
@@ -139,6 +148,23 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows each of them.
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
+    }
+    /// Returns the index of the facet that a feature of a surface that deforms belongs to, in the plane of a chain of segments.
+    fn facet_of(&self, feature: u32) -> u32 {
+        // The start of the chain has the last name.
+        if feature == u32::MAX { 0 } else { feature / 2 }
+    }
+    /// Returns a facet of a surface that deforms, by its index; `None` for others. In the plane those of a chain of segments.
+    fn moving_facet(&self, facet: u32) -> Option<MovingFacet> {
+        let vertices = self.moving_vertices().len() as u32;
+        (S::D == 2 && facet.saturating_add(1) < vertices).then(|| MovingFacet {
+            vertices: [facet, facet + 1, 0],
+            beside: [
+                facet.checked_sub(1),
+                (facet + 2 < vertices).then_some(facet + 1),
+                None,
+            ],
+        })
     }
     /// Returns whether it encloses its body, which is then smaller than half a period: contacts are looked for at its nearest image.
     fn is_closed(&self) -> bool {

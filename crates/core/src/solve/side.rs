@@ -4,7 +4,7 @@ use crate::bodies::Nodes;
 use crate::geometry::space::Space;
 
 /// One side of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Side<S: Space> {
     /// A point of a rigid body, at an arm from its centre in world axes (m).
     Rigid {

@@ -3,6 +3,10 @@
 //! ```text
 //!       ┌──────► detect (broad, narrow) ─► contact network (memory: bonds, D, slip)
 //!       │                                        ▼
+//!       │                         mean places of points on meshes (gap, what they act on)
+//!       │                                        ▼
+//!       │                         predict contacts that close within the step, mean places of these
+//!       │                                        ▼
 //!       │                         laws: prepare (batch, plugin ABI)
 //!       │                                        ▼
 //!       │                         solve: standard local form ─► p

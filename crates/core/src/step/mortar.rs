@@ -1,77 +1,219 @@
-//! Contacts of the points of one mesh with the surface of another act on the place that a point faces on average over the segments at it,
-//! see [`crate::geometry::mortar`], in the plane. Other contacts act on the nearest place.
+//! Contacts of the points of one mesh with the surface of another act on the place that a point faces on average over the facets at it,
+//! see [`crate::geometry::mortar`]. Other contacts act on the nearest place.
 
 use super::Simulation;
 use crate::bodies::Nodes;
-use crate::contact::Contact;
-use crate::geometry::mortar::Footprint;
+use crate::contact::{Contact, Key};
+use crate::geometry::mortar::Star;
+use crate::geometry::overlap::{Along, signed_size};
+use crate::geometry::shape::Surface;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Least cosine between a segment and the contact along it.
+/// Least cosine between a facet and the contact along it.
 const STEEPEST: f64 = 0.2;
+/// Most facets that are looked at around a point.
+const MOST: usize = 2048;
+
+/// What a contact acts on of its antagonist.
+#[derive(Clone, Debug)]
+pub(super) enum Reach<S: Space> {
+    /// The mean place that its point faces (m), with its nodes.
+    Mean(Nodes, S::Vector),
+    /// The nearest place, because the mean one is not to be found.
+    Nearest,
+    /// The nearest place, of a contact that is none of a point of a deformable body with the surface of another.
+    Other,
+}
+
+/// What the contacts of the network act on, in its order, found once for the places of the step.
+#[derive(Debug)]
+pub(super) struct MeanPlaces<S: Space> {
+    /// The contacts and their normals when that was found.
+    of: Vec<(Key, S::Vector)>,
+    found: Vec<Reach<S>>,
+}
+
+impl<S: Space> Default for MeanPlaces<S> {
+    fn default() -> Self {
+        let (of, found) = (Vec::new(), Vec::new());
+        Self { of, found }
+    }
+}
+
+impl<S: Space> MeanPlaces<S> {
+    /// What was found of a contact with this normal.
+    fn known(&self, contact: &Contact<S>) -> Option<&Reach<S>> {
+        let at = self.of.binary_search_by_key(&contact.key, |of| of.0).ok()?;
+        (self.of[at].1 == contact.normal).then(|| &self.found[at])
+    }
+
+    /// The nodes of the mean place of the contact at a place in the network.
+    pub(super) fn nodes(&self, contact: usize, key: &Key) -> Option<&Nodes> {
+        debug_assert!(self.of.get(contact).is_none_or(|of| of.0 == *key));
+        match self.found.get(contact)? {
+            Reach::Mean(nodes, _) => Some(nodes),
+            Reach::Nearest | Reach::Other => None,
+        }
+    }
+}
+
+/// The coordinates along a contact of a place from its point: in the plane to the right of the normal, in space such that triangles that are
+/// anticlockwise seen from the tip of the normal are so in these.
+fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> Along {
+    let [first, second] = S::tangents(normal);
+    let sign = if S::D == 2 { -1.0 } else { 1.0 };
+    move |from| [sign * from.dot(&first), sign * from.dot(&second)]
+}
+
+/// Length or area of a facet (m or m^2), of which the first D corners count.
+fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
+    let (u, v) = (*b - *a, *c - *a);
+    match S::D {
+        2 => u.norm(),
+        _ => 0.5 * (u.dot(&u) * v.dot(&v) - u.dot(&v).powi(2)).max(0.0).sqrt(),
+    }
+}
+
+/// Has a star face the facets of a surface from one of them on, of which `project` gives the coordinates along the contact. None where one
+/// that it faces is steep, and of too many.
+fn face<S: Space>(
+    star: &mut Star,
+    surface: &dyn Surface<S>,
+    near: u32,
+    project: impl Fn(&S::Vector) -> Along,
+) -> Option<()> {
+    let vertices = surface.moving_vertices();
+    let mut seen = vec![near];
+    let mut next = 0;
+    while next < seen.len() {
+        let facet = surface.moving_facet(seen[next])?;
+        let corners = facet.vertices.map(|v| vertices[v as usize]);
+        let at = corners.each_ref().map(&project);
+        let (ids, at) = (&facet.vertices[..S::D], &at[..S::D]);
+        let across = signed_size(at);
+        // A facet that is turned away is beyond an edge of what the point faces.
+        let faces = across > 0.0 && star.is_near(at);
+        if faces && star.face(ids, at) && across < STEEPEST * size::<S>(&corners) {
+            return None;
+        }
+        if faces || next == 0 {
+            for beside in facet.beside.into_iter().flatten() {
+                if !seen.contains(&beside) {
+                    seen.push(beside);
+                }
+            }
+        }
+        if seen.len() > MOST {
+            return None;
+        }
+        next += 1;
+    }
+    Some(())
+}
 
 impl<S: Space> Simulation<S> {
-    /// The nodes of the antagonist that a point of a mesh faces on average, and their mean place (m); none of other contacts, where
-    /// the surface ends below the segments at the point, and of more nodes than [`Nodes::MAX`].
-    pub(super) fn mean_place(&self, contact: &Contact<S>) -> Option<(Nodes, S::Vector)> {
+    /// What a contact acts on: the nodes of the antagonist that a point of a mesh faces on average, and their mean place.
+    fn reach(&self, contact: &Contact<S>) -> Reach<S> {
         let carriers = contact
             .bodies
             .map(|b| self.state.bodies.carrier(b as usize));
-        let ([Some(point), Some(carrier)], 2) = (carriers, S::D) else {
-            return None;
+        let ([Some(point), Some(carrier)], Some(surface)) = (carriers, contact.key.surface())
+        else {
+            return Reach::Other;
         };
-        let surface = &self.shapes.surfaces[contact.key.surface()?].shape;
+        let surface = &*self.shapes.surfaces[surface].shape;
+        let ball = contact.key.ball().map(|ball| &self.shapes.balls[ball]);
+        let is_point = ball.is_some_and(|ball| ball.radius == 0.0) && !point.grain;
+        if surface.is_closed() || !is_point {
+            return Reach::Other;
+        }
         let systems = &self.state.systems;
-        let neighbours = systems.neighbours(point)?;
-        let vertices = surface.moving_vertices();
-        if surface.is_closed() || vertices.len() < 2 {
-            return None;
+        let facets = systems.facets_at(point);
+        if facets.is_empty() || systems.vertex_nodes(carrier, &[(0, 1.0)]).is_none() {
+            return Reach::Nearest;
         }
         let b = contact.bodies[1] as usize;
         let (origin, rotation) = (self.state.bodies.position[b], self.state.bodies.rotation[b]);
         let local = |x: &S::Vector| S::unrotate(&rotation, &(*x - origin));
-        let at = self.state.bodies.position[contact.bodies[0] as usize];
+        let at = local(&self.state.bodies.position[contact.bodies[0] as usize]);
         let normal = S::unrotate(&rotation, &contact.normal);
-        // The solid is on the right of a chain.
-        let along = S::Vector::from_slice(&[normal[1], -normal[0]]);
-        let footprint = Footprint {
-            at: local(&at).dot(&along),
-            neighbours: neighbours.map(|x| x.map(|x| local(&x).dot(&along))),
+        let along = along::<S>(&normal);
+        let project = |x: &S::Vector| along(*x - at);
+        let about = facets.iter().map(|(corners, place)| {
+            let corners = corners.each_ref().map(|x| project(&local(x)));
+            (corners, *place)
+        });
+        let weights = || {
+            let mut star = Star::new(about, S::D)?;
+            let near = surface.facet_of(u32::try_from(contact.key.feature).ok()?);
+            face(&mut star, surface, near, project)?;
+            star.weights()
         };
-        let near = contact.key.feature / 2;
-        let near = usize::try_from(near).ok()?.min(vertices.len() - 2);
-        let weights = footprint.weights(vertices.len(), near, |k| vertices[k].dot(&along))?;
-        let steep = weights.windows(2).any(|w| {
-            let step = vertices[w[1].0 as usize] - vertices[w[0].0 as usize];
-            step.dot(&along) < STEEPEST * step.norm()
+        let vertices = surface.moving_vertices();
+        let mean = weights().and_then(|weights| {
+            let nodes = systems.vertex_nodes(carrier, &weights)?;
+            let mean = weights.iter().fold(S::Vector::zero(), |sum, (k, w)| {
+                sum + vertices[*k as usize] * *w
+            });
+            Some(Reach::Mean(nodes, origin + S::rotate(&rotation, &mean)))
         });
-        if steep {
-            return None;
-        }
-        let mean = weights.iter().fold(S::Vector::zero(), |sum, (k, w)| {
-            sum + vertices[*k as usize] * *w
-        });
-        let nodes = systems.vertex_nodes(carrier, &weights)?;
-        Some((nodes, origin + S::rotate(&rotation, &mean)))
+        mean.unwrap_or(Reach::Nearest)
     }
 
-    /// Has the contacts that were found at the start of the step reach to the place that their point faces on average.
-    pub(super) fn reach_mean_places(&mut self) {
-        if self.state.systems.is_empty() || S::D != 2 {
+    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place that its point faces, or of the contact
+    /// point. None where that side, 0 of the candidate or 1 of the antagonist, is rigid.
+    pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
+        let carrier = self.state.bodies.carrier(contact.bodies[side] as usize)?;
+        match self.reach(contact) {
+            Reach::Mean(nodes, _) if side == 1 => Some(nodes),
+            _ => {
+                let systems = &self.state.systems;
+                Some(systems.contact_nodes(carrier, &contact.arms[side]))
+            }
+        }
+    }
+
+    /// The contacts of points of deformable bodies with surfaces of others in the last step, no grains, and whether each acted on the place
+    /// that its point faces on average; the others acted on the nearest place.
+    pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
+        let contacts = self.state.network.contacts.iter();
+        contacts.filter_map(|contact| match self.workspace.means.known(contact)? {
+            Reach::Mean(..) => Some((contact, true)),
+            Reach::Nearest => Some((contact, false)),
+            Reach::Other => None,
+        })
+    }
+
+    /// Has the contacts that were found at the places of this step reach to the place that their point faces on average. `anew` says that
+    /// places have changed since this was last asked; where they have not, only contacts that are new or have another normal are looked at.
+    pub(super) fn reach_mean_places(&mut self, anew: bool) {
+        if self.state.systems.is_empty() {
             return;
         }
+        let mut before = std::mem::take(&mut self.workspace.means);
+        if anew {
+            before = MeanPlaces::default();
+        }
+        let mut means = MeanPlaces::default();
         for k in 0..self.state.network.contacts.len() {
             let contact = &self.state.network.contacts[k];
-            let Some((_, place)) = self.mean_place(contact) else {
-                continue;
+            let reach = match before.known(contact) {
+                Some(known) => known.clone(),
+                None => self.reach(contact),
             };
-            let bodies = contact
-                .bodies
-                .map(|b| self.state.bodies.position[b as usize]);
-            let gap = (bodies[0] - place).dot(&contact.normal);
-            let contact = &mut self.state.network.contacts[k];
-            contact.gap = gap;
-            contact.arms[1] = place - bodies[1];
+            means.of.push((contact.key, contact.normal));
+            if let Reach::Mean(_, place) = &reach {
+                let bodies = contact
+                    .bodies
+                    .map(|b| self.state.bodies.position[b as usize]);
+                let gap = (bodies[0] - *place).dot(&contact.normal);
+                let arm = *place - bodies[1];
+                let contact = &mut self.state.network.contacts[k];
+                contact.gap = gap;
+                contact.arms[1] = arm;
+            }
+            means.found.push(reach);
         }
+        self.workspace.means = means;
     }
 }

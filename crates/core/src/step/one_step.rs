@@ -88,7 +88,7 @@ impl<S: Space> Simulation<S> {
             [time, h],
             parallel,
         );
-        self.reach_mean_places();
+        self.reach_mean_places(true);
         report.projected = self.project();
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);
@@ -96,7 +96,7 @@ impl<S: Space> Simulation<S> {
         let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
         self.free_systems(&mut free);
         self.add_predicted_contacts(&free);
-        self.reach_mean_places();
+        self.reach_mean_places(false);
         self.initialise_contacts(info)?;
         report.timing.detect = clock.elapsed();
         Ok((start, free))

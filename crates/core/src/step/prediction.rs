@@ -172,7 +172,7 @@ impl<S: Space> Simulation<S> {
             network.merge_contacts(found);
             start.restore(&mut self.state.bodies);
             self.restart_systems();
-            self.reach_mean_places();
+            self.reach_mean_places(false);
             self.initialise_contacts(info)?;
         }
         Ok(())

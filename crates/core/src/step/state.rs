@@ -135,6 +135,10 @@ impl<S: Space> Simulation<S> {
         for scar in &self.state.scars {
             scar.show_again(&mut self.shapes);
         }
+        // Results may be asked for before the next step.
+        self.state
+            .systems
+            .deform(&self.state.bodies, &mut self.shapes);
         self.state.control.set_parameters(&mut self.laws);
         self.set_holder_drives();
         self.measure_areas();

@@ -3,7 +3,7 @@
 
 use super::{Simulation, StepError};
 use crate::bodies::{Compliance, ContactorShape, DynamicalSystem, Nodes, SystemStep, TurningNode};
-use crate::contact::{Contact, detect};
+use crate::contact::detect;
 use crate::energy::BodyWork;
 use crate::geometry::shape::{Ball, Carried};
 use crate::geometry::space::{Space, VectorLike};
@@ -46,7 +46,7 @@ impl<S: Space> Default for SystemContacts<S> {
 /// The different points in an order of their own, where they are fewer than the nodes that they are sums of, and not these
 /// themselves: a contact on a facet is then one unknown of the solver and not one for each vertex.
 fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
-    if points.iter().all(|point| point.terms().count() == 1) {
+    if points.iter().all(|point| point.count() == 1) {
         return Vec::new();
     }
     points.sort_by(Nodes::order);
@@ -60,7 +60,7 @@ fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
 /// A point as the solver knows it: its place among the points of the system where there are any, or itself.
 pub(super) fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
     let at = points.binary_search_by(|other| other.order(point));
-    at.map_or(*point, |at| Nodes::one(at as u32))
+    at.map_or_else(|_| point.clone(), |at| Nodes::one(at as u32))
 }
 
 impl<S: Space> Simulation<S> {
@@ -189,22 +189,23 @@ impl<S: Space> Simulation<S> {
         self.state.systems.energies()
     }
 
-    /// The sides of a contact; none where both are rigid.
-    fn sides(&self, contact: &Contact<S>) -> Option<[Side<S>; 2]> {
+    /// The sides of a contact, by its place in the network; none where both are rigid.
+    fn sides(&self, k: usize) -> Option<[Side<S>; 2]> {
+        let contact = &self.state.network.contacts[k];
         let carriers = contact
             .bodies
             .map(|b| self.state.bodies.carrier(b as usize));
         if carriers == [None; 2] {
             return None;
         }
-        let mean = self.mean_place(contact);
+        let mean = self.workspace.means.nodes(k, &contact.key);
         Some(std::array::from_fn(|k| {
             let (body, arm) = (contact.bodies[k], contact.arms[k]);
             match carriers[k] {
                 Some(carrier) => Side::Nodes {
                     system: carrier.system,
-                    nodes: match &mean {
-                        Some((nodes, _)) if k == 1 => *nodes,
+                    nodes: match mean {
+                        Some(nodes) if k == 1 => nodes.clone(),
                         _ => self.state.systems.contact_nodes(carrier, &arm),
                     },
                 },
@@ -243,8 +244,8 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let mut found = SystemContacts::default();
-        for contact in &self.state.network.contacts {
-            let place = self.sides(contact).map_or(RIGID, |sides| {
+        for k in 0..self.state.network.contacts.len() {
+            let place = self.sides(k).map_or(RIGID, |sides| {
                 found.sides.push(sides);
                 found.sides.len() as u32 - 1
             });
@@ -274,7 +275,7 @@ impl<S: Space> Simulation<S> {
             if let Side::Nodes { system, nodes } = side {
                 let system = *system as usize;
                 if kept[system].is_none() {
-                    points[system].push(*nodes);
+                    points[system].push(nodes.clone());
                 }
             }
         }
@@ -343,7 +344,7 @@ impl<S: Space> Simulation<S> {
                 system: *system,
                 nodes: place_among(&points[*system as usize], nodes),
             },
-            Side::Rigid { .. } => *side,
+            Side::Rigid { .. } => side.clone(),
         };
         let problem = &mut self.workspace.problem;
         for system in nodal {

@@ -1,6 +1,7 @@
 //! What a step makes for itself and throws away.
 
 use super::answers::Solved;
+use super::mortar::MeanPlaces;
 use super::systems::SystemContacts;
 use crate::geometry::space::Space;
 use crate::laws::SpringForm;
@@ -24,6 +25,8 @@ pub(super) struct Workspace<S: Space> {
     pub moments: Vec<MomentForm<S>>,
     /// What contacts with dynamical systems act on.
     pub systems: SystemContacts<S>,
+    /// The mean places that contacts reach to.
+    pub means: MeanPlaces<S>,
     /// What contacts did in the step.
     pub solved: Solved<S>,
     /// Whether a process has given a body an impulse in the step, see [`super::Simulation::apply_impulse`].
@@ -40,6 +43,7 @@ impl<S: Space> Default for Workspace<S> {
             spring_energy: 0.0,
             moments: Vec::new(),
             systems: SystemContacts::default(),
+            means: MeanPlaces::default(),
             solved: Solved::default(),
             pushed: false,
         }

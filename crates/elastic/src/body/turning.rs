@@ -18,7 +18,7 @@ impl<S: Deformable> ElasticBody<S> {
         Some(match facet.checked_sub(part.facets.len()) {
             None => FacetSpin::new(&[part.corners(facet)], position),
             Some(point) => {
-                let around = part.facets_at(point as u32);
+                let around = part.facets_around(point as u32);
                 let facets: Vec<[u32; 3]> = around.map(|f| part.corners(f)).collect();
                 FacetSpin::new(&facets, position)
             }

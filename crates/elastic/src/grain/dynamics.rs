@@ -289,7 +289,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn contactors(&self) -> Vec<Contactor> {
-        vec![self.model.contactor]
+        vec![self.model.contactor.clone()]
     }
 
     fn contact_nodes(&self, _contactor: &Contactor, arm: &S::Vector) -> Nodes {

@@ -214,7 +214,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
 
     fn contact_nodes(&self, contactor: &Contactor, arm: &S::Vector) -> Nodes {
         if contactor.shape != ContactorShape::Surface {
-            return contactor.nodes;
+            return contactor.nodes.clone();
         }
         let origin = self.origin();
         let cells = self.fixed.grid.len();
@@ -235,7 +235,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
                 });
             weights = self.fixed.grid.weights::<S>(&(at - moved), repeats);
         }
-        Nodes::sum(&weights).unwrap_or(contactor.nodes)
+        Nodes::sum(&weights).unwrap_or_else(|| contactor.nodes.clone())
     }
 
     fn expected_velocity(&self, _contactor: &Contactor, free: &[f64]) -> (S::Vector, S::Spin) {

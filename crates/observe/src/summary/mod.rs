@@ -18,6 +18,7 @@ pub use crate::first_bodies::BodyWear;
 use crate::fretting;
 use crate::friction::Cycle;
 use crate::jump::JumpSummary;
+use crate::nearest_places::NearestPlaces;
 use crate::scars::ScarSummary;
 use crate::scatter::Scatter;
 pub use crate::solving::SolverSummary;
@@ -180,6 +181,9 @@ pub struct Summary {
     /// Loads on the border of half-spaces; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub border_loads: Vec<BorderLoad>,
+    /// Contacts between deformable bodies that act on the nearest place; left out without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest_places: Option<NearestPlaces>,
     /// Diagnostics of whether the step was small enough to detect every contact in time.
     #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,

@@ -26,11 +26,11 @@ fn gives_way<S: Dimensional>(n: usize, axis: usize) -> f64 {
         theta: 1.0,
         gravity: S::Vector::zero(),
     });
-    let contactor = system.contactors()[0];
-    let middle = system.contactor_motion(&contactor).position;
+    let contactor = &system.contactors()[0];
+    let middle = system.contactor_motion(contactor).position;
     let mut place = S::Vector::from_slice(&[1e-4; 3][..S::D]);
     place[S::D - 1] = 0.0;
-    let (node, length) = system.turning_node(&contactor, &(place - middle)).unwrap();
+    let (node, length) = system.turning_node(contactor, &(place - middle)).unwrap();
     let block = system.compliance(&[node])[0];
     // Velocities over impulses, by lengths times spins and moments over lengths.
     go(&mut s, 1);

@@ -1,0 +1,109 @@
+//! A point of a dynamical system as a weighted sum of its nodes.
+
+use std::cmp::Ordering;
+use std::sync::Arc;
+
+/// A point of a system as a weighted sum of nodes: u = sum w_a u_a, and an impulse p there is w_a p on each of them. The
+/// weights are shape functions, the affine coordinates of a point in a frame, or those of a mean place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nodes(Terms);
+
+/// Nodes and weights in place while there are few, as almost always; copies of others share them.
+#[derive(Clone, Debug, PartialEq)]
+enum Terms {
+    Few {
+        ids: [u32; FEW],
+        weights: [f64; FEW],
+        count: u8,
+    },
+    Many(Arc<[(u32, f64)]>),
+}
+
+/// Nodes that are kept in place: those of a facet with quadratic shape functions.
+const FEW: usize = 8;
+
+impl Nodes {
+    /// A node itself.
+    pub fn one(node: u32) -> Self {
+        let (mut ids, mut weights) = ([0; FEW], [0.0; FEW]);
+        (ids[0], weights[0]) = (node, 1.0);
+        let count = 1;
+        Self(Terms::Few {
+            ids,
+            weights,
+            count,
+        })
+    }
+
+    /// A weighted sum of different nodes; none of no node.
+    pub fn sum(terms: &[(u32, f64)]) -> Option<Self> {
+        if terms.is_empty() {
+            return None;
+        }
+        if terms.len() > FEW {
+            return Some(Self(Terms::Many(terms.into())));
+        }
+        let (mut ids, mut weights) = ([0; FEW], [0.0; FEW]);
+        for (k, (node, weight)) in terms.iter().enumerate() {
+            (ids[k], weights[k]) = (*node, *weight);
+        }
+        let count = terms.len() as u8;
+        Some(Self(Terms::Few {
+            ids,
+            weights,
+            count,
+        }))
+    }
+
+    /// Number of nodes.
+    pub fn count(&self) -> usize {
+        match &self.0 {
+            Terms::Few { count, .. } => usize::from(*count),
+            Terms::Many(terms) => terms.len(),
+        }
+    }
+
+    /// An order of points, by nodes and weights; equal where both are.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let ids = |p: &Self, q: &Self| p.terms().map(|t| t.0).cmp(q.terms().map(|t| t.0));
+        let by_nodes = self.count().cmp(&other.count());
+        by_nodes.then_with(|| ids(self, other)).then_with(|| {
+            let weights = self.terms().zip(other.terms());
+            weights.fold(Ordering::Equal, |order, (a, b)| {
+                order.then_with(|| a.1.total_cmp(&b.1))
+            })
+        })
+    }
+
+    /// The node at a place among them and its weight.
+    fn term(&self, k: usize) -> (u32, f64) {
+        match &self.0 {
+            Terms::Few { ids, weights, .. } => (ids[k], weights[k]),
+            Terms::Many(terms) => terms[k],
+        }
+    }
+
+    /// The nodes and their weights.
+    pub fn terms(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        (0..self.count()).map(|k| self.term(k))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_number_of_nodes_is_kept_in_order() {
+        for count in [1u32, 8, 9, 40] {
+            let terms: Vec<(u32, f64)> = (0..count)
+                .map(|k| (3 * k, 1.0 / f64::from(k + 1)))
+                .collect();
+            let nodes = Nodes::sum(&terms).unwrap();
+            assert_eq!(nodes.terms().collect::<Vec<_>>(), terms);
+            assert!(nodes.order(&nodes.clone()).is_eq());
+            assert!(Nodes::one(0).order(&nodes).is_le());
+        }
+        assert_eq!(Nodes::sum(&[]), None);
+    }
+}

@@ -1,0 +1,161 @@
+//! Tests of the weights of mean places: what they carry, and what they leave in place.
+
+use super::*;
+
+/// The weights of a point of a chain on another one; both go along the same line, the points against it.
+fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)>> {
+    let at = |j: usize| [points[j] - points[k], 0.0];
+    let before = k.checked_sub(1).map(|b| ([at(k), at(b), [0.0; 2]], 0));
+    let after = (k + 1 < points.len()).then(|| ([at(k + 1), at(k), [0.0; 2]], 1));
+    let mut star = Star::new(before.into_iter().chain(after), 2)?;
+    for v in 0..vertices.len() - 1 {
+        let at = [v, v + 1].map(|v| [vertices[v] - points[k], 0.0]);
+        star.face(&[v as u32, v as u32 + 1], &at);
+    }
+    star.weights()
+}
+
+/// Triangles over a square whose lines have these places, by their corners, all anticlockwise; diagonals alternate.
+fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
+    let n = lines.len() as u32;
+    let at = lines.iter().flat_map(|y| lines.iter().map(|x| [*x, *y]));
+    let mut triangles = Vec::new();
+    for j in 0..n - 1 {
+        for i in 0..n - 1 {
+            let [a, b, c, d] = [
+                j * n + i,
+                j * n + i + 1,
+                (j + 1) * n + i + 1,
+                (j + 1) * n + i,
+            ];
+            let cut = match (i + j) % 2 {
+                0 => [[a, b, c], [a, c, d]],
+                _ => [[a, b, d], [b, c, d]],
+            };
+            triangles.extend(cut);
+        }
+    }
+    (at.collect(), triangles)
+}
+
+/// The weights of a point of one grid on another, and the area that its shape function stands for.
+fn on_grid(
+    (points, own): &(Vec<Along>, Vec<[u32; 3]>),
+    k: usize,
+    (vertices, triangles): &(Vec<Along>, Vec<[u32; 3]>),
+) -> (Option<Vec<(u32, f64)>>, f64) {
+    let from = |p: Along| [p[0] - points[k][0], p[1] - points[k][1]];
+    let about = own.iter().filter_map(|t| {
+        let place = t.iter().position(|p| *p == k as u32)?;
+        let mut corners = t.map(|p| from(points[p as usize]));
+        // Seen from the other side.
+        corners.swap((place + 1) % 3, (place + 2) % 3);
+        Some((corners, place))
+    });
+    let mut star = Star::new(about, 3).unwrap();
+    let area = star.facets.iter().map(|f| f.size / 3.0).sum();
+    for t in triangles {
+        let at = t.map(|v| from(vertices[v as usize]));
+        assert!(star.is_near(&at) || !star.face(t, &at));
+        star.face(t, &at);
+    }
+    (star.weights(), area)
+}
+
+/// A uniform pressure p on the points, p times the length that each stands for, is a uniform pressure on the vertices; and the mean
+/// place of linear coordinates is that of the point.
+#[test]
+fn a_uniform_pressure_stays_uniform() {
+    let points = [0.0, 0.3, 0.5, 0.9, 1.3, 1.6];
+    let vertices = [0.0, 0.22, 0.61, 0.7, 1.1, 1.25, 1.6];
+    let stands_for =
+        |all: &[f64], k: usize| 0.5 * (all[(k + 1).min(all.len() - 1)] - all[k.saturating_sub(1)]);
+    let mut carried = [0.0; 7];
+    for (k, at) in points.iter().enumerate() {
+        let weights = on_chain(&points, k, &vertices).unwrap();
+        let sum: f64 = weights.iter().map(|w| w.1).sum();
+        let mean: f64 = weights.iter().map(|(v, w)| vertices[*v as usize] * w).sum();
+        assert!((sum - 1.0).abs() < 1e-14 && (mean - at).abs() < 1e-14);
+        for (v, w) in weights {
+            carried[v as usize] += w * stands_for(&points, k);
+        }
+    }
+    for (v, carried) in carried.iter().enumerate() {
+        assert!((carried - stands_for(&vertices, v)).abs() < 1e-14, "{v}");
+    }
+}
+
+/// The same in space, on triangles that cross in any way.
+#[test]
+fn a_uniform_pressure_stays_uniform_in_space() {
+    let few = grid(&[0.0, 0.3, 0.5, 0.9, 1.6]);
+    let many = grid(&[0.0, 0.22, 0.5, 0.7, 1.1, 1.25, 1.6]);
+    for (points, vertices) in [(&few, &many), (&many, &few), (&many, &many)] {
+        let mut carried = vec![0.0; vertices.0.len()];
+        for (k, at) in points.0.iter().enumerate() {
+            let (weights, area) = on_grid(points, k, vertices);
+            let weights = weights.unwrap();
+            let mean = weights.iter().fold([0.0; 3], |m, (v, w)| {
+                let [x, y] = vertices.0[*v as usize];
+                [m[0] + w, m[1] + w * x, m[2] + w * y]
+            });
+            for (found, expected) in mean.iter().zip([1.0, at[0], at[1]]) {
+                assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+            }
+            for (v, w) in weights {
+                carried[v as usize] += w * area;
+            }
+        }
+        for (v, carried) in carried.iter().enumerate() {
+            let third = |t: &[u32; 3]| signed_size(&t.map(|c| vertices.0[c as usize])) / 3.0;
+            let about = vertices.1.iter().filter(|t| t.contains(&(v as u32)));
+            let area: f64 = about.map(third).sum();
+            assert!((carried - area).abs() < 1e-13, "{v}: {carried} {area}");
+        }
+    }
+}
+
+#[test]
+fn points_of_matching_meshes_face_one_vertex() {
+    let along: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
+    let mesh = grid(&along);
+    for k in 0..=10usize {
+        let weights = on_chain(&along, k, &along).unwrap();
+        assert_eq!(weights, [(k as u32, 1.0)]);
+        let (weights, _) = on_grid(&mesh, 11 * k + 3, &mesh);
+        assert_eq!(weights.unwrap(), [(11 * k as u32 + 3, 1.0)]);
+    }
+}
+
+/// Where the other surface ends below facets of a point, linear functions are still met at the point, and weights stay small.
+#[test]
+fn the_end_of_a_surface_below_the_facets_of_a_point() {
+    let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
+    let weights = on_chain(&[0.85, 0.95, 1.35], 1, &vertices).unwrap();
+    let mean: f64 = weights.iter().map(|(v, w)| vertices[*v as usize] * w).sum();
+    assert!((mean - 0.95).abs() < 1e-14 && weights.iter().all(|w| w.1.abs() < 1.0));
+    let lines: Vec<f64> = vertices.iter().map(|x| 1.17 * x).collect();
+    let (few, many) = (grid(&lines), grid(&vertices));
+    for (k, at) in few.0.iter().enumerate() {
+        let (weights, _) = on_grid(&few, k, &many);
+        if at[0] > 1.0 || at[1] > 1.0 {
+            assert_eq!(weights, None);
+            continue;
+        }
+        let mean = weights.unwrap().iter().fold([0.0; 3], |m, (v, w)| {
+            let [x, y] = many.0[*v as usize];
+            assert!(w.abs() < 2.0);
+            [m[0] + w, m[1] + w * x, m[2] + w * y]
+        });
+        for (found, expected) in mean.iter().zip([1.0, at[0], at[1]]) {
+            assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn points_without_facets_beside_a_surface_or_turned_away_have_no_weights() {
+    assert_eq!(on_chain(&[0.5], 0, &[0.0, 1.0]), None);
+    assert_eq!(on_chain(&[0.9, 1.1], 1, &[0.0, 1.0]), None);
+    assert_eq!(on_chain(&[0.5, 0.3], 0, &[0.0, 1.0]), None);
+}
