@@ -77,9 +77,9 @@ impl Facet {
         integrate(&own[..self.count], at, |t, weight| {
             one += weight;
             self.own += weight * shape_functions(&own[..self.count], t)[self.point];
-            for axis in 0..2 {
-                self.first[axis] += weight * t[axis];
-                self.squares[axis] += weight * t[axis] * t[axis];
+            for (axis, t) in t.iter().enumerate() {
+                self.first[axis] += weight * t;
+                self.squares[axis] += weight * t * t;
             }
             self.product += weight * t[0] * t[1];
             for (part, phi) in parts.iter_mut().zip(shape_functions(at, t)) {
