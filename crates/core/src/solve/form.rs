@@ -1,6 +1,7 @@
 //! The input of a solver: bodies as velocity records, contacts in the standard form.
 
 use super::colour::Order;
+use super::loaded::Loaded;
 use super::nodal::NodalSystem;
 use super::row::{
     FullRow, GeneralRow, MomentForm, MomentRow, MomentSolution, PlainRow, Row, SolverBody,
@@ -227,6 +228,8 @@ pub struct Problem<S: Space> {
     pub(super) of_systems: Vec<SystemRow<S>>,
     /// The dynamical systems, as far as contacts see them.
     pub(super) systems: Vec<NodalSystem<S>>,
+    /// Memory of large systems that were solved before.
+    pub(super) loaded: Vec<Loaded<S>>,
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
@@ -249,6 +252,7 @@ impl<S: Space> Default for Problem<S> {
             general: Vec::new(),
             of_systems: Vec::new(),
             systems: Vec::new(),
+            loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
             orders: Default::default(),
@@ -292,7 +296,7 @@ impl<S: Space> Problem<S> {
         self.full.clear();
         self.general.clear();
         self.of_systems.clear();
-        self.systems.clear();
+        self.clear_systems();
         self.moments.clear();
         self.places.clear();
     }

@@ -3,7 +3,8 @@
 //! An impulse on a node changes the velocities of all nodes of its system, and its column of the compliance would be read from memory in
 //! each update of a contact. Contacts act on points, weighted sums of nodes. Between two tests of convergence sweeps update the velocities of
 //! loaded points alone, by blocks of their own compliance that fit in a cache; those of the others stay as they were at the last test, and are
-//! found exactly where a point is loaded for the first time and for all nodes at the next test.
+//! found exactly where a point is loaded for the first time and for all nodes at the next test. Where contacts act on more points than nodes,
+//! it is the nodes that sweeps follow, so that the blocks never have more columns than there are nodes.
 
 use crate::geometry::space::{Space, VectorLike};
 use pulp::Arch;
@@ -46,6 +47,14 @@ pub(super) struct Points {
     ends: Vec<u32>,
     /// Places of nodes with their weights, point by point.
     terms: Vec<(u32, f64)>,
+    /// How many points are single nodes, which come first.
+    nodes: u32,
+    /// The nodes that contacts act on, and how many they are.
+    touched: Vec<bool>,
+    touched_nodes: usize,
+    /// How many of these are points of contacts by themselves.
+    alone: Vec<bool>,
+    alone_nodes: usize,
 }
 
 impl Points {
@@ -55,17 +64,41 @@ impl Points {
         Self {
             ends: (1..=nodes).collect(),
             terms: (0..nodes).map(|node| (node, 1.0)).collect(),
+            nodes,
+            touched: vec![false; nodes as usize],
+            touched_nodes: 0,
+            alone: vec![false; nodes as usize],
+            alone_nodes: 0,
         }
     }
 
     /// Adds a point; gives its index.
     pub fn add(&mut self, terms: &[(u32, f64)]) -> u32 {
-        if let [(node, 1.0)] = terms {
-            return *node;
+        let mut count = 0;
+        for (node, weight) in terms {
+            if *weight != 0.0 {
+                count += 1;
+                let touched = std::mem::replace(&mut self.touched[*node as usize], true);
+                self.touched_nodes += usize::from(!touched);
+                self.terms.push((*node, *weight));
+            }
         }
-        self.terms.extend_from_slice(terms);
+        if let Some((node, 1.0)) = self.terms.last().copied()
+            && count == 1
+        {
+            self.terms.pop();
+            let alone = std::mem::replace(&mut self.alone[node as usize], true);
+            self.alone_nodes += usize::from(!alone);
+            return node;
+        }
         self.ends.push(self.terms.len() as u32);
         self.ends.len() as u32 - 1
+    }
+
+    /// Whether contacts act on more points than nodes.
+    pub fn outnumber_nodes(&self) -> bool {
+        let sums = self.ends.len() - self.nodes as usize;
+        sums + self.alone_nodes > self.touched_nodes
     }
 
     /// The terms of a point.
@@ -79,6 +112,9 @@ impl Points {
     /// The sum of vectors that are given for nodes, one after the other.
     #[inline]
     pub fn sum<S: Space>(&self, point: u32, all: &[f64]) -> S::Vector {
+        if point < self.nodes {
+            return vector::<S>(all, point as usize);
+        }
         let terms = self.terms(point).iter();
         terms.fold(S::Vector::zero(), |sum, (node, weight)| {
             sum + vector::<S>(all, *node as usize) * *weight
@@ -95,6 +131,7 @@ pub(super) struct Loaded<S: Space> {
     /// Velocities of loaded points, one after the other (m/s).
     velocity: Vec<f64>,
     /// Compliance between loaded points, column by column and in it by axis of the impulse; a column is completed when an impulse needs it.
+    /// Columns beyond those of loaded points are memory of earlier steps.
     blocks: Vec<[Vec<f64>; 3]>,
     /// Impulses since the velocities of all nodes were found (N s).
     since: Vec<S::Vector>,
@@ -115,6 +152,14 @@ impl<S: Space> Loaded<S> {
         }
     }
 
+    /// Takes all loads away and keeps the memory.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.index.clear();
+        self.velocity.clear();
+        self.since.clear();
+    }
+
     /// The current velocity of a point, if it is loaded (m/s).
     #[inline]
     pub fn velocity(&self, point: u32) -> Option<S::Vector> {
@@ -124,26 +169,30 @@ impl<S: Space> Loaded<S> {
         }
     }
 
-    /// The place of a point among the loaded ones, which it joins with a velocity (m/s).
-    fn place(&mut self, point: u32, velocity: impl FnOnce(&Self) -> S::Vector) -> usize {
+    /// The index of a point among the loaded ones, which it joins, and whether it just did.
+    fn place(&mut self, point: u32) -> (usize, bool) {
         let at = point as usize;
         if self.index.len() <= at {
             self.index.resize(at + 1, NONE);
         }
-        if self.index[at] == NONE {
-            let velocity = velocity(self);
-            self.index[at] = self.points.len() as u32;
+        let joins = self.index[at] == NONE;
+        if joins {
+            let k = self.points.len();
+            self.index[at] = k as u32;
             self.points.push(point);
-            self.velocity.extend((0..S::D).map(|k| velocity[k]));
-            self.blocks.push(Default::default());
+            self.velocity.extend(std::iter::repeat_n(0.0, S::D));
+            match self.blocks.get_mut(k) {
+                Some(block) => block.iter_mut().for_each(Vec::clear),
+                None => self.blocks.push(Default::default()),
+            }
             self.since.push(S::Vector::zero());
         }
-        self.index[at] as usize
+        (self.index[at] as usize, joins)
     }
 
     /// Adds an impulse (N s), whose velocities are found by [`Self::settle`].
     pub fn load(&mut self, point: u32, impulse: &S::Vector) {
-        let k = self.place(point, |_| S::Vector::zero());
+        let (k, _) = self.place(point);
         self.since[k] += *impulse;
     }
 
@@ -156,46 +205,58 @@ impl<S: Space> Loaded<S> {
         all: &[f64],
         column: impl Fn(usize) -> &'a [f64],
     ) {
-        let row = all.len();
-        let k = self.place(point, |loaded| {
-            let mut velocity = points.sum::<S>(point, all);
-            for (b, p) in loaded.points.iter().zip(&loaded.since) {
-                for (node, weight) in points.terms(*b) {
-                    let of = column(*node as usize);
-                    for axis in 0..S::D {
-                        let response = points.sum::<S>(point, &of[axis * row..][..row]);
-                        velocity += response * (p[axis] * weight);
-                    }
-                }
-            }
-            velocity
-        });
-        let known = self.blocks[k][0].len() / S::D;
-        if known < self.points.len() {
-            for (axis, block) in self.blocks[k].iter_mut().enumerate().take(S::D) {
-                // With place for points that are loaded later.
-                let needed = (self.points.len() + SPARE) * S::D;
-                block.reserve(needed - block.len());
-                let of_node = |node: u32| &column(node as usize)[axis * row..][..row];
-                self.response.clear();
-                for (node, weight) in points.terms(point) {
-                    if self.response.is_empty() {
-                        let first = of_node(*node).iter().map(|v| v * weight);
-                        self.response.extend(first);
-                    } else {
-                        let both = self.response.iter_mut().zip(of_node(*node));
-                        both.for_each(|(sum, v)| *sum += v * weight);
-                    }
-                }
-                for a in &self.points[known..] {
-                    let response = points.sum::<S>(*a, &self.response);
-                    block.extend((0..S::D).map(|d| response[d]));
-                }
-            }
+        let (k, joins) = self.place(point);
+        if joins {
+            let sum = points.sum::<S>(point, all);
+            (0..S::D).for_each(|d| self.velocity[k * S::D + d] = sum[d]);
+        }
+        if joins || self.blocks[k][0].len() / S::D < self.points.len() {
+            self.complete(k, joins, points, all.len(), column);
         }
         let blocks = &self.blocks[k];
         add_response::<S>(&mut self.velocity, |axis| &blocks[axis], impulse);
         self.since[k] += *impulse;
+    }
+
+    /// Completes the column of a loaded point. One that just joined the others also gets the velocity that impulses since the last test give
+    /// it: the compliance is symmetric, so that its response to an impulse on another point is the response of that to one on it.
+    fn complete<'a>(
+        &mut self,
+        k: usize,
+        joins: bool,
+        points: &Points,
+        row: usize,
+        column: impl Fn(usize) -> &'a [f64],
+    ) {
+        let point = self.points[k];
+        for axis in 0..S::D {
+            let of_node = |node: u32| &column(node as usize)[axis * row..][..row];
+            let response = if let [(node, 1.0)] = points.terms(point) {
+                of_node(*node)
+            } else {
+                self.response.clear();
+                self.response.resize(row, 0.0);
+                for (node, weight) in points.terms(point) {
+                    let both = self.response.iter_mut().zip(of_node(*node));
+                    both.for_each(|(sum, v)| *sum += v * weight);
+                }
+                &self.response
+            };
+            let block = &mut self.blocks[k][axis];
+            let known = block.len() / S::D;
+            // With room for points that are loaded later.
+            block.reserve((self.points.len() + SPARE - known) * S::D);
+            for a in &self.points[known..] {
+                let response = points.sum::<S>(*a, response);
+                block.extend((0..S::D).map(|d| response[d]));
+            }
+            if joins {
+                let pairs = block.chunks_exact(S::D).zip(&self.since);
+                self.velocity[k * S::D + axis] += pairs.fold(0.0, |sum, (response, p)| {
+                    sum + S::Vector::from_slice(response).dot(p)
+                });
+            }
+        }
     }
 
     /// Finds the velocities of all nodes (m/s) from those at the last test and the impulses since.
@@ -241,57 +302,4 @@ pub(super) fn vector<S: Space>(all: &[f64], at: usize) -> S::Vector {
 }
 
 #[cfg(test)]
-mod tests {
-    use crate::geometry::space::{Dim3, VectorLike};
-    use crate::solve::NodalSystem;
-    use nalgebra::{Matrix3, Vector3};
-
-    /// Impulses on nodes of a large system, of which new ones are loaded between two tests and after one: the velocities of loaded nodes
-    /// are at all times those of the whole product, and those of all nodes once they are asked for.
-    #[test]
-    fn loaded_nodes_move_as_with_the_whole_compliance() {
-        let count = 90usize;
-        let block = |a: usize, b: usize| {
-            let far = 1.0 + (a as f64 - b as f64).abs();
-            let shear = 0.1 * (a as f64 - b as f64) / far;
-            Matrix3::new(2.0, shear, 0.1, -shear, 3.0, 0.2, 0.1, 0.2, 1.0) / far
-        };
-        let free = |a: usize| Vector3::new((a as f64).sin(), 1.0, -0.5);
-        let rows: Vec<_> = (0..count * count)
-            .map(|k| block(k / count, k % count))
-            .collect();
-        let nodes = (0..count as u32).collect();
-        let mut system = NodalSystem::<Dim3>::new(nodes, (0..count).map(free).collect(), &rows);
-        let mut impulses = vec![Vector3::zeros(); count];
-        let expected = |impulses: &[Vector3<f64>], a: usize| {
-            let pairs = impulses.iter().enumerate();
-            pairs.fold(free(a), |sum, (b, p)| sum + block(a, b) * p)
-        };
-        let impulse = |k: usize| Vector3::new(1.0, (k as f64).cos(), 0.3 * k as f64);
-        for k in 0..5 {
-            impulses[7 * k] += impulse(k);
-            system.load(7 * k as u32, &impulse(k));
-        }
-        system.settle();
-        for round in 0..3 {
-            for k in 0..12 {
-                let at = (5 * k + 11 * round) % count;
-                impulses[at] += impulse(k);
-                system.push(at as u32, &impulse(k));
-                let loaded = (0..count).filter(|a| impulses[*a] != Vector3::zero());
-                for a in loaded {
-                    let off = system.velocity(a as u32) - expected(&impulses, a);
-                    assert!(off.norm() < 1e-12, "{round} {k} {a}: {off}");
-                }
-            }
-            let stale = (0..count).filter(|a| impulses[*a] == Vector3::zero());
-            let off = |a: usize| (system.velocity(a as u32) - expected(&impulses, a)).norm();
-            assert!(stale.clone().map(off).fold(0.0, f64::max) > 0.1);
-            system.settle();
-            for a in 0..count {
-                let off = system.velocity(a as u32) - expected(&impulses, a);
-                assert!(off.norm() < 1e-12, "{round} {a}: {off}");
-            }
-        }
-    }
-}
+mod tests;

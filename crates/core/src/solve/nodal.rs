@@ -1,7 +1,7 @@
 //! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and their compliance.
 
 use super::form::{ContactForm, Mobility, Place, Problem};
-use super::loaded::{Loaded, Points, add_response};
+use super::loaded::{Loaded, Points, add_response, vector};
 use super::row::{MomentForm, SystemRow, Term};
 use super::side::Side;
 use crate::bodies::{Compliance, TurningNode, block_of};
@@ -128,31 +128,63 @@ impl<S: Space> NodalSystem<S> {
     /// [`Self::settle`].
     #[inline]
     pub(super) fn velocity(&self, point: u32) -> S::Vector {
-        let loaded = self.loaded.as_ref().and_then(|l| l.velocity(point));
-        loaded.unwrap_or_else(|| self.points.sum::<S>(point, &self.velocity))
+        let Some(loaded) = &self.loaded else {
+            return self.points.sum::<S>(point, &self.velocity);
+        };
+        if let Some(velocity) = loaded.velocity(point) {
+            return velocity;
+        }
+        let of_node = |node: u32| {
+            let velocity = loaded.velocity(node);
+            velocity.unwrap_or_else(|| vector::<S>(&self.velocity, node as usize))
+        };
+        let terms = self.points.terms(point).iter();
+        terms.fold(S::Vector::zero(), |sum, (node, weight)| {
+            sum + of_node(*node) * *weight
+        })
+    }
+
+    /// Whether sweeps follow nodes and not points, of a large system on which contacts act on more points than nodes.
+    pub(super) fn follows_nodes(&self) -> bool {
+        self.points.outnumber_nodes()
     }
 
     /// Adds what an impulse on a point does to velocities.
     pub(super) fn push(&mut self, point: u32, impulse: &S::Vector) {
+        let by_nodes = self.follows_nodes();
         let (compliance, count) = (&self.compliance, self.nodes.len());
         let column = |b: usize| compliance.column(b, count);
-        if let Some(loaded) = &mut self.loaded {
-            return loaded.push(point, impulse, &self.points, &self.velocity, column);
-        }
-        let row = S::D * count;
-        for (node, weight) in self.points.terms(point) {
-            let column = column(*node as usize);
-            add_response::<S>(
-                &mut self.velocity,
-                |axis| &column[axis * row..][..row],
-                &(*impulse * *weight),
-            );
+        let (points, all) = (&self.points, &self.velocity);
+        match &mut self.loaded {
+            Some(loaded) if by_nodes => {
+                for (node, weight) in points.terms(point) {
+                    loaded.push(*node, &(*impulse * *weight), points, all, column);
+                }
+            }
+            Some(loaded) => loaded.push(point, impulse, points, all, column),
+            None => {
+                let row = S::D * count;
+                for (node, weight) in points.terms(point) {
+                    let column = column(*node as usize);
+                    add_response::<S>(
+                        &mut self.velocity,
+                        |axis| &column[axis * row..][..row],
+                        &(*impulse * *weight),
+                    );
+                }
+            }
         }
     }
 
     /// The same as one of many impulses: velocities are right after [`Self::settle`].
     pub(super) fn load(&mut self, point: u32, impulse: &S::Vector) {
+        let by_nodes = self.follows_nodes();
         match &mut self.loaded {
+            Some(loaded) if by_nodes => {
+                for (node, weight) in self.points.terms(point) {
+                    loaded.load(*node, &(*impulse * *weight));
+                }
+            }
             Some(loaded) => loaded.load(point, impulse),
             None => self.push(point, impulse),
         }
@@ -182,8 +214,21 @@ impl<S: Space> NodalSystem<S> {
 
 impl<S: Space> Problem<S> {
     /// Adds a dynamical system, before the contacts with it; systems are counted in the order in which they are added.
-    pub fn push_system(&mut self, system: NodalSystem<S>) {
+    pub fn push_system(&mut self, mut system: NodalSystem<S>) {
+        if let (Some(loaded), Some(memory)) = (&mut system.loaded, self.loaded.pop()) {
+            *loaded = memory;
+        }
         self.systems.push(system);
+    }
+
+    /// Takes all systems away and keeps the memory of large ones for those that follow.
+    pub(super) fn clear_systems(&mut self) {
+        for system in self.systems.drain(..).rev() {
+            if let Some(mut loaded) = system.loaded {
+                loaded.clear();
+                self.loaded.push(loaded);
+            }
+        }
     }
 
     /// Adds a contact of which a side is a dynamical system. The bodies of the form are those of detection; what the impulse
