@@ -1,0 +1,1 @@
+../../../plugins/abi/include/fretwork.h
