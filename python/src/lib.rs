@@ -4,8 +4,8 @@ mod law;
 
 use pyo3::prelude::*;
 
-#[pymodule(name = "_fretwork")]
-fn module(m: &Bound<'_, PyModule>) -> PyResult<()> {
-    m.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    law::add(m)
+#[pymodule]
+fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    law::add(module)
 }
