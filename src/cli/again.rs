@@ -1,10 +1,20 @@
-//! Reconstruction of this process's command line, to be printed for the user to repeat.
+//! Reconstruction of the command line of this call, to be printed for the user to repeat.
+
+use std::ffi::OsString;
+use std::sync::OnceLock;
+
+/// The words of this call, from the name of the program on.
+static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Keeps the words of this call.
+pub(super) fn keep(words: &[OsString]) {
+    let _ = WORDS.set(words.to_vec());
+}
 
 /// The arguments of this call, quoted for a shell, with those of `with` appended if they are missing.
 pub(super) fn command(with: &[&str]) -> String {
-    let mut words: Vec<String> = std::env::args_os()
-        .map(|w| w.to_string_lossy().into_owned())
-        .collect();
+    let words = WORDS.get().map_or(&[][..], Vec::as_slice).iter();
+    let mut words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
     for word in with {
         if !words.iter().any(|w| w == word) {
             words.push((*word).to_owned());

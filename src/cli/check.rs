@@ -47,23 +47,40 @@ fn describe_and_time<S: Steps>(
     built: Built<S>,
     args: &CheckArgs,
 ) -> Result<(), Failure> {
-    answer(describe(loaded, &built, !args.no_timing).trim_end())?;
+    let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
+    for (label, text) in lines(loaded, &built, !args.no_timing) {
+        let _ = write!(out, "\n{}", line_of(&label, &text));
+    }
+    answer(&out)?;
     if !args.no_timing {
-        let time = &loaded.case.time;
-        let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
-        let grains = built.simulation.state.bodies.grains().count();
-        let text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
-        answer(&format!("  {:<20} {text}", "run time"))?;
+        let (label, text) = run_time(loaded, built);
+        answer(&line_of(&label, &text))?;
     }
     Ok(())
 }
 
-fn describe<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> String {
+fn line_of(label: &str, text: &str) -> String {
+    format!("  {label:<20} {text}")
+}
+
+/// A line of the answer: what it is about, and the text. Lines that go on with that of the line before have no label.
+pub type CheckLine = (String, String);
+
+/// The estimated time of a run, from steps that are made for half a second.
+pub fn run_time<S: Steps>(loaded: &Loaded, built: Built<S>) -> CheckLine {
+    let time = &loaded.case.time;
+    let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+    let grains = built.simulation.state.bodies.grains().count();
+    let text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
+    ("run time".to_owned(), text)
+}
+
+/// What `fretwork check` prints of a case below its title, but for the [run time](run_time). Deformable bodies are timed if
+/// `timed`.
+pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<CheckLine> {
     let (case, s) = (&loaded.case, &built.simulation);
-    let mut out = format!("{}: {}\n", loaded.path.display(), clean(&case.name));
-    let mut line = |label: &str, value: String| {
-        let _ = writeln!(out, "  {label:<20} {value}");
-    };
+    let mut out = Vec::new();
+    let mut line = |label: &str, value: String| out.push((label.to_owned(), value));
     let steps = (case.time.end / case.time.step).round();
     line("dimension", S::D.to_string());
     line(

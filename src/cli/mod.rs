@@ -13,6 +13,8 @@ mod run;
 mod solve;
 mod trade;
 
+pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
+
 use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::laws::watch::{Saved, watch};
 use crate::laws::{LawError, SearchPath, child};
@@ -20,6 +22,7 @@ use crate::record::RunError;
 use crate::scene::InputError;
 use crate::shipped::built_in;
 use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -211,10 +214,19 @@ impl From<LawError> for Failure {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().collect();
+    ExitCode::from(call(&words))
+}
+
+/// Runs the program with given words, of which the first is its name; returns the exit code. For processes that are not the
+/// program themselves, such as a Python interpreter: see [`crate::program`]. One call in a process: signals are handled from
+/// then on as the program handles them.
+pub fn call(words: &[OsString]) -> u8 {
+    again::keep(words);
     // The main thread uses a pool of one; only `run --threads` computes on more.
     let here = rayon::ThreadPoolBuilder::new().num_threads(1);
     let _ = here.use_current_thread().build_global();
-    let outcome = match Cli::try_parse() {
+    let outcome = match Cli::try_parse_from(words) {
         Ok(cli) => {
             let _armed = ending::arm();
             run(cli.command)
@@ -223,14 +235,14 @@ pub fn main() -> ExitCode {
         Err(e) if !e.use_stderr() => output::delivered(e.print()),
         Err(e) => {
             let _ = e.print();
-            return ExitCode::from(2);
+            return 2;
         }
     };
     let (message, code) = match outcome {
-        Ok(()) => return ExitCode::SUCCESS,
+        Ok(()) => return 0,
         Err(Failure::Input(e)) => {
             output::report_rendered(&e.render(std::io::stderr().is_terminal()));
-            return ExitCode::from(2);
+            return 2;
         }
         Err(Failure::Usage(message)) => (format!("error: {message}"), 2),
         Err(Failure::Failed(message)) => (format!("error: {message}"), 1),
@@ -240,7 +252,7 @@ pub fn main() -> ExitCode {
         }
     };
     output::report(&message);
-    ExitCode::from(code)
+    code
 }
 
 fn run(command: Command) -> Result<(), Failure> {

@@ -5,6 +5,7 @@ use super::TradeError;
 use super::chaos::Perturbation;
 use super::output::column;
 use super::parameters::openings;
+use crate::program;
 use crate::scene::Loaded;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -101,8 +102,6 @@ pub struct Limits {
 /// Launcher of the runs of one case.
 #[derive(Debug)]
 pub struct Launcher {
-    /// Path of the program.
-    pub program: PathBuf,
     /// The case.
     pub case: PathBuf,
     /// `--set` arguments of the user.
@@ -133,9 +132,10 @@ impl Launcher {
         let unknown = |e: &dyn std::fmt::Display| {
             TradeError::Usage(format!("the path of the program cannot be determined: {e}"))
         };
-        let program = std::env::current_exe().map_err(|e| unknown(&e))?;
+        program::command().map_err(|e| unknown(&e))?;
+        let file = program::file().map_err(|e| unknown(&e))?;
         let mut hash = Sha256::new();
-        hash.update(std::fs::read(&program).map_err(|e| unknown(&e))?);
+        hash.update(std::fs::read(&file).map_err(|e| unknown(&e))?);
         hash.update(loaded.source.text());
         for (name, text) in materials {
             hash.update(name);
@@ -147,7 +147,6 @@ impl Launcher {
         let folder = out.join("runs");
         std::fs::create_dir_all(&folder).map_err(|e| TradeError::write(&folder, &e))?;
         Ok(Self {
-            program,
             case: loaded.path.clone(),
             sets: [loaded.source.sets(), &openings(loaded)].concat(),
             plugins,
@@ -204,6 +203,7 @@ impl Launcher {
         let started = Instant::now();
         let mut child = self
             .command(sets, seed, &place)
+            .map_err(|e| fail(&e))?
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(errors)
@@ -269,8 +269,8 @@ impl Launcher {
         Ok(Ended::Finished(finished))
     }
 
-    fn command(&self, sets: &[String], number: u64, place: &Path) -> Command {
-        let mut command = Command::new(&self.program);
+    fn command(&self, sets: &[String], number: u64, place: &Path) -> std::io::Result<Command> {
+        let mut command = program::command()?;
         command.arg("run").arg(&self.case).arg("--json");
         command.arg("--out").arg(place).args(["--threads", "1"]);
         let quiet = [
@@ -287,7 +287,7 @@ impl Launcher {
             command.args(["--set", set]);
         }
         command.args(&self.plugins);
-        command
+        Ok(command)
     }
 
     fn assess(&self, run: StoredRun) -> Finished {
@@ -424,7 +424,6 @@ mod tests {
         };
         let folder = std::env::temp_dir().join(format!("fretwork-kept-{}", std::process::id()));
         let mut launcher = Launcher {
-            program: PathBuf::new(),
             case: PathBuf::new(),
             sets: Vec::new(),
             plugins: Vec::new(),

@@ -56,6 +56,7 @@ pub mod energy;
 pub mod geometry;
 pub mod laws;
 pub mod process;
+pub mod program;
 pub mod solve;
 pub mod step;
 pub mod wear;

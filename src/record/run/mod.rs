@@ -197,6 +197,12 @@ pub fn stopped<S: Space>(
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
+/// The observers that a run of a case has, for who steps without one. Its processes are [installed](processes::install) before.
+pub fn run_observers<S: Observed>(loaded: &Loaded, s: &Simulation<S>) -> Observers<S> {
+    let any = !(s.shapes.surfaces.is_empty() && s.state.bodies.driven.is_empty());
+    standard::observers(&loaded.case, s, density_of(loaded, any))
+}
+
 /// The columns of the statistics that a run of a case has.
 pub fn statistics_columns<S: Observed>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
@@ -251,9 +257,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
         let simulation = &mut built.simulation;
         simulation.options.solver.parallel = options.threads > 1;
         processes::install(case, simulation);
-        let any =
-            !(simulation.shapes.surfaces.is_empty() && simulation.state.bodies.driven.is_empty());
-        let mut observers = standard::observers(case, simulation, density_of(loaded, any));
+        let mut observers = run_observers(loaded, simulation);
         observers.append(run.observers);
         let summary = Summary {
             case: case.name.clone(),

@@ -73,7 +73,7 @@ impl BuiltInLaws {
 fn executable() -> Result<(&'static Path, &'static str), LawError> {
     static KNOWN: OnceLock<Result<(PathBuf, String), String>> = OnceLock::new();
     let known = KNOWN.get_or_init(|| {
-        let path = std::env::current_exe().map_err(|e| e.to_string())?;
+        let path = crate::program::file().map_err(|e| e.to_string())?;
         let sha256 = file_sum(&path).map_err(|e| e.to_string())?;
         Ok((path, sha256))
     });

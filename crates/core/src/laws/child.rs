@@ -4,6 +4,7 @@
 
 use super::error::LawError;
 use super::library::Plugin;
+use crate::program;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
@@ -11,27 +12,26 @@ use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
 use std::sync::{Mutex, OnceLock, mpsc};
 use std::time::Duration;
 
 /// Hidden subcommand that tries to open libraries.
 pub const TRY_LIBRARIES: &str = "__try-libraries";
 
-/// The program to run as a child.
+/// Whether the program may be run as a child, and how.
 #[derive(Debug)]
 struct Helper {
-    program: PathBuf,
     /// Time limit of a law call; `None` for no limit.
     limit: Option<Duration>,
 }
 
 static HELPER: OnceLock<Helper> = OnceLock::new();
 
-/// Declares that this process is the command-line program, which may run itself as a child.
+/// Declares that the [program](crate::program) of this process has the command line, which may be run as a child.
 pub fn enable(limit: Option<Duration>) {
-    if let Ok(program) = std::env::current_exe() {
-        let _ = HELPER.set(Helper { program, limit });
+    if program::command().is_ok() {
+        let _ = HELPER.set(Helper { limit });
     }
 }
 
@@ -114,8 +114,10 @@ pub fn read_request() -> Result<Value, String> {
 pub fn run_request(word: &str, question: &Value) -> Result<ChildOutput, String> {
     let helper = HELPER.get().ok_or("there is no program to call")?;
     let limit = helper.limit.map_or(0.0, |l| l.as_secs_f64());
-    let cannot = |e: std::io::Error| format!("cannot start {}: {e}", helper.program.display());
-    let mut child = Command::new(&helper.program)
+    let mut command = program::command().map_err(|e| format!("cannot start the program: {e}"))?;
+    let name = command.get_program().to_owned();
+    let cannot = |e: std::io::Error| format!("cannot start {}: {e}", name.display());
+    let mut child = command
         .args([word, "--law-timeout", &limit.to_string()])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

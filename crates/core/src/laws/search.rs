@@ -307,7 +307,7 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
 /// Returns the folders of shipped laws: where cargo puts libraries, beside the program, and where an
 /// installation would.
 fn shipped() -> Vec<PathBuf> {
-    let Some(here) = std::env::current_exe()
+    let Some(here) = crate::program::file()
         .ok()
         .and_then(|p| p.parent().map(Path::to_owned))
     else {

@@ -7,6 +7,7 @@ mod diagnostic;
 mod difference;
 mod explain;
 mod file;
+mod names;
 mod nearest;
 pub mod numbers;
 mod repeated;
@@ -33,9 +34,10 @@ use serde::de::DeserializeOwned;
 pub use diagnostic::InputError;
 pub use difference::{Difference, first_difference};
 pub use file::{MAX_BYTES, open, read_bytes, read_text, read_text_from};
+pub use names::Names;
 pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
-pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree};
+pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree, split_path};
 
 use source_map::SourceMap;
 

@@ -1,0 +1,53 @@
+//! The program that this process runs: its file, and how its command line is called again.
+//!
+//! Both are those of the executable, unless a process that loads this code as a library, such as a Python interpreter, declares
+//! others before it uses them.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::OnceLock;
+
+static DECLARED: OnceLock<Program> = OnceLock::new();
+
+/// A program in place of the executable of the process.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// The file with this code: its SHA-256 identifies the built-in laws, and shipped libraries are looked for beside it.
+    pub file: PathBuf,
+    /// Program and arguments that start the command line; empty where it cannot be called.
+    pub command: Vec<OsString>,
+}
+
+/// Declares the program of this process. Only the first declaration counts.
+pub fn declare(program: Program) {
+    let _ = DECLARED.set(program);
+}
+
+/// The file with this code.
+///
+/// # Errors
+/// The system does not tell the path of the executable.
+pub fn file() -> std::io::Result<PathBuf> {
+    match DECLARED.get() {
+        Some(program) => Ok(program.file.clone()),
+        None => std::env::current_exe(),
+    }
+}
+
+/// Starts the command line, without arguments yet.
+///
+/// # Errors
+/// The system does not tell the path of the executable, or a declared program has no command line.
+pub fn command() -> std::io::Result<Command> {
+    let Some(program) = DECLARED.get() else {
+        return Ok(Command::new(std::env::current_exe()?));
+    };
+    let Some((first, rest)) = program.command.split_first() else {
+        let why = "this process has no command line of Fretwork to call";
+        return Err(std::io::Error::new(std::io::ErrorKind::Unsupported, why));
+    };
+    let mut command = Command::new(first);
+    command.args(rest);
+    Ok(command)
+}
