@@ -17,7 +17,7 @@
 `docs/python_laws.md` leads from nothing to a certified law.
 """
 
-from .bench import Certificate, Check, Field, Info, certify, drive, inputs, list, show
+from .bench import Certificate, Check, Curve, Field, Info, certify, drive, inputs, list, show
 from .definition import Law, decorator
 from .fields import Parameter, Variable
 from .formulas import SMALLER_STEP, bounded, damage_for, damping_ratio, release_rate
@@ -35,6 +35,7 @@ __all__ = [
     "Attraction",
     "Certificate",
     "Check",
+    "Curve",
     "Field",
     "Friction",
     "Info",

@@ -68,9 +68,14 @@ def _own_folder() -> Path:
 def library(law: Law) -> bytes:
     """The library of a law: the same bytes for the same law."""
     content: bytes | None = law.__dict__.get("_library")
-    state = (dict(law.functions), dict(law.constants), list(law.conditions), law.fracture)
+    functions = [*law.functions.items(), *law.constants.items(), *law.conditions]
+    functions += [("", law.fracture)] if law.fracture else []
+    state = [(name, source.state(function)) for name, function in functions]
     if content is None or law.__dict__.get("_state") != state:
-        content = link.library(*compiled(law))
+        try:
+            content = link.library(*compiled(law))
+        except link.UnknownFunction as e:
+            raise source.at(law.functions[law._kind.main.name], str(e)) from None
         law.__dict__["_library"], law.__dict__["_state"] = content, state
     return content
 
@@ -114,8 +119,10 @@ def compiled(law: Law) -> tuple[str, bytes]:
     if law.fracture is not None:
         _number_of(compiler, law.fracture, "the fracture energy is a number (J/m^2)")
         _of_parameters(law, compiler, law.fracture, "fracture", "float({})", ("angle",))
-    table = plugin_table.source(law, made, flags, conditions, "fracture" if law.fracture else None)
-    return table, compiler.object()
+    content = compiler.object()
+    called = [name for name in plugin_table.MATH if name.encode() + b"\0" in content]
+    table = plugin_table.source(law, made, flags, conditions, "fracture" if law.fracture else None, called)
+    return table, content
 
 
 def _of_parameters(

@@ -99,8 +99,8 @@ class Law:
         if spec is None:
             names = [f.name for f in kind.more] + [n for n in dir(type(self)) if not n.startswith("_")]
             raise AttributeError(
-                f"a {self.kind} law has no `{name}`{source.nearest(name, names)}; "
-                f"functions that may be added: {', '.join(f.name for f in kind.more) or 'none'}"
+                f"a {self.kind} law has no `{name}`{source.nearest(name, names) or '.'} "
+                f"Functions that may be added: {', '.join(f.name for f in kind.more) or 'none'}"
             )
         return lambda function: self._add(spec, function)
 
@@ -196,7 +196,7 @@ class Law:
             near = source.nearest(name, [*inputs, *own])
             raise source.at(
                 function,
-                f"a {self.kind} law has no input `{name}`{near or '; fretwork.law.inputs(' + repr(self.kind) + ') lists them'}. "
+                f"a {self.kind} law has no input `{name}`{near or '; fretwork.law.inputs(' + repr(self.kind) + ') lists them.'} "
                 f"A parameter is written {name}=Parameter(default, range=(smallest, largest), unit=..., doc=...)",
                 source.argument_line(function, name),
             )
@@ -278,7 +278,7 @@ def decorator(word: str) -> Callable[..., Any]:
             if option not in options:
                 every = ["name", "reference", "version", "constants", *(["degradation"] if kind.degradation else []), *options]
                 near = source.nearest(option, every)
-                raise LawError(f"@{word} has no option `{option}`{near}; it has {', '.join(every)}")
+                raise LawError(f"@{word} has no option `{option}`{near or '.'} It has {', '.join(every)}")
         if degradation != kind.degradation and not kind.degradation:
             raise LawError(f"@{word} has no option `degradation`: only a cohesion law has an exponent of degradation")
 

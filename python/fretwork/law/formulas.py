@@ -16,9 +16,14 @@ _LARGEST = 1.7976931348623157e308
 SMALLER_STEP: float = struct.unpack("<d", struct.pack("<Q", 0x7FF8_F2E7_0511_57E9))[0]
 
 
+def _length(a: float, b: float) -> float:
+    """hypot, which is |a| for the b of two dimensions: a constant there, so that the call is compiled away."""
+    return abs(a) if b == 0.0 else math.hypot(a, b)
+
+
 def sliding_speed(velocity_t1: float, velocity_t2: float) -> float:
     """Tangential speed (m/s)."""
-    return math.hypot(velocity_t1, velocity_t2)
+    return _length(velocity_t1, velocity_t2)
 
 
 def approach_speed(velocity_n: float) -> float:
@@ -28,7 +33,7 @@ def approach_speed(velocity_n: float) -> float:
 
 def opening_t(opening_t1: float, opening_t2: float) -> float:
     """Norm of the tangential opening (m)."""
-    return math.hypot(opening_t1, opening_t2)
+    return _length(opening_t1, opening_t2)
 
 
 def tensile_opening(opening_n: float) -> float:
@@ -51,7 +56,7 @@ def pressure(impulse_n: float, h: float, area: float) -> float:
 
 def intact_traction(intact_n: float, intact_t1: float, intact_t2: float) -> float:
     """Norm of the tensile traction of the undamaged bond, sqrt(<t_n>^2 + |t_t|^2) (Pa)."""
-    return math.hypot(max(intact_n, 0.0), math.hypot(intact_t1, intact_t2))
+    return math.hypot(max(intact_n, 0.0), _length(intact_t1, intact_t2))
 
 
 def intact_opening(energy_intact: float, intact_n: float, intact_t1: float, intact_t2: float) -> float:

@@ -19,6 +19,10 @@ from .source import LawError
 PREFIX, SUFFIX = ("", ".dll") if os.name == "nt" else ("lib", ".dylib" if sys.platform == "darwin" else ".so")
 
 
+class UnknownFunction(LawError):
+    """A compiled law calls a function that is nowhere."""
+
+
 def compiler() -> list[str]:
     """The command of a C compiler: that of the environment variable CC, cc, gcc or clang on the path, or zig from PyPI.
 
@@ -60,21 +64,21 @@ def library(table: str, loops: bytes) -> bytes:
         except OSError as e:
             raise LawError(f"the C compiler `{' '.join(command)}` cannot be started ({e}); set CC, or: pip install ziglang") from None
         if done.returncode != 0:
-            raise LawError(_failed(" ".join(command), done.stderr + done.stdout))
+            raise _failed(" ".join(command), done.stderr + done.stdout)
         return (folder / "law.so").read_bytes()
 
 
-def _failed(command: str, said: str) -> str:
+def _failed(command: str, said: str) -> LawError:
     missing = sorted(set(re.findall(r"undefined (?:reference to|symbol:?) [`']?([\w.]+)", said)))
-    arrays = [s for s in missing if s.startswith("NRT_")]
-    if arrays:
-        return "a law cannot make lists, arrays or texts: write numbers, one variable for each"
-    if missing:
-        return (
-            f"the law uses functions that are in no C library ({', '.join(missing[:4])}): `math` has functions that numba "
-            "computes by its own library, such as `frexp` and `gamma`; write them with others"
+    if any(symbol.startswith("NRT_") for symbol in missing):
+        return UnknownFunction(
+            "a law cannot make arrays, lists or texts: write numbers, one variable for each; arrays made outside it can be read"
         )
-    if re.search(r"(math|stdio|string|stdint|stddef)\.h", said) and "No such file" in said:
-        return f"`{command}` finds no headers of the C library; install them (libc6-dev, glibc-devel), or: pip install ziglang"
+    if missing:
+        return UnknownFunction(
+            f"the law calls functions that are in no C library ({', '.join(missing[:4])}); use those of `math`, on numbers"
+        )
+    if re.search(r"(math|stdio|string|stdint|stddef)\.h", said) and re.search("No such file|not found", said):
+        return LawError(f"`{command}` finds no headers of the C library; install them (libc6-dev, glibc-devel), or: pip install ziglang")
     lines = [line for line in said.splitlines() if line.strip()]
-    return f"`{command}` could not link the law: " + "\n".join(lines[:8])
+    return LawError(f"`{command}` could not link the law: " + "\n".join(lines[:8]))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import math
-from types import CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, cast
 
 from . import source
@@ -21,8 +21,6 @@ NUMBA = "0.68.0"
 #: Processor that laws are compiled for: the base of the architecture, as for laws in Rust and C.
 PROCESSORS = {"x86_64": "x86-64", "AMD64": "x86-64"}
 
-#: Modules whose functions numba compiles itself.
-_KNOWN_MODULES = ("math", "cmath", "numpy", "operator", "builtins", "numba")
 _RESULTS = (Friction, Spring, Traction, Attraction)
 
 
@@ -108,7 +106,7 @@ class Compiler:
         if isinstance(value, FunctionType):
             source.check(value)
             return self.function(value)
-        if isinstance(value, ModuleType) and value.__name__.split(".")[0] not in _KNOWN_MODULES:
+        if isinstance(value, ModuleType) and value.__name__.split(".")[0] not in source.KNOWN_MODULES:
             return self._module(value, names)
         return value
 
@@ -125,7 +123,7 @@ class Compiler:
     def _rebuilt(self, function: FunctionType) -> FunctionType:
         """The same code with compiled functions in place of those in Python, and all arguments by position."""
         code = function.__code__
-        used = _names(code)
+        used = source.names_used(code)
         world = {name: self._adapted(v, used) if name in used else v for name, v in function.__globals__.items()}
         cells = None
         if function.__closure__ is not None:
@@ -227,14 +225,3 @@ class Compiler:
             passes.add_global_dead_code_eliminate_pass()
             passes.run(module, llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3)))
             return bytes(machine.emit_object(module))
-
-
-def _names(code: CodeType) -> set[str]:
-    """Names that a code and those within it look up."""
-    names = set(code.co_names)
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            names |= _names(constant)
-    return names
-
-

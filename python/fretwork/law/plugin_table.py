@@ -15,7 +15,8 @@ from .loops import Loop
 if TYPE_CHECKING:
     from .definition import Law
 
-_COMMON = r"""#include <math.h>
+_COMMON = r"""#define _DEFAULT_SOURCE
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,7 +93,25 @@ static int32_t incomplete(const fw_batch *b, fw_message *m, const struct column 
 """
 
 
-def source(law: Law, loops: list[Loop], flags: list[str], conditions: list[tuple[str, str]], fracture: str | None) -> str:
+#: Functions of `math` that numba calls by names of its own, with those of the C library.
+MATH = {
+    "numba_erf": "double numba_erf(double x) { return erf(x); }",
+    "numba_erfc": "double numba_erfc(double x) { return erfc(x); }",
+    "numba_gamma": "double numba_gamma(double x) { return tgamma(x); }",
+    "numba_lgamma": "double numba_lgamma(double x) { int sign; return lgamma_r(x, &sign); }",
+    "numba_frexp": "double numba_frexp(double x, int *exponent) { return frexp(x, exponent); }",
+    "numba_ldexp": "double numba_ldexp(double x, int exponent) { return ldexp(x, exponent); }",
+}
+
+
+def source(
+    law: Law,
+    loops: list[Loop],
+    flags: list[str],
+    conditions: list[tuple[str, str]],
+    fracture: str | None,
+    math_functions: list[str],
+) -> str:
     """The C source of a law's plugin.
 
     Args:
@@ -101,10 +120,12 @@ def source(law: Law, loops: list[Loop], flags: list[str], conditions: list[tuple
         flags: names of its flags.
         conditions: sentence and symbol of each condition between parameters.
         fracture: symbol of the fracture energy.
+        math_functions: those of `MATH` that the loops call.
     """
     common = _COMMON.replace("@SMALLER_STEP@", f"0x{_bits(SMALLER_STEP):016x}")
     head, rest = common.split("struct column {", 1)
     parts = [head + "\n" + _schema(law) + "\nstruct column {" + rest]
+    parts += [MATH[name] for name in math_functions]
     slots = list(dict.fromkeys(loop.slot for loop in loops))
     for slot in slots:
         parts.append(_call(law, slot, [loop for loop in loops if loop.slot == slot]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import difflib
 import functools
 import inspect
@@ -10,7 +11,7 @@ import linecache
 import os
 import textwrap
 from collections.abc import Callable, Iterable
-from types import FunctionType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 
@@ -104,34 +105,79 @@ _REFUSED: dict[type[ast.AST], str] = {
     ast.ImportFrom: "import at the top of the file, not in a law",
     ast.Yield: "a law returns its answer; it cannot `yield`",
     ast.Await: "a law returns its answer; it cannot `await`",
+    ast.List: "a compiled law has no lists: write numbers, one variable for each, or a tuple",
+    ast.ListComp: "a compiled law has no lists: write a loop over numbers",
+    ast.SetComp: "a compiled law has no sets: write a loop over numbers",
+    ast.DictComp: "a compiled law has no tables: write a loop over numbers",
+    ast.GeneratorExp: "a compiled law has no generators: write a loop over numbers",
+    ast.Dict: "a compiled law has no tables: write numbers, one variable for each",
+    ast.Set: "a compiled law has no sets: write numbers, one variable for each",
     ast.Lambda: "write a function of its own in place of a `lambda` inside a law",
 }
 
 
 def check(function: FunctionType, names: Iterable[str] = ()) -> None:
-    """Refuses what a compiled function cannot have, and names that are not defined.
+    """Refuses what a compiled function cannot have: exceptions, texts, lists, names that are not defined.
+
+    Args:
+        function: a function of a law, or one that it calls.
+        names: inputs and parameters that it might have as arguments.
 
     Raises:
         LawError: with the line.
     """
     node = tree(function)
-    body: list[ast.AST] = []
     if isinstance(node, ast.FunctionDef):
-        body = [inner for statement in node.body for inner in ast.walk(statement)]
-    elif node is not None:
-        body = list(ast.walk(node.body))
+        documented = ast.get_docstring(node) is not None
+        body: list[ast.AST] = [inner for statement in node.body[documented:] for inner in ast.walk(statement)]
+        _unassigned(function, node)
+    else:
+        body = list(ast.walk(node.body)) if node is not None else []
     for inner in body:
         refused = _REFUSED.get(type(inner))
+        if isinstance(inner, ast.Constant) and isinstance(inner.value, (str, bytes)):
+            refused = "a compiled law works with numbers and has no texts"
         if refused:
             raise at(function, refused, getattr(inner, "lineno", None))
-        if isinstance(inner, ast.Call) and isinstance(inner.func, ast.Name) and inner.func.id == "print":
-            raise at(function, "a compiled law cannot print; call the law in Python to look at its numbers", inner.lineno)
+        if isinstance(inner, ast.Call):
+            _call(function, inner)
+        if isinstance(inner, ast.Attribute):
+            module = _value(function, inner.value)
+            if isinstance(module, ModuleType) and not hasattr(module, inner.attr):
+                near = nearest(inner.attr, dir(module))
+                raise at(function, f"`{module.__name__}` has no `{inner.attr}`{near}", inner.lineno)
     _undefined(function, body, names)
 
 
-def _undefined(function: FunctionType, body: list[ast.AST], names: Iterable[str]) -> None:
-    import builtins
+def _value(function: FunctionType, node: ast.AST) -> Any:
+    """What a name, or a name in a module, stands for outside the function; `None` where it is not known."""
+    if isinstance(node, ast.Name) and node.id not in function.__code__.co_varnames:
+        return function.__globals__.get(node.id)
+    if isinstance(node, ast.Attribute):
+        module = _value(function, node.value)
+        return getattr(module, node.attr, None) if isinstance(module, ModuleType) else None
+    return None
 
+
+def _call(function: FunctionType, node: ast.Call) -> None:
+    called = _value(function, node.func)
+    if isinstance(node.func, ast.Name) and node.func.id == "print":
+        raise at(function, "a compiled law cannot print; call the law in Python to look at its numbers", node.lineno)
+    fields = getattr(called, "_fields", None)
+    if not isinstance(called, type) or fields is None:
+        return
+    for keyword in node.keywords:
+        if keyword.arg is not None and keyword.arg not in fields:
+            near = nearest(keyword.arg, fields)
+            what = f"`{called.__name__}` has no `{keyword.arg}`{near}{'' if near else ';'} It has {', '.join(fields)}"
+            raise at(function, what, keyword.value.lineno)
+    given = {*fields[: len(node.args)], *(k.arg for k in node.keywords)}
+    missing = [f for f in fields if f not in given and f not in getattr(called, "_field_defaults", {})]
+    if missing and not any(isinstance(a, ast.Starred) for a in node.args) and None not in given:
+        raise at(function, f"`{called.__name__}` also needs {', '.join(missing)}", node.lineno)
+
+
+def _undefined(function: FunctionType, body: list[ast.AST], names: Iterable[str]) -> None:
     known = {*function.__globals__, *vars(builtins), *function.__code__.co_varnames, *function.__code__.co_freevars}
     known |= {*function.__code__.co_cellvars}
     for inner in body:
@@ -141,6 +187,80 @@ def _undefined(function: FunctionType, body: list[ast.AST], names: Iterable[str]
             else:
                 reason = f"`{inner.id}` is not defined{nearest(inner.id, [*names, *known])}"
             raise at(function, reason, inner.lineno)
+
+
+def _unassigned(function: FunctionType, node: ast.FunctionDef) -> None:
+    """Refuses a variable that has a value on some paths only: compiled, it would be zero on the others."""
+    names = set(function.__code__.co_varnames)
+    arguments = {a.arg for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)}
+
+    def reads(tree: ast.AST | None, known: set[str]) -> None:
+        for inner in ast.walk(tree) if tree is not None else ():
+            if isinstance(inner, ast.Name) and isinstance(inner.ctx, ast.Load) and inner.id in names - known:
+                reason = f"`{inner.id}` has a value on some paths only; give it one before the `if` or the loop"
+                raise at(function, reason, inner.lineno)
+
+    def targets(tree: ast.AST) -> set[str]:
+        return {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+
+    def run(statements: list[ast.stmt], known: set[str]) -> set[str]:
+        """The names with values after these statements; all of them behind a jump."""
+        for statement in statements:
+            if isinstance(statement, ast.If):
+                reads(statement.test, known)
+                known = run(statement.body, set(known)) & run(statement.orelse, set(known))
+            elif isinstance(statement, ast.While):
+                reads(statement.test, known)
+                run(statement.body, set(known))
+                run(statement.orelse, set(known))
+            elif isinstance(statement, ast.For):
+                reads(statement.iter, known)
+                run(statement.body, known | targets(statement.target))
+                run(statement.orelse, set(known))
+            elif isinstance(statement, ast.AugAssign):
+                if isinstance(statement.target, ast.Name):
+                    reads(ast.copy_location(ast.Name(statement.target.id, ast.Load()), statement), known)
+                reads(statement.value, known)
+            elif isinstance(statement, (ast.Return, ast.Break, ast.Continue, ast.Raise)):
+                reads(statement, known)
+                return set(names)
+            else:
+                reads(statement, known)
+                known = known | targets(statement)
+        return known
+
+    run(node.body, arguments)
+
+
+def state(function: FunctionType, seen: tuple[FunctionType, ...] = ()) -> tuple[Any, ...]:
+    """What the compiled function depends on: its code, and the values of the names it looks up, in functions it calls too."""
+    names = names_used(function.__code__)
+    values = [(name, function.__globals__[name]) for name in sorted(names) if name in function.__globals__]
+    values += [("", cell.cell_contents) for cell in function.__closure__ or ()]
+    modules = [v for _, v in values if isinstance(v, ModuleType) and v.__name__.split(".")[0] not in KNOWN_MODULES]
+    values += [(name, getattr(module, name)) for module in modules for name in sorted(names) if hasattr(module, name)]
+    found: list[Any] = [function.__code__]
+    for name, value in values:
+        if isinstance(value, FunctionType) and value not in seen:
+            found.append((name, state(value, (*seen, function))))
+        elif isinstance(value, (int, float, tuple)):
+            found.append((name, repr(value)))
+        elif hasattr(value, "tobytes"):
+            found.append((name, value.tobytes()))
+    return tuple(found)
+
+
+def names_used(code: CodeType) -> set[str]:
+    """Names that a code and those within it look up."""
+    names = set(code.co_names)
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            names |= names_used(constant)
+    return names
+
+
+#: Modules whose functions numba compiles itself.
+KNOWN_MODULES = ("math", "cmath", "numpy", "operator", "builtins", "numba")
 
 
 def empty_return(function: FunctionType) -> int:
