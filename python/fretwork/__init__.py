@@ -1,5 +1,47 @@
-"""Tribology of dry contacts: non-smooth contact dynamics with interface laws that users write."""
+"""Tribology of dry contacts: non-smooth contact dynamics with interface laws that users write.
 
-from fretwork._fretwork import __version__
+>>> import fretwork
+>>> case = fretwork.Case.load("cases/plane_shear.ron", set={"time.end": 0.01})
+>>> results = case.run(out="results/shear", progress=False)
+>>> results.summary["steps"]
+50
 
-__all__ = ["__version__"]
+A :class:`Case` is read, edited, checked and run; a :class:`Simulation` is stepped by hand; :class:`Results` reads what a run wrote.
+``fretwork.law`` has laws written in Python. ``docs/python.md`` shows all of it.
+"""
+
+import sys as _sys
+
+from . import _fretwork
+from ._case import Case
+from ._check import Check
+from ._errors import Error, InputError, MissingPackageError, RunError
+from ._fretwork import __version__
+from ._observers import Column, Observer, Stop
+from ._progress import Progress
+from ._results import Results
+from ._sections import Section
+from ._simulation import Simulation, StepReport
+
+# The compiled part is the program here: its file identifies the built-in laws, and laws are tried out in another process of it.
+_fretwork.declare(
+    _fretwork.__file__, [_sys.executable, "-m", "fretwork"] if _sys.executable else []
+)
+
+__all__ = [
+    "Case",
+    "Check",
+    "Column",
+    "Error",
+    "InputError",
+    "MissingPackageError",
+    "Observer",
+    "Progress",
+    "Results",
+    "RunError",
+    "Section",
+    "Simulation",
+    "StepReport",
+    "Stop",
+    "__version__",
+]

@@ -1,11 +1,33 @@
 //! The compiled part of the Python package `fretwork`.
+//!
+//! It knows cases, simulations, runs and laws, and gives them to Python in plain types: numbers, texts, JSON and memory that NumPy
+//! looks at. The classes that users see are in `fretwork/`.
 
+mod array;
+mod case;
+mod columns;
+mod command_line;
+mod errors;
 mod law;
+mod observer;
+mod paths;
+mod run;
+mod search;
+mod simulation;
+mod stepper;
+mod workers;
 
 use pyo3::prelude::*;
 
 #[pymodule]
 fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<array::Array>()?;
+    module.add_class::<case::Case>()?;
+    module.add_class::<simulation::Simulation>()?;
+    module.add_function(wrap_pyfunction!(run::run, module)?)?;
+    module.add_function(wrap_pyfunction!(run::default_folder, module)?)?;
+    module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
+    module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;
     law::add(module)
 }

@@ -14,6 +14,7 @@ mod solve;
 mod trade;
 
 pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
+pub use self::run::{default_folder, place as place_of};
 
 use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::laws::watch::{Saved, watch};

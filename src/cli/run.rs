@@ -45,7 +45,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
     let scene = loaded.build(&args.case.plugins.search()?)?;
     let options = RunOptions {
-        out: folder(args),
+        out: args
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&args.case.case)),
         threads: args.threads.into(),
     };
     let pool = rayon::ThreadPoolBuilder::new()
@@ -174,8 +177,8 @@ fn run_case<S: Observed>(
         })
 }
 
-/// Location in the case of the law or the body that ended a run.
-fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
+/// Location in the case of the law or the body that ended a run, as the end of a sentence.
+pub fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String> {
     let (path, what) = match error {
         RunError::Step(StepError::Law { source, .. }) => {
             let (kind, name) = source.law()?;
@@ -200,9 +203,7 @@ fn place(loaded: &Loaded, origins: &[Origin], error: &RunError) -> Option<String
     Some(format!("{what} at {file}:{line}:{column}"))
 }
 
-fn folder(args: &RunArgs) -> PathBuf {
-    args.out.clone().unwrap_or_else(|| {
-        let name = args.case.case.file_stem().unwrap_or_default();
-        Path::new("results").join(name)
-    })
+/// Folder of the results of a case file, where none is given.
+pub fn default_folder(case: &Path) -> PathBuf {
+    Path::new("results").join(case.file_stem().unwrap_or_default())
 }

@@ -1,0 +1,268 @@
+"""Results of a run: the files of its folder as tables, arrays over time and meshes.
+
+The files are read by h5py, the reader that results are tested with, and not by the compiled part: one reader less to keep right, and
+files of other versions, of runs that are still going on or were killed open all the same.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+from ._errors import InputError, missing
+
+if TYPE_CHECKING:
+    import h5py
+    import pandas as pd
+    import pyvista as pv
+    import xarray as xr
+
+AXES = ("x", "y", "z")
+
+
+def _need(package: str, extra: str, what: str) -> Any:
+    from importlib import import_module
+
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise missing(package, extra, what) from error
+
+
+def _attributes(data: Any) -> dict[str, str]:
+    """Unit and explanation of a dataset, in the words of the CF conventions."""
+    said = {name: data.attrs.get(name, "") for name in ("unit", "doc")}
+    said = {k: v.decode() if isinstance(v, bytes) else str(v) for k, v in said.items()}
+    return {"units": said["unit"] or "1", "long_name": said["doc"]}
+
+
+class Results:
+    """Results of a run, by their folder. Each property reads the files when it is asked for."""
+
+    def __init__(self, folder: Union[str, PathLike[str]]) -> None:
+        self.folder = Path(os.fspath(folder))
+        """The folder."""
+        if not (self.folder / "results.h5").is_file() and not (self.folder / "summary.json").is_file():
+            text = f"{self.folder}: it has no results of a run; give the folder that the run wrote, out=..."
+            raise InputError(text, str(self.folder), expected="a folder with results.h5")
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """The summary of the run (``summary.json``). A run that goes on, or was killed, has none yet."""
+        path = self.folder / "summary.json"
+        try:
+            told: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            text = f"{path}: it is written at the end of a run; resume the run (resume=True), or look at statistics"
+            raise InputError(text, str(path)) from None
+        return told
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the run, worst first."""
+        told: list[str] = self.summary["warnings"]
+        return told
+
+    @property
+    def trustworthy(self) -> bool:
+        """Whether all checks of the run passed."""
+        return bool(self.summary["trustworthy"])
+
+    @contextmanager
+    def open(self) -> Iterator[h5py.File]:
+        """The file ``results.h5`` in h5py, also while a run writes it."""
+        h5py = _need("h5py", "results", "reading fields of results")
+        path = self.folder / "results.h5"
+        if not path.is_file():
+            raise InputError(f"{path}: there is no such file", str(path))
+        with h5py.File(path, "r", locking=False, swmr=True) as file:
+            yield file
+
+    @property
+    def case(self) -> str:
+        """The text of the case as it was run."""
+        with self.open() as file:
+            text = file["case"][0]
+        return text.decode() if isinstance(text, bytes) else str(text)
+
+    @property
+    def statistics(self) -> pd.DataFrame:
+        """The statistics as a table, one row a line of ``statistics.csv`` with the same numbers. ``attrs`` has two dictionaries by
+        column: ``units``, and ``long_name`` with the explanations; so have the columns themselves for one each."""
+        pd = _need("pandas", "results", "the table of statistics")
+        path = self.folder / "statistics.csv"
+        # Numbers are written with as many digits as their bits need, and are read back to the same bits.
+        table = pd.read_csv(path, float_precision="round_trip")
+        units = {}
+        names = []
+        for heading in table.columns:
+            name, _, unit = heading.partition(" [")
+            names.append(name)
+            units[name] = unit.rstrip("]") or "1"
+        table.columns = pd.Index(names)
+        table.attrs["units"] = units
+        with self.open() as file:
+            columns = file["statistics"]
+            told = {n: _attributes(columns[n])["long_name"] for n in names if n in columns}
+        table.attrs["long_name"] = told
+        return table
+
+    @property
+    def grains(self) -> xr.Dataset:
+        """Balls and other parts of grains and first bodies over time: ``(time, grain)``, with the fields of ``results.h5``."""
+        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        with self.open() as file:
+            view = file["views/grains"]
+            times, counts = view["Steps/Values"][:], view["NumberOfPoints"][:]
+            if len(set(counts.tolist())) > 1:
+                raise InputError(f"{self.folder}: the number of grains changes over time; read it with open()")
+            shape = (len(times), int(counts[0]) if len(counts) else 0)
+            rows = shape[0] * shape[1]
+            dims = ("time", "grain")
+            fields = {
+                name: (dims, np.asarray(data[:rows]).reshape(shape), _attributes(data))
+                for name, data in view["PointData"].items()
+            }
+            points = view["Points"]
+            at = np.asarray(points[:rows]).reshape(*shape, 3)
+            fields["position"] = ((*dims, "axis"), at, {"units": "m", "long_name": "centres"})
+            coordinates = {"time": ("time", times, {"units": "s", "long_name": "time"}), "axis": list(AXES)}
+            if "id" in fields and shape[0]:
+                _, ids, said = fields.pop("id")
+                coordinates["id"] = ("grain", ids[0].astype(np.int64), said)
+            return xr.Dataset(fields, coordinates, self._said(file))
+
+    @property
+    def contacts(self) -> xr.Dataset:
+        """Contacts at all recorded times, one after another: ``(contact,)`` with the coordinates ``time`` and ``state``, the number
+        of the recorded time. ``contacts.sel(contact=contacts.state == 3)`` has those of one time. ``ends`` are the places of candidate and antagonist."""
+        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        with self.open() as file:
+            view = file["views/contacts"]
+            times, counts = view["Steps/Values"][:], view["Lines/NumberOfCells"][:]
+            rows = int(counts.sum())
+            fields = {
+                name: ("contact", np.asarray(data[:rows]), _attributes(data))
+                for name, data in view["CellData"].items()
+            }
+            ends = np.asarray(view["Points"][: 2 * rows]).reshape(rows, 2, 3)
+            said = {"units": "m", "long_name": "the ends of its line: candidate and antagonist"}
+            fields["ends"] = (("contact", "end", "axis"), ends, said)
+            state = np.repeat(np.arange(len(times)), counts)
+            coordinates = {
+                "time": ("contact", times[state], {"units": "s", "long_name": "time"}),
+                "state": ("contact", state, {"long_name": "number of the recorded time"}),
+                "axis": list(AXES),
+                "end": ["candidate", "antagonist"],
+            }
+            return xr.Dataset(fields, coordinates, self._said(file))
+
+    @property
+    def bodies(self) -> xr.Dataset:
+        """First bodies over time: ``position``, ``velocity`` and ``force`` of all contacts, ``(time, body, axis)``, at the rows of
+        the statistics."""
+        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        with self.open() as file:
+            columns = file["statistics"]
+            names = [n.removesuffix("_fx") for n in columns if n.endswith("_fx")]
+            names = [n for n in names if f"{n}_vx" in columns and f"{n}_x" in columns]
+            axes = [a for a in AXES if all(f"{n}_f{a}" in columns for n in names)] if names else []
+            times = columns["time"][:]
+            size = len(times)
+            fields = {}
+            for field, letter in (("position", ""), ("velocity", "v"), ("force", "f")):
+                values = np.full((size, len(names), len(axes)), np.nan)
+                said = {}
+                for b, name in enumerate(names):
+                    for k, axis in enumerate(axes):
+                        data = columns[f"{name}_{letter}{axis}"]
+                        values[:, b, k] = data[:size]
+                        said = _attributes(data)
+                fields[field] = (("time", "body", "axis"), values, said)
+            coordinates = {
+                "time": ("time", times, {"units": "s", "long_name": "time"}),
+                "body": names,
+                "axis": axes,
+            }
+            return xr.Dataset(fields, coordinates, self._said(file))
+
+    @staticmethod
+    def _said(file: h5py.File) -> dict[str, Any]:
+        said = {"title": file.attrs["case"], "units": file.attrs["units"]}
+        return {k: v.decode() if isinstance(v, bytes) else str(v) for k, v in said.items()}
+
+    @property
+    def views(self) -> list[str]:
+        """What :meth:`mesh` can show."""
+        with self.open() as file:
+            views = file["views"]
+            found = []
+            for name, group in views.items():
+                found += [name] if "Steps" in group else [f"{name}/{inner}" for inner in group]
+            return found
+
+    @property
+    def times(self) -> list[float]:
+        """The recorded times (s) of grains, contacts and meshes."""
+        with self.open() as file:
+            told: list[float] = file["views/grains/Steps/Values"][:].tolist()
+            return told
+
+    def mesh(self, state: int = -1, view: str = "grains") -> pv.DataSet:
+        """A recorded state as a mesh of pyvista, with its fields. ``state`` counts the recorded :attr:`times`, negative from the
+        end; ``view`` is one of :attr:`views`."""
+        pv, np = _need("pyvista", "mesh", "meshes"), _need("numpy", "mesh", "arrays")
+        with self.open() as file:
+            group = file["views"].get(view)
+            if group is None or "Steps" not in group:
+                text = f"{self.folder}: there is no view `{view}`; there are {', '.join(self.views)}"
+                raise InputError(text, str(self.folder))
+            steps = group["Steps"]
+            size = len(steps["Values"])
+            if not -size <= state < size:
+                raise IndexError(f"there are {size} recorded states of {view}")
+            state %= size
+            part = int(steps["PartOffsets"][state])
+            count = int(group["NumberOfPoints"][part])
+            first = int(steps["PointOffsets"][state])
+            points = group["Points"][first : first + count]
+            cells: tuple[str, ...]
+            if "Types" in group:
+                offsets, corners = group["Offsets"][:], group["Connectivity"][:]
+                mesh = pv.UnstructuredGrid(_cells(offsets, corners, np), group["Types"][:], points)
+                of_cells = mesh.n_cells
+            else:
+                mesh = pv.PolyData()
+                mesh.points = points
+                cells = ("Vertices", "Lines", "Polygons", "Strips")
+                of_cells = 0
+                for k, (kind, slot) in enumerate(zip(cells, ("verts", "lines", "faces", "strips"))):
+                    number = int(group[kind]["NumberOfCells"][part])
+                    start = int(steps["CellOffsets"][state][k]) + part
+                    at = int(steps["ConnectivityIdOffsets"][state][k])
+                    used = int(group[kind]["NumberOfConnectivityIds"][part])
+                    offsets = group[kind]["Offsets"][start : start + number + 1]
+                    corners = group[kind]["Connectivity"][at : at + used]
+                    if number:
+                        setattr(mesh, slot, _cells(offsets, corners, np))
+                    of_cells += number
+            for place, rows, data in (("PointData", count, mesh.point_data), ("CellData", of_cells, mesh.cell_data)):
+                for name, values in group.get(place, {}).items():
+                    begin = int(steps[f"{place}Offsets/{name}"][state])
+                    data[name] = values[begin : begin + rows]
+            mesh.field_data["time"] = [float(steps["Values"][state])]
+            return mesh
+
+    def __repr__(self) -> str:
+        return f"Results({str(self.folder)!r})"
+
+
+def _cells(offsets: Any, corners: Any, np: Any) -> Any:
+    """Cells as pyvista takes them: before the corners of each their number."""
+    sizes = np.diff(offsets)
+    return np.insert(corners, offsets[:-1] - offsets[0], sizes) if len(sizes) else np.array([], int)

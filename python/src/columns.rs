@@ -1,0 +1,115 @@
+//! The columns of bodies that have the layout of arrays.
+
+use crate::array::Array;
+use crate::simulation::Simulation;
+use fretwork::bodies::Bodies;
+use fretwork::geometry::space::{Space, VectorLike};
+use pyo3::prelude::*;
+use std::any::Any;
+
+/// A column of bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Column {
+    Id,
+    Position,
+    Velocity,
+    Spin,
+    Mass,
+    Inertia,
+    Removed,
+}
+
+impl Column {
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Id,
+        Self::Position,
+        Self::Velocity,
+        Self::Spin,
+        Self::Mass,
+        Self::Inertia,
+        Self::Removed,
+    ];
+
+    /// Name, unit and explanation.
+    pub(crate) fn about(self) -> (&'static str, &'static str, &'static str) {
+        match self {
+            Self::Id => ("id", "", "identities, the same over time"),
+            Self::Position => ("position", "m", "centres of mass"),
+            Self::Velocity => ("velocity", "m/s", "velocities of the centres of mass"),
+            Self::Spin => (
+                "spin",
+                "rad/s",
+                "angular velocities, one number a body in 2D",
+            ),
+            Self::Mass => ("mass", "kg", "masses; in 2D of a metre of depth"),
+            Self::Inertia => (
+                "inertia",
+                "kg m^2",
+                "moments of inertia, the mean of those that differ by axis; in 2D of a metre of depth",
+            ),
+            Self::Removed => ("removed", "", "whether a body has been taken out"),
+        }
+    }
+
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.about().0 == name)
+    }
+}
+
+/// Shows a column, as memory of its owner; without one, as a copy.
+pub(crate) fn show<S: Space>(
+    bodies: &Bodies<S>,
+    column: Column,
+    owner: Option<Py<Simulation>>,
+) -> Array {
+    let Some(owner) = owner else {
+        // The same array, on a copy that is its own.
+        let flat = |vectors: &[S::Vector]| Array::own(numbers(vectors), S::D);
+        return match column {
+            Column::Id => Array::own(bodies.id.clone(), 0),
+            Column::Position => flat(&bodies.position),
+            Column::Velocity => flat(&bodies.velocity),
+            Column::Spin => Array::own(numbers(&bodies.spin), spin_width::<S>()),
+            Column::Mass => Array::own(bodies.mass.clone(), 0),
+            Column::Inertia => Array::own(bodies.inertia.clone(), 0),
+            Column::Removed => Array::own(bodies.removed.clone(), 0),
+        };
+    };
+    match column {
+        Column::Id => Array::shown::<_, u64>(&bodies.id, 0, owner),
+        Column::Position => Array::shown::<_, f64>(&bodies.position, S::D, owner),
+        Column::Velocity => Array::shown::<_, f64>(&bodies.velocity, S::D, owner),
+        Column::Spin => Array::shown::<_, f64>(&bodies.spin, spin_width::<S>(), owner),
+        Column::Mass => Array::shown::<_, f64>(&bodies.mass, 0, owner),
+        Column::Inertia => Array::shown::<_, f64>(&bodies.inertia, 0, owner),
+        Column::Removed => Array::shown::<_, bool>(&bodies.removed, 0, owner),
+    }
+}
+
+/// Takes the memory of a column out, and leaves a copy in its place.
+pub(crate) fn take<S: Space>(bodies: &mut Bodies<S>, column: Column) -> Box<dyn Any + Send> {
+    fn swap<T: Clone + Send + 'static>(column: &mut Vec<T>) -> Box<dyn Any + Send> {
+        let copy = column.clone();
+        Box::new(std::mem::replace(column, copy))
+    }
+    match column {
+        Column::Id => swap(&mut bodies.id),
+        Column::Position => swap(&mut bodies.position),
+        Column::Velocity => swap(&mut bodies.velocity),
+        Column::Spin => swap(&mut bodies.spin),
+        Column::Mass => swap(&mut bodies.mass),
+        Column::Inertia => swap(&mut bodies.inertia),
+        Column::Removed => swap(&mut bodies.removed),
+    }
+}
+
+/// Numbers of a spin: in 2D a plain column.
+fn spin_width<S: Space>() -> usize {
+    if S::D == 2 { 0 } else { 3 }
+}
+
+/// The numbers of vectors, one vector after another.
+pub(crate) fn numbers<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
+    let all = vectors.iter();
+    all.flat_map(|v| (0..V::N).map(|k| v[k])).collect()
+}

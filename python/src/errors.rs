@@ -1,0 +1,86 @@
+//! Errors of the library as exceptions of the package; their classes are in `fretwork/_errors.py`.
+
+use fretwork::record::RunError;
+use fretwork::scene::InputError;
+use fretwork::scene::source::clean_lines;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use std::fmt::Display;
+use std::path::Path;
+
+/// Arguments of an [`InputError`] as Python takes them: text, file, line, column, message, expected, proposal.
+type InputArguments = (
+    String,
+    String,
+    Option<usize>,
+    Option<usize>,
+    String,
+    Option<String>,
+    Option<String>,
+);
+
+/// The name of a class of `fretwork._errors` with its arguments.
+fn raised(
+    class: &str,
+    arguments: impl for<'py> FnOnce(&Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>>,
+) -> PyErr {
+    Python::attach(|py| {
+        let made = py
+            .import("fretwork._errors")
+            .and_then(|module| module.getattr(class))
+            .and_then(|class| arguments(&class));
+        made.map_or_else(|e| e, PyErr::from_value)
+    })
+}
+
+/// Options of the command line as the arguments of Python that they stand for.
+fn in_python(text: &str) -> String {
+    let text = text.replace("--resume", "resume=True");
+    let text = text.replace(
+        "choose another folder with --out",
+        "choose another folder, out=...,",
+    );
+    clean_lines(&text)
+}
+
+/// `fretwork.InputError`.
+pub(crate) fn input(error: &InputError) -> PyErr {
+    let place = error.position();
+    let arguments: InputArguments = (
+        in_python(&error.render(false)),
+        error.file.clone(),
+        place.map(|p| p.0),
+        place.map(|p| p.1),
+        error.message.clone(),
+        error.expected.clone(),
+        error.help.clone(),
+    );
+    raised("InputError", move |class| class.call1(arguments))
+}
+
+/// `fretwork.InputError` without a place in a file.
+pub(crate) fn wrong(subject: impl Display, message: impl Into<String>) -> PyErr {
+    input(&InputError::argument(subject, message))
+}
+
+/// `fretwork.RunError`; `out` is the folder with what was computed.
+pub(crate) fn run(message: &str, out: Option<&Path>) -> PyErr {
+    let arguments = (in_python(message), out.map(Path::to_owned));
+    raised("RunError", move |class| class.call1(arguments))
+}
+
+/// A failed run: wrong input where another case or version is resumed.
+pub(crate) fn ended(error: &RunError, place: Option<String>, out: &Path) -> PyErr {
+    if let RunError::Resume(e) = error
+        && e.is_input()
+    {
+        return wrong(out.display(), in_python(&e.to_string()));
+    }
+    let place = place.map_or_else(String::new, |p| format!("; {p}"));
+    run(&format!("{error}{place}"), Some(out))
+}
+
+/// A mistake in the use of an object.
+pub(crate) fn misused(message: &str) -> PyErr {
+    PyRuntimeError::new_err(message.to_owned())
+}

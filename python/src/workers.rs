@@ -1,0 +1,40 @@
+//! The threads that compute.
+
+use crate::errors::{run, wrong};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+/// Size of the stack of a thread (bytes), that of the main thread of a program.
+const STACK: usize = 8 << 20;
+
+/// Largest number of threads, that of the command line.
+const MOST: usize = 1024;
+
+/// Threads of their own: what they compute is the same for any number of them.
+pub(crate) struct Workers(ThreadPool);
+
+impl Workers {
+    pub(crate) fn new(threads: usize) -> PyResult<Self> {
+        if !(1..=MOST).contains(&threads) {
+            return Err(wrong(
+                format!("threads={threads}"),
+                format!("take 1 to {MOST}"),
+            ));
+        }
+        let made = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .stack_size(STACK)
+            .build();
+        made.map(Self).map_err(|e| {
+            let why = format!(
+                "cannot start {threads} threads: {e}; take fewer or allow more (ulimit -u)"
+            );
+            run(&why, None)
+        })
+    }
+
+    /// Computes something on them.
+    pub(crate) fn install<R: Send>(&self, task: impl FnOnce() -> R + Send) -> R {
+        self.0.install(task)
+    }
+}
