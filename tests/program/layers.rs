@@ -145,8 +145,8 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 11] = [
-    "code", "geometry", "bodies", "contact", "solve", "laws", "certify", "energy", "wear", "step",
+const MODULES: [&str; 12] = [
+    "code", "program", "geometry", "bodies", "contact", "solve", "laws", "certify", "energy", "wear", "step",
     "process",
 ];
 
