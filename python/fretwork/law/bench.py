@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from fretwork._errors import InputError, RunError, missing
+
 from .source import LawError, nearest
 
 if TYPE_CHECKING:
@@ -180,7 +182,7 @@ class Curve(dict[str, NDArray[np.float64]]):
         try:
             import pandas as pd
         except ImportError:
-            raise ImportError("a table needs pandas, which is not installed: pip install 'pyfretwork[results]'") from None
+            raise missing("pandas", "results", "a table") from None
         table = pd.DataFrame(dict(self))
         table.attrs["units"] = self.units
         return table
@@ -374,10 +376,21 @@ def _infos(text: str) -> builtins.list[Info]:
 
     found = []
     for law in json.loads(text):
-        fields = [tuple(field(f) for f in law.get(what, ())) for what in ("parameters", "variables")]
-        texts = [law.get(key, "") for key in ("doc", "reference", "version")]
-        place = (Path(law["path"]), law.get("sha256", ""), law.get("built_in", False))
-        found.append(Info(law["kind"], law["name"], *texts, *place, fields[0], fields[1], law.get("error", "")))
+        found.append(
+            Info(
+                kind=law["kind"],
+                name=law["name"],
+                doc=law.get("doc", ""),
+                reference=law.get("reference", ""),
+                version=law.get("version", ""),
+                path=Path(law["path"]),
+                sha256=law.get("sha256", ""),
+                built_in=law.get("built_in", False),
+                parameters=tuple(field(f) for f in law.get("parameters", ())),
+                variables=tuple(field(f) for f in law.get("variables", ())),
+                error=law.get("error", ""),
+            )
+        )
     return found
 
 
@@ -388,5 +401,7 @@ def _native(function: str, *arguments: Any) -> Any:
     called: Callable[..., Any] = getattr(native, function)
     try:
         return called(*arguments)
+    except (InputError, RunError):
+        raise
     except (ValueError, RuntimeError) as e:
         raise LawError(str(e)) from None

@@ -14,7 +14,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, Any, cast
 
 from . import header, link, loops, plugin_table, source
-from .kinds import Function
+from .kinds import COMMON_OPTIONS, Function
 from .loops import Answer, Loop
 from .source import LawError
 
@@ -162,8 +162,7 @@ def _complete(law: Law) -> None:
 
 def _answer(law: Law, compiler: Compiler, spec: Function, function: FunctionType) -> Answer:
     """Compiles a function of the law, and finds which columns what it returns goes to."""
-    from numba.core import types
-
+    types = _types()
     type_ = compiler.returned(function, ("dimension",))
     answer = Answer(spec, function)
     moves = spec.moves and bool(law.variables)
@@ -207,8 +206,7 @@ def _wanted(law: Law, spec: Function, moves: bool) -> str:
 
 
 def _described(type_: Any) -> str:
-    from numba.core import types
-
+    types = _types()
     if isinstance(type_, types.BaseNamedTuple):
         return f"a {type_.instance_class.__name__}"
     if isinstance(type_, types.BaseTuple):
@@ -220,9 +218,14 @@ def _described(type_: Any) -> str:
     return _words(str(type_))
 
 
-def _is_number(type_: Any) -> bool:
-    from numba.core import types
+def _types() -> Any:
+    from .numba_compiler import imported
 
+    return imported("numba.core.types")
+
+
+def _is_number(type_: Any) -> bool:
+    types = _types()
     return isinstance(type_, (types.Float, types.Integer, types.Boolean))
 
 
@@ -239,8 +242,7 @@ def _flags(law: Law, answers: list[Answer]) -> list[str]:
     used = set(loops.used_columns(law, [a.function for a in answers]))
     flags = {a.spec.flag for a in answers if a.spec.flag}
     flags |= {flag for start, flag in kind.asks.items() if any(c.startswith(start) for c in used | written)}
-    from .definition import COMMON_OPTIONS
-
+    
     opens = "out_traction_n" in written
     if opens:
         flags.add("FW_FLAG_OPENING")

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import source
 from .fields import Parameter, Variable
 from .kinds import COMMON_OPTIONS, KINDS, Function, Kind
 from .source import LawError
+
+if TYPE_CHECKING:
+    from .bench import Certificate, Curve
 
 _EMPTY = inspect.Parameter.empty
 
@@ -223,7 +228,7 @@ class Law:
 
     # What a law can do.
 
-    def build(self, folder: Any = None) -> Any:
+    def build(self, folder: str | os.PathLike[str] | None = None) -> Path:
         """Compiles the law to a plugin that needs no Python.
 
         Args:
@@ -231,7 +236,7 @@ class Law:
                 for each version of the law.
 
         Returns:
-            `pathlib.Path` of the library, ``libfretwork_KIND_NAME.so``; its folder is a plugin path.
+            Path of the library, ``libfretwork_KIND_NAME.so``; its folder is a plugin path.
 
         Raises:
             LawError: with the file and line of what cannot be compiled.
@@ -240,17 +245,17 @@ class Law:
 
         return build.build(self, folder)
 
-    def drive(self, *partners: Any, **options: Any) -> Any:
+    def drive(self, *partners: Law | str, **options: Any) -> Curve:
         """Drives one contact with this law and perhaps others along a path: see `fretwork.law.drive`."""
         from . import bench
 
         return bench.drive(self, *partners, **options)
 
-    def certify(self, **parameters: float) -> Any:
+    def certify(self, **parameters: float) -> Certificate:
         """Tests what the law promises: see `fretwork.law.certify`."""
         from . import bench
 
-        return bench.certify(self, **parameters)
+        return bench.certify(self, (), **parameters)
 
 
 def _plain(function: Any, decorator: str) -> None:

@@ -105,7 +105,7 @@ def damage_for(traction: float, intact_traction: float, degradation: float) -> f
     left = max(traction / intact_traction, 0.0)
     if degradation == 1.0:
         return 1.0 - left
-    return 1.0 - left ** (1.0 / degradation)
+    return 1.0 - math.pow(left, 1.0 / degradation)
 
 
 def release_rate(damage: float, energy_intact: float, degradation: float) -> float:
@@ -114,7 +114,7 @@ def release_rate(damage: float, energy_intact: float, degradation: float) -> flo
         return energy_intact
     if degradation == 2.0:
         return 2.0 * (1.0 - damage) * energy_intact
-    return degradation * (1.0 - damage) ** (degradation - 1.0) * energy_intact
+    return degradation * math.pow(1.0 - damage, degradation - 1.0) * energy_intact
 
 
 def bounded(x: float) -> float:

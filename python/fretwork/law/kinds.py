@@ -28,7 +28,7 @@ class Function:
     #: the column written where it returns a number
     column: str | None = None
     #: named tuples that it may return, whose fields are columns without ``out_``
-    results: tuple[type[tuple[Any, ...]], ...] = ()
+    results: tuple[Any, ...] = ()
     #: whether it also returns the new internal variables
     moves: bool = False
     #: flag that a law has because it has this function

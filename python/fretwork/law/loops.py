@@ -95,9 +95,9 @@ def generate(law: Law, slot: str, answers: list[Answer], missing: frozenset[str]
     lines += ["    finite = True", "    for k in range(n):"]
     lines += [f"        i_{c} = {'0.0' if c in missing else f'c_{c}[k]'}" for c in columns]
     lines += [f"        i_{v} = s_{v}[k]" for v in law.variables if v in wanted]
-    for name, formula in DERIVED.items():
+    for name, derived in DERIVED.items():
         if name in wanted:
-            lines.append(f"        i_{name} = derived_{name}({_call(arguments(formula))})")
+            lines.append(f"        i_{name} = derived_{name}({_call(arguments(derived))})")
     for k, answer in enumerate(answers):
         lines.append(f"        r_{k} = function_{k}({_call(source.signature(answer.function))})")
     for column, k, place in written:

@@ -6,10 +6,14 @@ and cc do by default. Functions that a law calls are compiled with it.
 
 from __future__ import annotations
 
+import importlib
 import importlib.metadata
 import math
+import platform
 from types import FunctionType, ModuleType
 from typing import Any, cast
+
+from fretwork._errors import missing
 
 from . import source
 from .results import Attraction, Friction, Spring, Traction
@@ -24,26 +28,28 @@ PROCESSORS = {"x86_64": "x86-64", "AMD64": "x86-64"}
 _RESULTS = (Friction, Spring, Traction, Attraction)
 
 
+def imported(name: str) -> Any:
+    """A module of numba or llvmlite: untyped, as their interfaces used here are."""
+    return importlib.import_module(name)
+
+
 def require_numba() -> None:
     """Refuses another numba than the one this module is written for.
 
     Raises:
+        MissingPackageError: if there is none.
         LawError: with the command that installs it.
     """
     try:
         found = importlib.metadata.version("numba")
     except importlib.metadata.PackageNotFoundError:
-        raise LawError(
-            f"laws in Python are compiled by numba {NUMBA}, which is not installed: pip install 'pyfretwork[laws]'"
-        ) from None
+        raise missing("numba", "laws", "compiling a law written in Python") from None
     if found != NUMBA:
         raise LawError(
             f"laws in Python are compiled by numba {NUMBA}, and numba {found} is installed, whose internals differ: "
             f"pip install numba=={NUMBA}"
         )
-    import numba
-
-    if numba.config.DISABLE_JIT:
+    if imported("numba").config.DISABLE_JIT:
         raise LawError("NUMBA_DISABLE_JIT is set, so that numba compiles nothing; unset it to build laws")
 
 
@@ -52,20 +58,16 @@ class Compiler:
 
     def __init__(self) -> None:
         require_numba()
-        import llvmlite.binding as llvm
-        from numba.core.compiler import Flags
-        from numba.core.registry import cpu_target
-
+        llvm = imported("llvmlite.binding")
+        cpu_target = imported("numba.core.registry").cpu_target
         llvm.initialize_all_targets()
         llvm.initialize_all_asmprinters()
-        import platform
-
         self._llvm = llvm
         self._typing = cpu_target.typing_context
         cpu = PROCESSORS.get(platform.machine(), "generic")
         self._context = cpu_target.target_context.with_aot_codegen("law", cpu_name=cpu)
         self._library = self._context.codegen().create_library("law")
-        self._flags = Flags()
+        self._flags = imported("numba.core.compiler").Flags()
         self._flags.no_compile = True
         self._flags.no_cpython_wrapper = True
         self._flags.no_cfunc_wrapper = True
@@ -86,8 +88,7 @@ class Compiler:
             return kept[0]
         if value in self._active:
             raise source.at(value, f"`{value.__name__}` calls itself; write a loop in place of the recursion")
-        from numba import njit
-
+        njit = imported("numba").njit
         self._active.append(value)
         self.files.add(value.__code__.co_filename)
         try:
@@ -138,16 +139,13 @@ class Compiler:
         rebuilt.__module__ = "law"
         return rebuilt
 
-    def _result(self, result: type) -> Any:
+    def _result(self, result: Any) -> Any:
         """A function that makes a result; numba does not know defaults of named tuples. It notes which fields are given."""
         kept = self._compiled.get(id(result))
         if kept is not None:
             return kept[0]
-        from numba.core import types
-        from numba.extending import overload
-
-        fields: tuple[str, ...] = result._fields  # type: ignore[attr-defined]
-        defaults: dict[str, float] = result._field_defaults  # type: ignore[attr-defined]
+        types, overload = imported("numba.core.types"), imported("numba.extending").overload
+        fields, defaults = result._fields, result._field_defaults
         heads = ", ".join(f"{f}={defaults[f]!r}" if f in defaults else f for f in fields)
         values = ", ".join(f"float({f})" for f in fields)
         text = (
@@ -174,8 +172,7 @@ class Compiler:
         Raises:
             LawError: with the line that cannot be compiled.
         """
-        from numba.core import errors, types
-
+        errors, types = imported("numba.core.errors"), imported("numba.core.types")
         dispatcher = self.function(function)
         names = source.signature(function)
         argtypes = tuple(types.int64 if name in integers else types.float64 for name in names)
@@ -189,15 +186,12 @@ class Compiler:
 
     def add(self, code: str, symbol: str, names: dict[str, Any], pointers: int, numbers: tuple[str, ...]) -> None:
         """Compiles generated code into the object under a symbol: a count, numbers (`d` or `i`), then pointers to doubles."""
-        from numba.core import types
-        from numba.core.compiler import compile_extra
-        from numba.core.compiler_lock import global_compiler_lock
-
+        types, compile_extra = imported("numba.core.types"), imported("numba.core.compiler").compile_extra
         world: dict[str, Any] = {"isfinite": math.isfinite, "__name__": "law", **names}
         exec(compile(code, f"<{symbol}>", "exec"), world)
         kinds = {"d": types.float64, "i": types.int64}
         argtypes = (*(kinds[k] for k in numbers), *[types.CPointer(types.float64)] * pointers)
-        with global_compiler_lock:
+        with imported("numba.core.compiler_lock").global_compiler_lock:
             self._typing.refresh()
             self._context.refresh()
             compiled = compile_extra(
@@ -207,10 +201,8 @@ class Compiler:
 
     def object(self) -> bytes:
         """The object file: position-independent, with the added symbols alone."""
-        from numba.core.compiler_lock import global_compiler_lock
-
         llvm = self._llvm
-        with global_compiler_lock:
+        with imported("numba.core.compiler_lock").global_compiler_lock:
             self._library.finalize()
             module = self._library._final_module
             for function in module.functions:

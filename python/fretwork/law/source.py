@@ -14,21 +14,18 @@ from collections.abc import Callable, Iterable
 from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
+from fretwork._errors import InputError
 
-class LawError(ValueError):
-    """What is wrong with a law written in Python, with the file and the line.
 
-    Attributes:
-        file: the Python file; ``None`` where the law as a whole is meant.
-        line: the line in it, counted from 1.
-    """
+class LawError(InputError):
+    """What is wrong with a law, or with what it is asked for; of a law written in Python with the file and the line."""
 
     def __init__(self, message: str, file: str | None = None, line: int | None = None) -> None:
-        self.file, self.line = file, line
+        text = message
         if file is not None and line is not None:
-            code = linecache.getline(file, line).rstrip()
-            message = f"{_shown(file)}, line {line}: {message}" + (f"\n    {code.strip()}" if code.strip() else "")
-        super().__init__(message)
+            code = linecache.getline(file, line).strip()
+            text = f"{_shown(file)}, line {line}: {message}" + (f"\n    {code}" if code else "")
+        super().__init__(text, file or "", line, message=message)
 
 
 def _shown(file: str) -> str:
