@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("numba")
+for package in ("numba", "pandas", "h5py"):
+    pytest.importorskip(package)
 
 PAGE = Path(__file__).parents[2] / "docs" / "python_laws.md"
 

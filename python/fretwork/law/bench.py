@@ -6,6 +6,7 @@ import builtins
 import json
 import math
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -317,7 +318,12 @@ def drive(
         if path is not None:
             file = _path_file(path, Path(folder)) if isinstance(path, Mapping) else os.fspath(path)
             words.append(f"--path={file}")
-        table, remarks = _native("drive_laws", words)
+        try:
+            table, remarks = _native("drive_laws", words)
+        except LawError as e:
+            # Options of the command line as the arguments that they are here.
+            said = re.sub(r"--([a-z][a-z-]+)", lambda m: m[1].replace("-", "_"), e.message)
+            raise LawError(said) from None
     rows = json.loads(table)
     curve = Curve({name: np.array([row[name] for row in rows]) for name in rows[0]})
     curve.remarks = remarks

@@ -92,9 +92,8 @@ class Compiler:
         self._active.append(value)
         self.files.add(value.__code__.co_filename)
         try:
-            dispatcher = njit(error_model="numpy", forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True)(
-                self._rebuilt(value)
-            )
+            options = {"error_model": "numpy", "forceinline": True, "boundscheck": True}
+            dispatcher = njit(**options, no_cpython_wrapper=True, no_cfunc_wrapper=True)(self._rebuilt(value))
         finally:
             self._active.pop()
         self._compiled[id(value)] = (dispatcher, value)

@@ -200,7 +200,7 @@ def _call(law: Law, slot: str, loops: list[Loop]) -> str:
     lines += [
         "    else",
         f"        return incomplete(b, m, inputs_{slot}, outputs_{slot});",
-        '    if (status != 0) return tell(m, -1, FW_ERROR, "the law failed with an exception of Python");',
+        '    if (status != 0) return tell(m, -1, FW_ERROR, "the law asks for a value beyond the end of an array");',
         f"    return wrong ? search(b, m, outputs_{slot}, inputs_{slot}, {int(full.moves)}) : FW_OK;",
         "}",
     ]
