@@ -89,7 +89,7 @@ def columns(n: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rounds", type=int, default=60)
+    parser.add_argument("--rounds", type=int, default=500)
     parser.add_argument("--contacts", type=int, nargs="*", default=[16, 256, 4096])
     chosen = parser.parse_args()
     worst = 0.0
@@ -113,7 +113,7 @@ def main() -> None:
                         inputs = (ctypes.c_void_p * len(given))(*(c.ctypes.data for c in given))
                         outputs = (ctypes.c_void_p * len(written))(*(c.ctypes.data for c in written))
                         best = np.zeros(3)
-                        calls = max(1, 200_000 // n)
+                        calls = max(1, 20_000 // n)
                         place = ["prepare", "commit", "energy"].index(slot)
                         refused = run.measure(
                             tables, 3, place, n, dimension, inputs, outputs, chosen.rounds, calls, best.ctypes.data
