@@ -120,7 +120,7 @@ def test_the_line_is_named(wrong, tmp_path):
 def test_options_and_functions_are_named():
     with pytest.raises(law.LawError, match="did you mean `tension_only`\\?"):
         law.cohesion(tensiononly=False)
-    with pytest.raises(law.LawError, match="only a cohesion law"):
+    with pytest.raises(law.LawError, match="no option `degradation`"):
         law.wear(degradation=2.0)
 
     @law.contact

@@ -33,7 +33,13 @@ def test_the_kinds_are_those_of_the_header():
             assert any(name.startswith(claim) for name in {**header.columns(), **header.numbers()})
         options = {**kinds.COMMON_OPTIONS, **kind.options}.values()
         flags = {flag for flag, _ in options} | {f.flag for f in kind.functions() if f.flag} | set(kind.asks.values())
-        assert all(f"#define {flag} " in header.text() for flag in flags)
+        assert flags <= set(header.constants())
+
+
+def test_decorators_say_what_they_take():
+    said = law.cohesion.__doc__
+    assert "tension_only: the normal stiffness acts in tension only; the contact carries compression." in said
+    assert "`@my_law.energy` returns the energy stored by the bond" in said and "degradation" not in law.wear.__doc__
 
 
 def test_columns_of_two_dimensions_are_those_that_the_header_calls_null():

@@ -184,7 +184,7 @@ class Curve(dict[str, NDArray[np.float64]]):
             import pandas as pd
         except ImportError:
             raise missing("pandas", "results", "a table") from None
-        table = pd.DataFrame(dict(self))
+        table: pd.DataFrame = pd.DataFrame(dict(self))
         table.attrs["units"] = self.units
         return table
 

@@ -8,9 +8,9 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 from types import FunctionType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, overload
 
-from . import source
+from . import header, source
 from .fields import Parameter, Variable
 from .kinds import COMMON_OPTIONS, KINDS, Function, Kind
 from .source import LawError
@@ -263,13 +263,33 @@ def _plain(function: Any, decorator: str) -> None:
         raise LawError(f"{decorator} stands above a function of Python (`def`), not above {function!r}")
 
 
-def decorator(word: str) -> Callable[..., Any]:
+class Decorator(Protocol):
+    """The decorator of a kind, above a function or with options."""
+
+    @overload
+    def __call__(self, function: Callable[..., Any], /) -> Law: ...
+
+    @overload
+    def __call__(
+        self,
+        *,
+        name: str | None = None,
+        reference: str = "",
+        version: str = "0.1.0",
+        constants: dict[str, Callable[..., float]] | None = None,
+        degradation: float = 1.0,
+        **options: bool,
+    ) -> Callable[[Callable[..., Any]], Law]: ...
+
+
+def decorator(word: str) -> Decorator:
     """The decorator of a kind."""
     kind = KINDS[word]
     options = {**COMMON_OPTIONS, **kind.options}
+    names = ["name", "reference", "version", "constants", *(["degradation"] if kind.degradation else []), *options]
 
     def law(
-        function: FunctionType | None = None,
+        function: Any = None,
         /,
         *,
         name: str | None = None,
@@ -279,13 +299,11 @@ def decorator(word: str) -> Callable[..., Any]:
         degradation: float = kind.degradation,
         **chosen: bool,
     ) -> Any:
-        for option in chosen:
-            if option not in options:
-                every = ["name", "reference", "version", "constants", *(["degradation"] if kind.degradation else []), *options]
-                near = source.nearest(option, every)
-                raise LawError(f"@{word} has no option `{option}`{near or '.'} It has {', '.join(every)}")
+        wrong = next((option for option in chosen if option not in options), None)
         if degradation != kind.degradation and not kind.degradation:
-            raise LawError(f"@{word} has no option `degradation`: only a cohesion law has an exponent of degradation")
+            wrong = "degradation"
+        if wrong is not None:
+            raise LawError(f"@{word} has no option `{wrong}`{source.nearest(wrong, names) or '.'} It has {', '.join(names)}")
 
         def make(function: FunctionType) -> Law:
             _plain(function, f"@{word}")
@@ -303,18 +321,28 @@ def decorator(word: str) -> Callable[..., Any]:
         return make(function) if function is not None else make
 
     law.__name__ = law.__qualname__ = word
-    law.__doc__ = f"""Makes a {word} law of a function of one contact, which returns {kind.main.returns}.
-
-    Its arguments are inputs by name (`fretwork.law.inputs("{word}")` lists them), parameters (`mu=Parameter(...)`) and internal
-    variables (`psi=Variable(...)`), whose new values are returned behind the answer: `return damage, psi`.
-    {"Where there are variables, `@my_law.commit` returns their new values." if not kind.main.moves else ""}
-
-    Args:
-        name: name in cases; by default that of the function with `-` for `_`.
-        reference: paper or DOI.
-        version: the law's own version.
-        constants: numbers that depend on parameters alone and are computed once a call, by name; arguments like the others.
-        {"degradation: exponent m of psi = (1 - D)^m psi_0." if kind.degradation else ""}
-        {", ".join(options)}: flags, see the header `fretwork.h`.
-    """
+    law.__doc__ = _documentation(kind, options)
     return law
+
+
+def _documentation(kind: Kind, options: dict[str, tuple[str, bool]]) -> str:
+    flags = header.constants()
+    lines = [f"Makes a {kind.word} law of a function of one contact, which returns {kind.main.returns}.", ""]
+    lines.append(f'Its arguments are inputs by name (`fretwork.law.inputs("{kind.word}")` lists them), parameters')
+    if kind.main.moves:
+        lines.append("(`mu=Parameter(...)`) and internal variables (`psi=Variable(...)`), whose new values it returns behind its answer:")
+        lines.append("`return answer, psi`.")
+    else:
+        movers = " or ".join(f"`@my_law.{f.name}`" for f in kind.more if f.moves)
+        lines.append("(`mu=Parameter(...)`) and internal variables (`psi=Variable(...)`), whose new values a function returns that stands")
+        lines.append(f"under {movers}.")
+    lines += ["", "Args:", "    name: name in cases; by default that of the function with `-` for `_`."]
+    lines += ["    reference: paper or DOI.", "    version: the law's own version."]
+    lines += ["    constants: functions of parameters by name, computed once a call; arguments like the others."]
+    lines += ["    degradation: exponent m of psi = (1 - D)^m psi_0."] if kind.degradation else []
+    for option, (flag, default) in options.items():
+        lines.append(f"    {option}: {flags[flag].rstrip('.')}. {'True' if default else 'False'} by default.")
+    if kind.more:
+        lines += ["", "Further functions:"]
+        lines += [f"    `@my_law.{f.name}` returns {f.returns}." for f in kind.more]
+    return "\n".join(lines) + "\n"

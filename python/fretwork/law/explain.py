@@ -101,13 +101,6 @@ def _sentence(text: str, function: FunctionType) -> str:
         given = " and ".join(_words(t) for t in re.split(r",\s*(?![^(]*\))", m[2]) if t) or "nothing"
         what = f"`{sign}`" if sign else f"`{m[1]}`"
         return f"{what} does not take {given}; a law works with numbers"
-    if m := re.search(r"No implementation of function Function\(<(?:class|function) '?(\w[\w.]*)", text):
-        name = m[1].split(".")[-1]
-        result = next((f for f in vars(__import__("fretwork.law.results", fromlist=["x"])).values() if getattr(f, "__name__", "") == name), None)
-        if result is not None and hasattr(result, "_fields"):
-            needed = [f for f in result._fields if f not in result._field_defaults]
-            return f"`{name}` needs {', '.join(needed)} and takes {', '.join(result._fields)}"
-        return f"`{name}` cannot be called so in a compiled law; it takes numbers"
     if m := re.search(r"(missing a required argument: '\w+'|got an unexpected keyword argument '\w+'|too many positional arguments)", text):
         return f"a function is called with other arguments than it has: {m[1]}"
     if m := re.search(r"tuple index out of range", text):

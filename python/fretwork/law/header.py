@@ -63,3 +63,9 @@ def numbers() -> dict[str, Member]:
 def outputs() -> dict[str, Member]:
     """The columns that laws write, by name."""
     return {name: m for name, m in members("fw_batch").items() if m.is_output}
+
+
+def constants() -> dict[str, str]:
+    """The constants, by name, with what is said of them."""
+    found = re.findall(r"/\* ((?:(?!\*/).)*?) \*/\n#define (FW_\w+) ", text(), re.S)
+    return {name: re.sub(r"\s*\n \* ", " ", said).split(": ", 1)[-1] for said, name in found}
