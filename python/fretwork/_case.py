@@ -134,8 +134,8 @@ class Case:
     def kinds(self, path: str) -> list[str]:
         """What a value that is one of several kinds may be.
 
-        >>> Case(name="", dimension=2, time={"step": 1, "end": 1}, materials={}).kinds("coupling")
-        ['Midpoint', 'Explicit', 'Implicit']
+        >>> Case.load("cases/plane_shear.ron").kinds("coupling")
+        ['Explicit', 'Midpoint', 'Implicit']
         """
         told = self._data.names(path)
         return told[1] if told is not None and told[0] == "kinds" else []

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from os import PathLike
 
 __version__: str
-__file__: str
 
 class Array:
     """Memory that ``numpy.asarray`` looks at, read-only."""

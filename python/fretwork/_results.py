@@ -93,18 +93,24 @@ class Results:
     @property
     def statistics(self) -> pd.DataFrame:
         """The statistics as a table, one row a line of ``statistics.csv`` with the same numbers. ``attrs`` has two dictionaries by
-        column: ``units``, and ``long_name`` with the explanations; so have the columns themselves for one each."""
-        pd = _need("pandas", "results", "the table of statistics")
+        column: ``units``, and ``long_name`` with the explanations."""
+        pandas = _need("pandas", "results", "the table of statistics")
+        np = _need("numpy", "results", "arrays")
         path = self.folder / "statistics.csv"
+        if not path.is_file():
+            raise InputError(f"{path}: there is no such file", str(path))
+        with open(path, encoding="utf-8") as file:
+            headings = file.readline().rstrip("\n").split(",")
+            # The last line of a run that goes on may be cut.
+            rows = [line for line in file if line.endswith("\n")]
         # Numbers are written with as many digits as their bits need, and are read back to the same bits.
-        table = pd.read_csv(path, float_precision="round_trip")
+        values = np.loadtxt(rows, delimiter=",", ndmin=2) if rows else np.empty((0, len(headings)))
         units = {}
-        names = []
-        for heading in table.columns:
+        for heading in headings:
             name, _, unit = heading.partition(" [")
-            names.append(name)
             units[name] = unit.rstrip("]") or "1"
-        table.columns = pd.Index(names)
+        names = list(units)
+        table: pd.DataFrame = pandas.DataFrame(values[:, : len(names)], columns=names)
         table.attrs["units"] = units
         with self.open() as file:
             columns = file["statistics"]
@@ -115,7 +121,7 @@ class Results:
     @property
     def grains(self) -> xr.Dataset:
         """Balls and other parts of grains and first bodies over time: ``(time, grain)``, with the fields of ``results.h5``."""
-        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
         with self.open() as file:
             view = file["views/grains"]
             times, counts = view["Steps/Values"][:], view["NumberOfPoints"][:]
@@ -124,7 +130,7 @@ class Results:
             shape = (len(times), int(counts[0]) if len(counts) else 0)
             rows = shape[0] * shape[1]
             dims = ("time", "grain")
-            fields = {
+            fields: dict[str, Any] = {
                 name: (dims, np.asarray(data[:rows]).reshape(shape), _attributes(data))
                 for name, data in view["PointData"].items()
             }
@@ -135,18 +141,19 @@ class Results:
             if "id" in fields and shape[0]:
                 _, ids, said = fields.pop("id")
                 coordinates["id"] = ("grain", ids[0].astype(np.int64), said)
-            return xr.Dataset(fields, coordinates, self._said(file))
+            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return told
 
     @property
     def contacts(self) -> xr.Dataset:
-        """Contacts at all recorded times, one after another: ``(contact,)`` with the coordinates ``time`` and ``state``, the number
-        of the recorded time. ``contacts.sel(contact=contacts.state == 3)`` has those of one time. ``ends`` are the places of candidate and antagonist."""
-        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        """Contacts at all recorded times, one after another: ``(contact,)`` with the coordinates ``time`` and ``record``, the number
+        of the recorded time. ``contacts.sel(contact=contacts.record == 3)`` has those of one time. ``ends`` are the places of candidate and antagonist."""
+        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
         with self.open() as file:
             view = file["views/contacts"]
             times, counts = view["Steps/Values"][:], view["Lines/NumberOfCells"][:]
             rows = int(counts.sum())
-            fields = {
+            fields: dict[str, Any] = {
                 name: ("contact", np.asarray(data[:rows]), _attributes(data))
                 for name, data in view["CellData"].items()
             }
@@ -156,17 +163,18 @@ class Results:
             state = np.repeat(np.arange(len(times)), counts)
             coordinates = {
                 "time": ("contact", times[state], {"units": "s", "long_name": "time"}),
-                "state": ("contact", state, {"long_name": "number of the recorded time"}),
+                "record": ("contact", state, {"long_name": "number of the recorded time"}),
                 "axis": list(AXES),
                 "end": ["candidate", "antagonist"],
             }
-            return xr.Dataset(fields, coordinates, self._said(file))
+            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return told
 
     @property
     def bodies(self) -> xr.Dataset:
         """First bodies over time: ``position``, ``velocity`` and ``force`` of all contacts, ``(time, body, axis)``, at the rows of
         the statistics."""
-        xr, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
         with self.open() as file:
             columns = file["statistics"]
             names = [n.removesuffix("_fx") for n in columns if n.endswith("_fx")]
@@ -174,7 +182,7 @@ class Results:
             axes = [a for a in AXES if all(f"{n}_f{a}" in columns for n in names)] if names else []
             times = columns["time"][:]
             size = len(times)
-            fields = {}
+            fields: dict[str, Any] = {}
             for field, letter in (("position", ""), ("velocity", "v"), ("force", "f")):
                 values = np.full((size, len(names), len(axes)), np.nan)
                 said = {}
@@ -189,7 +197,8 @@ class Results:
                 "body": names,
                 "axis": axes,
             }
-            return xr.Dataset(fields, coordinates, self._said(file))
+            told: xr.Dataset = xarray.Dataset(fields, coordinates, self._said(file))
+            return told
 
     @staticmethod
     def _said(file: h5py.File) -> dict[str, Any]:
@@ -256,7 +265,8 @@ class Results:
                     begin = int(steps[f"{place}Offsets/{name}"][state])
                     data[name] = values[begin : begin + rows]
             mesh.field_data["time"] = [float(steps["Values"][state])]
-            return mesh
+            told: pv.DataSet = mesh
+            return told
 
     def __repr__(self) -> str:
         return f"Results({str(self.folder)!r})"

@@ -1,6 +1,7 @@
 //! A case that Python reads, builds and edits.
 
 use crate::errors::{input, wrong};
+use crate::infinity;
 use crate::paths;
 use crate::search::search_path;
 use fretwork::cli;
@@ -42,7 +43,7 @@ impl Case {
     fn from_json(name: &str, json: &str, folder: PathBuf) -> PyResult<Self> {
         let value = parsed(json)?;
         let case = typed(value, "").map_err(|e| input(&e))?;
-        let text = case.to_ron().map_err(|e| input(&e))?;
+        let text = infinity::ron_of(&case).map_err(|e| input(&e))?;
         Self::from_text(name, &text, folder, Vec::new())
     }
 
@@ -82,7 +83,7 @@ impl Case {
 
     /// The value at a path, as JSON; none for a value that the case leaves out.
     fn value(&self, path: &str) -> PyResult<Option<String>> {
-        let all = json_of(&self.loaded.case);
+        let all = infinity::json_of(&self.loaded.case);
         let parts = self.parts(path)?;
         if let Some(found) = paths::find(&all, &parts) {
             return Ok(Some(found.to_string()));
@@ -100,7 +101,7 @@ impl Case {
 
     /// All values that the case does not leave out, as JSON.
     fn value_of_all(&self) -> String {
-        json_of(&self.loaded.case).to_string()
+        infinity::json_of(&self.loaded.case).to_string()
     }
 
     /// What may stand at a path: one of `fields`, `entries`, `kinds` and `value`, with the names.
@@ -198,11 +199,11 @@ impl Case {
     fn written(&self, path: &str, value: Value) -> Result<String, InputError> {
         let parts = split_path(path)
             .ok_or_else(|| InputError::argument(path, "a part of the key is empty"))?;
-        let mut all = json_of(&self.loaded.case);
+        let mut all = infinity::json_of(&self.loaded.case);
         paths::put(&mut all, &parts, value).map_err(|part| {
             InputError::argument(path, format!("there is no `{part}` in the case"))
         })?;
-        let text = typed(all, path)?.to_ron()?;
+        let text = infinity::ron_of(&typed(all, path)?)?;
         let tree = Tree::of(&text);
         let found = tree.find(&text, &parts).ok();
         let found = found.map(|node| text[node.span.clone()].to_owned());
@@ -216,11 +217,6 @@ fn parsed(json: &str) -> PyResult<Value> {
         .map_err(|e| wrong("the value", format!("it cannot be read as JSON: {e}")))
 }
 
-/// All values of a case that it does not leave out.
-fn json_of(case: &CaseSpec) -> Value {
-    serde_json::to_value(case).unwrap_or_default()
-}
-
 /// Reads a case from JSON. A number stands for a constant function of time, as in case files. `at` is the path that was set, for
 /// messages where the reader gives none.
 fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
@@ -232,16 +228,20 @@ fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
             Err(error) => error,
         };
         let parts = segments(error.path());
+        let said = error.inner().to_string();
         let found = pointer(&mut value, &parts);
-        match found.filter(|v| v.is_number() && error.inner().to_string().contains("enum")) {
-            Some(number) => *number = serde_json::json!({ "Constant": number.take() }),
-            None => {
+        match found {
+            // What serde_json says of a number where a kind is expected.
+            Some(number) if number.is_number() && said.contains("expected string or map") => {
+                *number = serde_json::json!({ "Constant": number.take() });
+            }
+            _ => {
                 let place = if parts.is_empty() {
                     at.to_owned()
                 } else {
                     parts.join(".")
                 };
-                return Err(explained(&place, &error.inner().to_string()));
+                return Err(explained(&place, &said));
             }
         }
     }

@@ -8,6 +8,7 @@ mod case;
 mod columns;
 mod command_line;
 mod errors;
+mod infinity;
 mod law;
 mod observer;
 mod paths;

@@ -1,0 +1,73 @@
+//! Infinite numbers of cases in JSON, which has none: the largest number but one stands for infinity, here and in
+//! `fretwork/_values.py`.
+
+use fretwork::scene::source::Tree;
+use fretwork::scene::{Case, InputError};
+use serde_json::Value;
+
+/// Stands for infinity.
+const INFINITE: f64 = f64::MAX.next_down();
+
+/// All values of a case that it does not leave out.
+pub(crate) fn json_of(case: &Case) -> Value {
+    let mut value = serde_json::to_value(case).unwrap_or_default();
+    // Infinite numbers are written as null.
+    if has_null(&value)
+        && let Ok(text) = case.to_ron()
+    {
+        let tree = Tree::of(&text);
+        restore(&mut value, &text, &tree, &mut Vec::new());
+    }
+    value
+}
+
+fn has_null(value: &Value) -> bool {
+    match value {
+        Value::Null => true,
+        Value::Array(list) => list.iter().any(has_null),
+        Value::Object(fields) => fields.values().any(has_null),
+        _ => false,
+    }
+}
+
+/// Puts numbers in the place of nulls where the text has one.
+fn restore(value: &mut Value, text: &str, tree: &Tree, path: &mut Vec<String>) {
+    match value {
+        Value::Null => {
+            let node = tree.find(text, path).ok();
+            let number = node.and_then(|node| text[node.span.clone()].parse::<f64>().ok());
+            if let Some(number) = number.filter(|x| x.is_infinite()) {
+                *value = INFINITE.copysign(number).into();
+            }
+        }
+        Value::Array(list) => {
+            for (k, element) in list.iter_mut().enumerate() {
+                path.push(k.to_string());
+                restore(element, text, tree, path);
+                path.pop();
+            }
+        }
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                // A path names the fields of a variant without the variant.
+                let variant = name.starts_with(|c: char| c.is_ascii_uppercase());
+                if !variant {
+                    path.push(name.clone());
+                }
+                restore(field, text, tree, path);
+                if !variant {
+                    path.pop();
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The text of a case that was read from JSON.
+///
+/// # Errors
+/// As [`Case::to_ron`].
+pub(crate) fn ron_of(case: &Case) -> Result<String, InputError> {
+    Ok(case.to_ron()?.replace(&format!("{INFINITE:?}"), "inf"))
+}

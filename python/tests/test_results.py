@@ -1,0 +1,86 @@
+"""Results as tables, arrays and meshes."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from fretwork import InputError, MissingPackageError, Results
+
+
+@pytest.fixture
+def results(shear, here):
+    return shear.run("results/a", progress=False)
+
+
+def test_the_table_has_units_and_the_bits_of_the_file(results):
+    table = results.statistics
+    assert table.attrs["units"]["kinetic"] == "J/m" and table.attrs["units"]["step"] == "1"
+    assert table.attrs["long_name"]["time"] == "time at its end"
+    assert set(table.attrs["long_name"]) == set(table.columns)
+    with open(results.folder / "statistics.csv") as file:
+        lines = file.read().splitlines()
+    assert [repr(float(x)) for x in lines[-1].split(",")] == [repr(float(x)) for x in table.iloc[-1]]
+    with results.open() as file:
+        assert (file["statistics/residual"][:] == table["residual"]).all()
+
+
+def test_fields_over_time_have_units(results):
+    grains = results.grains
+    assert grains.position.dims == ("time", "grain", "axis")
+    assert grains.velocity_x.attrs == {"units": "m/s", "long_name": "velocity"}
+    assert grains.time.attrs["units"] == "s" and grains.sizes["grain"] == 550
+    assert grains.time.values.tolist() == results.times
+    contacts = results.contacts
+    assert contacts.force_normal.attrs["units"] == "N/m" and contacts.body_1.dtype == np.int64
+    last = contacts.sel(contact=contacts.record == contacts.record.max())
+    assert (last.time == results.times[-1]).all() and last.sizes["contact"] > 100
+    bodies = results.bodies
+    assert bodies.body.values.tolist() == ["bottom", "top"] and bodies.sizes["axis"] == 2
+    table = results.statistics
+    top = bodies.sel(body="top", axis="y")
+    assert (top.force.values == table["top_fy"]).all() and (top.position.values == table["top_y"]).all()
+    assert bodies.force.attrs["units"] == "N/m"
+
+
+def test_the_summary_and_the_case(results, shear):
+    assert results.summary["steps"] == 50 and results.case == shear.text
+    assert results.trustworthy == results.summary["trustworthy"] and isinstance(results.warnings, list)
+    (results.folder / "summary.json").unlink()
+    with pytest.raises(InputError, match="end of a run"):
+        results.summary
+
+
+def test_packages_that_are_missing_are_named(results, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MissingPackageError, match="pandas: pip install 'pyfretwork\\[results\\]'"):
+        results.statistics
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    with pytest.raises(ImportError, match="pyfretwork\\[mesh\\]"):
+        results.mesh()
+
+
+def test_meshes_have_points_cells_and_fields(results):
+    pytest.importorskip("pyvista")
+    mesh = results.mesh()
+    grains = results.grains.isel(time=-1)
+    assert (mesh.points == grains.position.values).all() and (mesh["radius"] == grains.radius.values).all()
+    contacts = results.mesh(view="contacts", state=0)
+    assert contacts.n_lines == contacts.n_cells == len(contacts["gap"])
+    with pytest.raises(IndexError):
+        results.mesh(100)
+    with pytest.raises(InputError, match="grains"):
+        results.mesh(view="grans")
+
+
+def test_a_run_that_goes_on_can_be_read(shear, here):
+    seen = []
+
+    def look(sim):
+        if sim.steps == 40:
+            seen.append(Results("results/b").times)
+
+    shear["output.views"] = 10
+    shear["output.checkpoint"] = {"Steps": 10} if "Steps" in shear.kinds("output.checkpoint") else "Never"
+    shear.run("results/b", progress=False, observers=[look])
+    assert seen and seen[0][0] == 0.0
