@@ -12,7 +12,7 @@ A :class:`Case` is read, edited, checked and run; a :class:`Simulation` is stepp
 
 import sys as _sys
 
-from . import _fretwork
+from . import _fretwork, law
 from ._case import Case
 from ._check import Check
 from ._errors import Error, InputError, MissingPackageError, RunError
@@ -44,4 +44,5 @@ __all__ = [
     "StepReport",
     "Stop",
     "__version__",
+    "law",
 ]
