@@ -4,7 +4,19 @@ from collections.abc import Callable
 from os import PathLike
 from typing import final
 
-__all__: list[str]
+__all__ = [
+    "__version__",
+    "Array",
+    "CaseData",
+    "SimulationData",
+    "run",
+    "default_folder",
+    "declare",
+    "command_line",
+    "laws",
+    "certify_law",
+    "drive_laws",
+]
 __version__: str
 
 @final
