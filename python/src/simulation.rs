@@ -34,9 +34,10 @@ enum Held {
 /// A simulation of a run, while an observer is called.
 struct Lent<S: Space>(*const step::Simulation<S>);
 
-// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before the reference ends, and what it
-// points to may be read from any thread.
-unsafe impl<S: Space> Send for Lent<S> where step::Simulation<S>: Sync {}
+// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before the reference ends. The simulation
+// is read by one thread at a time, while that which owns it waits for the observer; what of it has no `Sync`, the guarded memory of
+// laws under certification, holds addresses that are used through `&mut` only.
+unsafe impl<S: Space> Send for Lent<S> {}
 
 /// A simulation in one of the dimensions, for what is the same in both.
 macro_rules! in_dimension {
