@@ -44,5 +44,7 @@ echo "==> examples in docstrings"
 echo "==> mypy"
 "$work/venv/bin/python" -m mypy --config-file "$here/pyproject.toml" --cache-dir "$work/mypy" -p fretwork
 "$work/venv/bin/python" -m mypy --config-file "$here/pyproject.toml" --cache-dir "$work/mypy" "$here/tests/typed.py"
+# The stub says what the compiled part has.
+"$work/venv/bin/python" -m mypy.stubtest --mypy-config-file "$here/pyproject.toml" fretwork._fretwork
 echo "==> tests"
 "$work/venv/bin/python" -m pytest -q -p no:cacheprovider --rootdir "$here" -c "$here/pyproject.toml" "$here/tests" "$@"

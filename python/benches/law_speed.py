@@ -115,9 +115,7 @@ def main() -> None:
                         best = np.zeros(3)
                         calls = max(1, 20_000 // n)
                         place = ["prepare", "commit", "energy"].index(slot)
-                        refused = run.measure(
-                            tables, 3, place, n, dimension, inputs, outputs, chosen.rounds, calls, best.ctypes.data
-                        )
+                        refused = run.measure(tables, 3, place, n, dimension, inputs, outputs, chosen.rounds, calls, best.ctypes.data)
                         if refused:
                             raise SystemExit(f"{law.name}: a law refuses the batch")
                         ratios = best[2] / best[:2]

@@ -2,15 +2,31 @@
 
 from collections.abc import Callable
 from os import PathLike
+from typing import final
 
+__all__ = [
+    "__version__",
+    "Array",
+    "CaseData",
+    "SimulationData",
+    "run",
+    "default_folder",
+    "declare",
+    "command_line",
+    "laws",
+    "certify_law",
+    "drive_laws",
+]
 __version__: str
 
+@final
 class Array:
     """Memory that ``numpy.asarray`` looks at, read-only."""
 
     @property
     def __array_interface__(self) -> dict[str, object]: ...
 
+@final
 class CaseData:
     @staticmethod
     def load(path: str, sets: list[str]) -> CaseData: ...
@@ -34,10 +50,11 @@ class CaseData:
         self, plugin_path: list[str], trust_plugins: bool, timed: bool
     ) -> tuple[str, list[tuple[str, str]]]: ...
 
+@final
 class SimulationData:
-    def __init__(
-        self, case: CaseData, threads: int, plugin_path: list[str], trust_plugins: bool
-    ) -> None: ...
+    def __new__(
+        cls, case: CaseData, threads: int, plugin_path: list[str], trust_plugins: bool
+    ) -> SimulationData: ...
     def step(self, steps: int) -> None: ...
     def run_until(self, time: float) -> None: ...
     @property

@@ -225,7 +225,7 @@ class Results:
     def mesh(self, state: int = -1, view: str = "grains") -> pv.DataSet:
         """A recorded state as a mesh of pyvista, with its fields. ``state`` counts the recorded :attr:`times`, negative from the
         end; ``view`` is one of :attr:`views`."""
-        pv, np = _need("pyvista", "mesh", "meshes"), _need("numpy", "mesh", "arrays")
+        pyvista, np = _need("pyvista", "mesh", "meshes"), _need("numpy", "mesh", "arrays")
         with self.open() as file:
             group = file["views"].get(view)
             if group is None or "Steps" not in group:
@@ -243,10 +243,10 @@ class Results:
             cells: tuple[str, ...]
             if "Types" in group:
                 offsets, corners = group["Offsets"][:], group["Connectivity"][:]
-                mesh = pv.UnstructuredGrid(_cells(offsets, corners, np), group["Types"][:], points)
+                mesh = pyvista.UnstructuredGrid(_cells(offsets, corners, np), group["Types"][:], points)
                 of_cells = mesh.n_cells
             else:
-                mesh = pv.PolyData()
+                mesh = pyvista.PolyData()
                 mesh.points = points
                 cells = ("Vertices", "Lines", "Polygons", "Strips")
                 of_cells = 0

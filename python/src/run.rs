@@ -14,6 +14,7 @@ use fretwork::scene::{Built, InputError, Loaded, Scene};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, Once};
 use std::time::Duration;
@@ -59,6 +60,8 @@ struct Shared {
     latest: Mutex<Option<Progress>>,
     /// Why the run is to stop.
     stop: Mutex<Option<String>>,
+    /// Whether Python waits for its end.
+    hurry: AtomicBool,
 }
 
 /// A law that does not come back, and what was saved of the run.
@@ -149,6 +152,7 @@ pub(crate) fn run(
             continue;
         }
         if let Err(error) = look(py, &shared, progress.as_ref()) {
+            shared.hurry.store(true, Ordering::SeqCst);
             *lock(&shared.stop) = Some(format!("interrupted by Python ({error})"));
             raised = Some(error);
         }
@@ -204,7 +208,7 @@ impl Task {
             }
         }
         let origins: Vec<Origin> = std::mem::take(&mut built.origins);
-        let mut run = Run::new(loaded, built, options);
+        let mut run = Run::new(loaded, built, options).hurry(&self.shared.hurry);
         for observer in self.observers {
             run = run.observe(observer);
         }

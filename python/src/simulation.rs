@@ -15,7 +15,7 @@ use fretwork::step;
 use pyo3::prelude::*;
 use pyo3::types::PyWeakrefReference;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
 /// How long steps are made before Python looks for Ctrl-C.
@@ -34,8 +34,9 @@ enum Held {
 /// A simulation of a run, while an observer is called.
 struct Lent<S: Space>(*const step::Simulation<S>);
 
-// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before the reference ends; simulations
-// may be read from any thread.
+// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before the reference ends. The simulation
+// is read by one thread at a time, while that which owns it waits for the observer; what of it has no `Sync`, the guarded memory of
+// laws under certification, holds addresses that are used through `&mut` only.
 unsafe impl<S: Space> Send for Lent<S> {}
 
 /// A simulation in one of the dimensions, for what is the same in both.
@@ -94,8 +95,13 @@ pub(crate) struct Simulation {
 
 impl Simulation {
     fn lock(&self) -> PyResult<MutexGuard<'_, Held>> {
-        self.held.try_lock().map_err(|_| {
-            errors::misused("the simulation is being stepped by another thread; wait for it")
+        self.held.try_lock().map_err(|e| match e {
+            TryLockError::WouldBlock => {
+                errors::misused("the simulation is being stepped by another thread; wait for it")
+            }
+            TryLockError::Poisoned(_) => errors::misused(
+                "the program failed by an error of its own in a step; make the simulation again, and please report it",
+            ),
         })
     }
 

@@ -197,9 +197,7 @@ def test_a_changed_law_is_a_new_library():
         exec(text, world)
 
     cell("def g(mu):\n    return mu\n")
-    cell(
-        "@law.contact\ndef edited(mu=law.Parameter(0.25, range=(0.0, 1.0), doc='friction coefficient')):\n    return g(mu)\n"
-    )
+    cell("@law.contact\ndef edited(mu=law.Parameter(0.25, range=(0.0, 1.0), doc='friction coefficient')):\n    return g(mu)\n")
     first = world["edited"].build()
     assert world["edited"].build() == first
     assert world["edited"].drive(mode="slide", velocities=[1.0], steps=2)["friction"][-1] == 0.25

@@ -70,7 +70,7 @@ SCENES = {
     ),
     "an attraction": (
         "worn_slide",
-        ["time.end=0.1", "interfaces.grain.parameters.cohesion={\"force\": 300.0}"],
+        ["time.end=0.1", 'interfaces.grain.parameters.cohesion={"force": 300.0}'],
         [law_examples.py_coulomb, law_examples.py_attraction],
         ["friction [J/m]"],
     ),

@@ -89,6 +89,7 @@ def interrupt_soon(seconds=0.3):
 
 def test_ctrl_c_leaves_files_from_which_the_run_goes_on(shear, here):
     shear["time.end"] = 0.1
+    shear["output.figures"] = True
     whole = shear.run("results/whole", progress=False)
     seen = []
 
@@ -104,6 +105,9 @@ def test_ctrl_c_leaves_files_from_which_the_run_goes_on(shear, here):
     part = fretwork.Results("results/part")
     assert part.summary["interrupted"] and 100 <= part.summary["steps"] < 500
     assert "KeyboardInterrupt" in part.summary["stopped"]
+    # Who presses Ctrl-C does not wait for figures.
+    figures = {file.name for file in whole.folder.glob("*.png")}
+    assert figures and not list(part.folder.glob("*.png"))
     with pytest.raises(InputError, match="resume=True|another case"):
         other = shear.copy()
         other.seed = 4
@@ -114,6 +118,7 @@ def test_ctrl_c_leaves_files_from_which_the_run_goes_on(shear, here):
     assert seen and min(seen) > 100
     assert on.summary["steps"] == 500 and on.summary["stopped"] is None
     assert (part.folder / "statistics.csv").read_bytes() == (whole.folder / "statistics.csv").read_bytes()
+    assert {file.name for file in on.folder.glob("*.png")} == figures
     # A finished run is left as it is.
     before = os.stat(on.folder / "results.h5").st_mtime_ns
     shear.run("results/part", resume=True, progress=False, observers=[interrupt])

@@ -125,9 +125,7 @@ def compiled(law: Law) -> tuple[str, bytes]:
     return table, content
 
 
-def _of_parameters(
-    law: Law, compiler: Compiler, function: FunctionType, symbol: str, answer: str, more: tuple[str, ...] = ()
-) -> None:
+def _of_parameters(law: Law, compiler: Compiler, function: FunctionType, symbol: str, answer: str, more: tuple[str, ...] = ()) -> None:
     heads = ", ".join(["n", *(f"i_{m}" for m in more), "parameters"])
     values = ", ".join(
         f"i_{name}" if name in more else f"parameters[{list(law.parameters).index(name)}]" for name in source.signature(function)
@@ -242,7 +240,7 @@ def _flags(law: Law, answers: list[Answer]) -> list[str]:
     used = set(loops.used_columns(law, [a.function for a in answers]))
     flags = {a.spec.flag for a in answers if a.spec.flag}
     flags |= {flag for start, flag in kind.asks.items() if any(c.startswith(start) for c in used | written)}
-    
+
     opens = "out_traction_n" in written
     if opens:
         flags.add("FW_FLAG_OPENING")

@@ -158,7 +158,7 @@ class Law:
         if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,59}", self.name):
             raise source.at(
                 function,
-                f"`{self.name}` is no valid name for a law; use a-z, 0-9 and -, at most 60 characters: name=\"my-law\"",
+                f'`{self.name}` is no valid name for a law; use a-z, 0-9 and -, at most 60 characters: name="my-law"',
             )
         for what, text in (("doc", self.doc), ("reference", self.reference), ("version", self.version)):
             if not isinstance(text, str) or "\0" in text or "\n" in text:

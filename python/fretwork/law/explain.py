@@ -84,7 +84,11 @@ def _sentence(text: str, function: FunctionType) -> str:
         return "the function returns different things on different paths; return the same kind of answer on all"
     if m := re.search(r"Variable '?(\w+?)(?:\.\d+)?'? referenced before assignment", text):
         return f"`{m[1]}` is used before it has a value"
-    if m := re.search(r"No implementation of function Function\(<(?:built-in )?function (\w+)[^>]*>\) found for signature:\s*>>> \w+\((.*?)\)\s*$", text, re.M):
+    if m := re.search(
+        r"No implementation of function Function\(<(?:built-in )?function (\w+)[^>]*>\) found for signature:\s*>>> \w+\((.*?)\)\s*$",
+        text,
+        re.M,
+    ):
         sign = {
             "add": "+",
             "sub": "-",
@@ -105,10 +109,11 @@ def _sentence(text: str, function: FunctionType) -> str:
         return f"a function is called with other arguments than it has: {m[1]}"
     if m := re.search(r"tuple index out of range", text):
         return "there are fewer values than the place that is asked for"
-    if m := re.search(r"(?:UnsupportedError|NotImplementedError|UnsupportedBytecodeError)?:? ?([^\n]*not supported[^\n]*|[^\n]*unsupported[^\n]*|Use of [^\n]*)", text):
+    if m := re.search(
+        r"(?:UnsupportedError|NotImplementedError|UnsupportedBytecodeError)?:? ?([^\n]*not supported[^\n]*|[^\n]*unsupported[^\n]*|Use of [^\n]*)",
+        text,
+    ):
         return f"this cannot be compiled: {m[1].strip().rstrip('.')}; a law works with numbers, `if`, `for` and `while`"
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     said = [line for line in lines if not line.startswith(("Failed in", "During:", "File ", "<source", "^", "-", "This error", "For more"))]
     return f"this cannot be compiled: {(said or ['numba gives no reason'])[0].rstrip('.')}"
-
-

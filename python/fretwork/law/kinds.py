@@ -100,9 +100,7 @@ _KINDS = (
     ),
     Kind(
         word="cohesion",
-        main=Function(
-            "traction", "prepare", "a Traction, or an Attraction", "out_tension_strength", (Traction, Attraction)
-        ),
+        main=Function("traction", "prepare", "a Traction, or an Attraction", "out_tension_strength", (Traction, Attraction)),
         more=(
             Function("energy", "energy", "the energy stored by the bond (J/m^2)", "out_energy", otherwise=_nothing),
             Function("commit", "commit", "the new internal variables", moves=True),

@@ -37,9 +37,7 @@ def compiler() -> list[str]:
             return [name]
     if importlib.util.find_spec("ziglang"):
         return [sys.executable, "-m", "ziglang", "cc"]
-    raise LawError(
-        "a law is linked by a C compiler, and there is no `cc`, `gcc` or `clang`; install one, or: pip install ziglang"
-    )
+    raise LawError("a law is linked by a C compiler, and there is no `cc`, `gcc` or `clang`; install one, or: pip install ziglang")
 
 
 def library(table: str, loops: bytes) -> bytes:

@@ -193,9 +193,7 @@ class Compiler:
         with imported("numba.core.compiler_lock").global_compiler_lock:
             self._typing.refresh()
             self._context.refresh()
-            compiled = compile_extra(
-                self._typing, self._context, world[symbol], argtypes, None, self._flags, {}, library=self._library
-            )
+            compiled = compile_extra(self._typing, self._context, world[symbol], argtypes, None, self._flags, {}, library=self._library)
             self._library.get_function(compiled.fndesc.llvm_func_name).name = f"fretwork_{symbol}"
 
     def object(self) -> bytes:

@@ -140,15 +140,12 @@ def source(
 
 
 def _schema(law: Law) -> str:
-    rows = [
-        (name, p.unit, p.doc, p.default, *(p.range or (-math.inf, math.inf)), 0) for name, p in law.parameters.items()
-    ]
+    rows = [(name, p.unit, p.doc, p.default, *(p.range or (-math.inf, math.inf)), 0) for name, p in law.parameters.items()]
     states = [(name, v.unit, v.doc, v.initial, -math.inf, math.inf, int(v.output)) for name, v in law.variables.items()]
     out = []
     for what, fields in (("parameters", rows), ("variables", states)):
         lines = [
-            f"    {{{_text(n)}, {_text(u)}, {_text(d)}, {_number(v)}, {_number(a)}, {_number(b)}, {f}}},"
-            for n, u, d, v, a, b, f in fields
+            f"    {{{_text(n)}, {_text(u)}, {_text(d)}, {_number(v)}, {_number(a)}, {_number(b)}, {f}}}," for n, u, d, v, a, b, f in fields
         ]
         # C has no empty array.
         lines = lines or ["    {0, 0, 0, 0.0, 0.0, 0.0, 0},"]
@@ -187,7 +184,9 @@ def _call(law: Law, slot: str, loops: list[Loop]) -> str:
             needs.append("b->state_next")
             needs += [f"b->state_next[{v}]" for v in range(len(law.variables))]
     if needs:
-        lines.append(f"    if (!({' && '.join(needs)})) return incomplete(b, m, inputs_{slot} + {len(full.inputs)}, outputs_{slot} + {len(full.outputs)});")
+        lines.append(
+            f"    if (!({' && '.join(needs)})) return incomplete(b, m, inputs_{slot} + {len(full.inputs)}, outputs_{slot} + {len(full.outputs)});"
+        )
     word = "    if"
     for loop in loops:
         have = " && ".join(f"COLUMN({c})" for c in (*loop.inputs, *loop.outputs)) or "1"

@@ -9,6 +9,7 @@ use crate::report::{draw_maps, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::standard::Observed;
 use std::path::Path;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 impl<S: Observed> Recorder<'_, S> {
@@ -51,7 +52,7 @@ impl<S: Observed> Recorder<'_, S> {
 
     /// Reads the rows of the statistics back: where something is made of them.
     fn read_statistics(&mut self) -> Result<(), RunError> {
-        if !self.loaded.case.output.figures && !self.observers.read_statistics() {
+        if !self.has_figures() && !self.observers.read_statistics() {
             return Ok(());
         }
         let path = self.out.join("statistics.csv");
@@ -67,6 +68,12 @@ impl<S: Observed> Recorder<'_, S> {
         table.and(results).and(outputs).and(self.draw(wall))
     }
 
+    /// Whether figures are drawn.
+    fn has_figures(&self) -> bool {
+        let hurried = self.hurry.is_some_and(|flag| flag.load(Ordering::SeqCst));
+        self.loaded.case.output.figures && !hurried
+    }
+
     /// Closes the results file, and marks it complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
         if self.summary.stopped.is_none() {
@@ -78,7 +85,7 @@ impl<S: Observed> Recorder<'_, S> {
 
     /// Draws the figures, where the case asks for them.
     fn draw(&self, wall: Duration) -> Result<(), RunError> {
-        if !self.loaded.case.output.figures {
+        if !self.has_figures() {
             return Ok(());
         }
         write_outputs(&self.out, &self.observers.figures(&self.end(wall)))

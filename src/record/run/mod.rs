@@ -35,6 +35,7 @@ use fretwork_observe::standard::{self, Observed};
 use fretwork_observe::{Observer, Observers};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Progress report of a run.
@@ -103,6 +104,7 @@ pub struct Run<'a, S: Space> {
     options: &'a RunOptions,
     stop: Option<ResumePoint>,
     observers: Observers<S>,
+    hurry: Option<&'a AtomicBool>,
 }
 
 impl<'a, S: Observed> Run<'a, S> {
@@ -114,7 +116,16 @@ impl<'a, S: Observed> Run<'a, S> {
             options,
             stop: None,
             observers: Observers::default(),
+            hurry: None,
         }
+    }
+
+    /// Has it end without figures where the flag is set by then: for who stops a run and waits for its end. They are drawn when the
+    /// run is resumed and ends.
+    #[must_use]
+    pub fn hurry(mut self, flag: &'a AtomicBool) -> Self {
+        self.hurry = Some(flag);
+        self
     }
 
     /// Has one more observer look at it: its columns stand after all others.
@@ -242,6 +253,8 @@ struct Recorder<'a, S: Space> {
     clock: Instant,
     processor: ProcessTime,
     summary: Summary,
+    /// See [`Run::hurry`].
+    hurry: Option<&'a AtomicBool>,
 }
 
 impl<'a, S: Observed> Recorder<'a, S> {
@@ -300,6 +313,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             summary,
             simulation,
             loaded,
+            hurry: run.hurry,
         };
         recorder.observers.begin(&mut recorder.simulation);
         let begun = match run.stop {
