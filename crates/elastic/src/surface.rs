@@ -110,7 +110,7 @@ impl SurfacePart {
         let (facet, weights) = self.nearest::<S>(at, position);
         let corners = self.facets[facet].iter().zip(weights).take(self.dimension);
         let terms: Vec<(u32, f64)> = corners.map(|(k, w)| (vertex(*k), w)).collect();
-        Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
+        Nodes::on_facet(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
     }
 
     /// The points of the mesh at the corners of a facet, of which the first D count.

@@ -169,7 +169,8 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         0
     }
 
-    /// Moves the coordinates by a time (s) at the current velocities.
+    /// Moves the coordinates by a time (s) at the current velocities. A step does so twice: by (1 - theta) h at the velocities of its start, after
+    /// [`Self::begin_step`], and by theta h at those of its end.
     fn advance(&mut self, time: f64);
 
     /// v_free, the velocities at the end of the step without contacts; those of an imposed motion as they are imposed.
