@@ -242,6 +242,10 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         (self.entries(free, self.fixed.grid.len()), S::Spin::zero())
     }
 
+    fn cell_size(&self) -> Option<[f64; 2]> {
+        Some(self.fixed.grid.size)
+    }
+
     fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
         if contactor.shape != ContactorShape::Surface {
             return None;
