@@ -259,3 +259,36 @@ impl<S: Space> Simulation<S> {
         self.workspace.means = means;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polyline::Polyline;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
+
+    /// The mean place of a point above the foot of a flank of length one, whose cosine against the contact is this.
+    fn below(cosine: f64) -> Option<Faced> {
+        let top = Vector2::new(cosine, (1.0 - cosine * cosine).sqrt());
+        let ends = [Vector2::new(-2.0, 0.0), top + Vector2::new(2.0, 0.0)];
+        let chain = vec![ends[0], Vector2::zeros(), top, ends[1]];
+        let mut surface = Polyline::new(chain.clone(), None).unwrap();
+        Surface::<Dim2>::move_vertices(&mut surface, &chain);
+        let about = [
+            ([[0.0; 2], [-1.0, 0.0], [0.0; 2]], 0),
+            ([[1.0, 0.0], [0.0; 2], [0.0; 2]], 1),
+        ];
+        let mut star = Star::new(about, 2)?;
+        let up = Vector2::new(0.0, 1.0);
+        let along = along::<Dim2>(&up);
+        let at = Vector2::new(0.05, 0.0);
+        face(&mut star, &surface, 0, |x| along(*x - at))?;
+        star.faced(false)
+    }
+
+    #[test]
+    fn a_steep_facet_below_a_point_leaves_it_without_a_mean_place() {
+        assert!(below(1.01 * STEEPEST).is_some());
+        assert!(below(0.99 * STEEPEST).is_none());
+    }
+}
