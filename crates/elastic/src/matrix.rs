@@ -327,6 +327,64 @@ impl Factor {
 mod tests {
     use super::*;
 
+    /// The Laplacian of a grid with several unknowns at each point that are coupled, as those of a mesh, plus a diagonal.
+    fn coupled_grid(cells: [usize; 3], unknowns: usize) -> Sparse {
+        let [nx, ny, nz] = cells;
+        let at = |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;
+        let mut pairs = Vec::new();
+        for (k, j, i) in
+            (0..nz).flat_map(|k| (0..ny).flat_map(move |j| (0..nx).map(move |i| (k, j, i))))
+        {
+            for (di, dj, dk) in [(1, 0, 0), (0, 1, 0), (0, 0, 1)] {
+                if i + di < nx && j + dj < ny && k + dk < nz {
+                    pairs.push((at(i, j, k), at(i + di, j + dj, k + dk)));
+                }
+            }
+        }
+        let block = |a: usize, b: usize| if a == b { 1.0 } else { 0.2 };
+        let entries = pairs.into_iter().flat_map(|(p, q)| {
+            (0..unknowns * unknowns).flat_map(move |ab| {
+                let (a, b) = (ab / unknowns, ab % unknowns);
+                let (p, q) = (unknowns * p, unknowns * q);
+                let value = block(a, b);
+                [
+                    (p + a, p + b, value),
+                    (q + a, q + b, value),
+                    (p + a, q + b, -value),
+                    (q + a, p + b, -value),
+                ]
+            })
+        });
+        let n = unknowns * nx * ny * nz;
+        Sparse::from_entries(n, entries).leading(n, 1.0, &vec![0.05; n])
+    }
+
+    /// Panels of one to four columns solve what the matrix says, in the plane and in space.
+    #[test]
+    fn factors_of_meshes_solve_by_panels_of_all_widths() {
+        let mut widths = [0; 5];
+        for (cells, unknowns) in [
+            ([12, 9, 1], 1),
+            ([14, 11, 1], 2),
+            ([4, 3, 3], 3),
+            ([20, 1, 1], 4),
+        ] {
+            let a = coupled_grid(cells, unknowns);
+            let factor = Factor::new(&a).unwrap();
+            let panels = factor.pattern.order.as_ref().unwrap().panels.as_ref();
+            panels
+                .unwrap()
+                .widths()
+                .for_each(|width| widths[width] += 1);
+            let x: Vec<f64> = (0..a.rows()).map(|k| (1.3 * k as f64).sin()).collect();
+            let mut b = a.times(&x);
+            factor.solve(&mut b, 1);
+            let off = b.iter().zip(&x).map(|(b, x)| (b - x).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-12);
+        }
+        assert!(widths[1..].iter().all(|count| *count > 0), "{widths:?}");
+    }
+
     #[test]
     fn factors_solve() {
         // A chain of springs, and a second one without mass at an end.

@@ -66,6 +66,12 @@ impl Panels {
         size_of_val(&self.panels[..]) + size_of_val(&self.rows[..]) + size_of::<f64>() * self.values
     }
 
+    /// How many columns each panel has.
+    #[cfg(test)]
+    pub fn widths(&self) -> impl Iterator<Item = usize> + '_ {
+        self.panels.iter().map(|panel| panel.width as usize)
+    }
+
     /// Rows and values of the panel at a place.
     fn of(&self, at: usize) -> [Range<usize>; 2] {
         let Panel { rows, values, .. } = self.panels[at];

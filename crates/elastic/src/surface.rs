@@ -5,7 +5,21 @@ use crate::error::BodyError;
 use crate::mesh::{Mesh, place};
 use fretwork_core::bodies::Nodes;
 use fretwork_core::geometry::space::{Space, VectorLike};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Share of a facet within which a place is on an edge or at a vertex of it, where rounding decides which facet is nearest.
+const AT_BORDER: f64 = 1e-9;
+
+/// What of a surface is nearest to a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NearestPart {
+    /// A point of the mesh.
+    Point(u32),
+    /// An edge (3D): the one after this corner of a facet.
+    Edge(usize, usize),
+    /// A facet.
+    Facet(usize),
+}
 
 /// Points and facets of a part of the boundary.
 #[derive(Clone, Debug)]
@@ -16,6 +30,8 @@ pub struct SurfacePart {
     pub facets: Vec<[u32; 3]>,
     /// By point the facets at it, and its place among the corners of each.
     about: Vec<Vec<(u32, u8)>>,
+    /// Place in `points` of each point of the mesh on it.
+    places: HashMap<u32, u32>,
     /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
     single_valued: bool,
     dimension: usize,
@@ -44,6 +60,7 @@ impl SurfacePart {
             .collect();
         Ok(Self {
             about: about(&facets, points.len(), 3),
+            places: points.iter().copied().zip(0..).collect(),
             facets,
             points,
             single_valued: false,
@@ -77,6 +94,7 @@ impl SurfacePart {
         Ok(Self {
             single_valued,
             about: about(&facets, points.len(), 2),
+            places: points.iter().copied().zip(0..).collect(),
             facets,
             points,
             dimension: 2,
@@ -110,7 +128,7 @@ impl SurfacePart {
         let (facet, weights) = self.nearest::<S>(at, position);
         let corners = self.facets[facet].iter().zip(weights).take(self.dimension);
         let terms: Vec<(u32, f64)> = corners.map(|(k, w)| (vertex(*k), w)).collect();
-        Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
+        Nodes::on_facet(&terms).unwrap_or_else(|| Nodes::one(vertex(0)))
     }
 
     /// The points of the mesh at the corners of a facet, of which the first D count.
@@ -120,12 +138,40 @@ impl SurfacePart {
 
     /// The facets at a point of the mesh, by their places in `facets`.
     pub fn facets_around(&self, point: u32) -> impl Iterator<Item = usize> + '_ {
-        let at = self.points.iter().position(|p| *p == point);
-        let facets = at.and_then(|k| self.about.get(k));
+        let at = self.places.get(&point);
+        let facets = at.and_then(|k| self.about.get(*k as usize));
         facets
             .into_iter()
             .flatten()
             .map(|(facet, _)| *facet as usize)
+    }
+
+    /// The facets at an edge, the one after a corner of a facet (3D).
+    pub fn facets_beside(&self, facet: usize, corner: usize) -> impl Iterator<Item = usize> + '_ {
+        let of = self.facets[facet];
+        let [from, to] = [of[corner], of[(corner + 1) % 3]];
+        let facets = self.about[from as usize].iter().map(|(f, _)| *f as usize);
+        facets.filter(move |f| self.facets[*f].contains(&to))
+    }
+
+    /// What of the surface is nearest to a place. `position` gives the current place of a point of the mesh (m).
+    pub fn nearest_part<S: Space>(
+        &self,
+        at: &S::Vector,
+        position: impl Fn(u32) -> S::Vector,
+    ) -> NearestPart {
+        let (facet, weights) = self.nearest::<S>(at, position);
+        let corners = &weights[..self.dimension];
+        if let Some(corner) = corners.iter().position(|w| *w >= 1.0 - AT_BORDER) {
+            let vertex = self.facets[facet][corner];
+            return NearestPart::Point(self.points[vertex as usize]);
+        }
+        // The edge after the next corner is opposite to this one.
+        let opposite = corners.iter().position(|w| *w <= AT_BORDER);
+        match opposite {
+            Some(corner) => NearestPart::Edge(facet, (corner + 1) % 3),
+            None => NearestPart::Facet(facet),
+        }
     }
 
     /// The facet that is nearest to a place, the first of equally near ones, with the weights of its corners at the nearest point.
@@ -278,5 +324,31 @@ mod tests {
         }
         let area: f64 = part.areas::<Dim3>(position).iter().sum();
         assert!((area - 1.0).abs() < 1e-14, "{area}");
+    }
+
+    /// Rounding does not choose among the facets at a vertex or at an edge.
+    #[test]
+    fn a_vertex_and_an_edge_are_none_of_one_facet() {
+        let sides = [even(0.0, 1.0, 3), even(0.0, 1.0, 3), even(0.0, 1.0, 1)];
+        let mesh = block::<Dim3>(&sides).unwrap();
+        let part = SurfacePart::new(&mesh, "top").unwrap();
+        let position = |p: u32| mesh.points()[p as usize];
+        let of = |at: Vector3<f64>| part.nearest_part::<Dim3>(&at, position);
+        let facet = part.corners(4).map(position);
+        let [a, b, c] = facet;
+        assert_eq!(of(a), NearestPart::Point(part.corners(4)[0]));
+        assert_eq!(of((a + b + c) / 3.0), NearestPart::Facet(4));
+        for (corner, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+            let rounding = Vector3::new(1e-15, -2e-15, 1e-15);
+            let NearestPart::Edge(found, place) = of(from * 0.3 + to * 0.7 + rounding) else {
+                panic!("{from} {to}");
+            };
+            let mut beside: Vec<usize> = part.facets_beside(found, place).collect();
+            beside.sort_unstable();
+            let mut expected: Vec<usize> = part.facets_beside(4, corner).collect();
+            expected.sort_unstable();
+            assert!(expected.len() <= 2 && expected.contains(&4));
+            assert_eq!(beside, expected);
+        }
     }
 }

@@ -207,7 +207,7 @@ impl<S: Space> Observer<S> for Deformable {
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let systems = || first_bodies(s);
-        self.nearest = self.nearest.larger(NearestPlaces::of(s));
+        self.nearest = self.nearest.and(NearestPlaces::of(s));
         self.grains = larger(self.grains, strain_of_grains(s));
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
@@ -274,11 +274,14 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        encode(&(&self.distortions, &self.borders, self.grains, self.nearest))
+        let nearest = self.nearest.state();
+        encode(&(&self.distortions, &self.borders, self.grains, nearest))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.distortions, self.borders, self.grains, self.nearest) = decode(from)?;
+        let nearest;
+        (self.distortions, self.borders, self.grains, nearest) = decode(from)?;
+        self.nearest = NearestPlaces::from_state(nearest);
         Ok(())
     }
 

@@ -4,85 +4,145 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// Contacts of points of deformable bodies with surfaces of others that act on the nearest place, at the row of the statistics where they carry the largest
-/// share of the load.
+/// Share of the load that may act on nearest places without a warning: that of a touch in passing.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Contacts of points of deformable bodies with surfaces of others that act on the nearest place, over the rows of the statistics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NearestPlaces {
-    /// Loaded contacts that act on the nearest place.
+    /// Loaded contacts that act on the nearest place, at the row where these carry most.
     pub contacts: usize,
-    /// All loaded contacts between deformable bodies.
+    /// All loaded contacts between deformable bodies at that row.
     pub of: usize,
-    /// Share of these contacts' forces that they carry.
+    /// Share of these contacts' forces that those on nearest places carry, over all rows.
     pub share: f64,
+    /// Force on nearest places at that row (N; N/m in 2D).
+    #[serde(skip)]
+    most: f64,
+    /// Sum over the rows of the forces on nearest places, and of all (N; N/m in 2D).
+    #[serde(skip)]
+    near: f64,
+    #[serde(skip)]
+    all: f64,
 }
 
 impl NearestPlaces {
     /// Of the last step of a simulation.
     pub fn of<S: Space>(s: &Simulation<S>) -> Self {
         let mut out = Self::default();
-        let (mut near, mut all) = (0.0, 0.0);
+        let per_time = 1.0 / s.options.scheme.h;
         for (contact, mean) in s.acted_on_mean_places() {
-            let force = contact.impulse.norm();
+            let force = contact.impulse.norm() * per_time;
             if force > 0.0 {
                 out.of += 1;
-                all += force;
+                out.all += force;
                 if !mean {
                     out.contacts += 1;
-                    near += force;
+                    out.near += force;
                 }
             }
         }
-        if near > 0.0 {
-            out.share = near / all;
-        }
+        (out.most, out.share) = (out.near, share(out.near, out.all));
         out
     }
 
-    /// The one with the larger share.
+    /// With the rows of another one.
     #[must_use]
-    pub fn larger(self, other: Self) -> Self {
-        if other.share > self.share {
-            other
-        } else {
-            self
+    pub fn and(self, other: Self) -> Self {
+        let at = if other.most > self.most { other } else { self };
+        let (near, all) = (self.near + other.near, self.all + other.all);
+        Self {
+            share: share(near, all),
+            near,
+            all,
+            ..at
+        }
+    }
+
+    /// All of it, to go on after a pause.
+    pub fn state(&self) -> ([usize; 2], [f64; 3]) {
+        ([self.contacts, self.of], [self.most, self.near, self.all])
+    }
+
+    /// From what [`Self::state`] gave.
+    pub fn from_state(([contacts, of], [most, near, all]): ([usize; 2], [f64; 3])) -> Self {
+        let share = share(near, all);
+        Self {
+            contacts,
+            of,
+            share,
+            most,
+            near,
+            all,
         }
     }
 
     /// What that means for the result.
     pub fn warning(&self) -> Option<String> {
-        (self.contacts > 0).then(|| {
+        (self.share > NEGLIGIBLE).then(|| {
+            let share = match 100.0 * self.share {
+                share if share < 1.0 => "less than 1 %".to_owned(),
+                share => format!("{share:.0} %"),
+            };
             format!(
-                "up to {} of {} loaded contacts between deformable bodies, with {:.0} % of the load, act on the nearest place of the surface, not on \
-                 the mean place that their points face: pressure there alternates from point to point by about a tenth where meshes do not match; let \
+                "up to {} of {} loaded contacts between deformable bodies, over the run with {share} of the load, act on the nearest place of the surface, \
+                 not on the mean place that their points face: pressure there alternates from point to point by about a tenth where meshes do not match; let \
                  surfaces reach beyond the points that touch them, and see the limits in docs/deformable.md",
-                self.contacts,
-                self.of,
-                100.0 * self.share
+                self.contacts, self.of,
             )
         })
     }
+}
+
+/// A force over another one; none over none.
+fn share(near: f64, all: f64) -> f64 {
+    if near > 0.0 { near / all } else { 0.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// A row with this force on nearest places, of 100 N on 40 contacts in all.
+    fn row(contacts: usize, near: f64) -> NearestPlaces {
+        NearestPlaces {
+            contacts,
+            of: 40,
+            share: near / 100.0,
+            most: near,
+            near,
+            all: 100.0,
+        }
+    }
+
     #[test]
     fn contacts_on_nearest_places_are_told() {
-        let none = NearestPlaces {
-            contacts: 0,
-            of: 40,
-            share: 0.0,
-        };
-        assert_eq!(none.warning(), None);
-        let some = NearestPlaces {
-            contacts: 3,
-            of: 40,
-            share: 0.12,
-        };
-        let text = none.larger(some).larger(none).warning().unwrap();
+        assert_eq!(row(0, 0.0).warning(), None);
+        let kept = row(3, 24.0).and(row(2, 12.0));
+        assert_eq!(NearestPlaces::from_state(kept.state()), kept);
+        let text = row(0, 0.0).and(row(3, 24.0)).and(row(2, 12.0)).warning();
+        let text = text.unwrap();
         assert!(
             text.starts_with("up to 3 of 40 loaded contacts") && text.contains("12 % of the load"),
+            "{text}"
+        );
+    }
+
+    /// A first touch of one point with no other is all of a force that is nothing over the run.
+    #[test]
+    fn a_touch_of_negligible_force_decides_nothing() {
+        let touch = NearestPlaces {
+            contacts: 1,
+            of: 1,
+            share: 1.0,
+            most: 1e-3,
+            near: 1e-3,
+            all: 1e-3,
+        };
+        assert_eq!(touch.and(row(0, 0.0)).warning(), None);
+        let text = touch.and(row(4, 0.4)).warning().unwrap();
+        assert!(
+            text.contains("up to 4 of 40") && text.contains("less than 1 % of the load"),
             "{text}"
         );
     }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// What a point of a surface does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Zone {
-    /// It carries no force, or less than a tenth of that of one contact.
+    /// It carries no force, or less than a tenth of what its area has of that of one contact.
     #[default]
     Open,
     /// Most of its force is of contacts that stick.
@@ -30,8 +30,8 @@ impl Zone {
     }
 }
 
-/// Share of one contact below which a point counts as open: where points of two surfaces almost coincide, the next point of the one that is
-/// touched gets a trace of the force.
+/// Share of one contact below which a point counts as open, of one that stands for less than the point that touches it in proportion: where points of
+/// two surfaces almost coincide, the next point of the one that is touched gets a trace of the force.
 const TRACE: f64 = 0.1;
 
 /// The surface of a deformable body that touches, with what acts on it.
@@ -77,16 +77,21 @@ impl<S: Space> SurfaceState<S> {
         let (mut force, mut tangential) = (vec![zero; count], vec![zero; count]);
         let (mut pressure, mut share) = (vec![0.0; count], vec![0.0; count]);
         let mut slipping = vec![[0.0; 2]; count];
+        let mut others = Areas::default();
         for acting in loaded(s, system) {
             let Some(nodes) = acting.nodes(s) else {
                 continue;
+            };
+            let touching = match acting.side {
+                1 => others.of_point(s, acting.contact).unwrap_or(0.0),
+                _ => 0.0,
             };
             for (node, weight) in nodes.terms() {
                 let Some(&k) = at.get(&node) else { continue };
                 force[k] += acting.force * weight;
                 tangential[k] += acting.along * weight;
                 pressure[k] += acting.normal * weight / surface.areas[k];
-                share[k] += weight;
+                share[k] += weight * (touching / surface.areas[k]).max(1.0);
                 slipping[k][usize::from(acting.contact.slides)] += acting.force.norm() * weight;
             }
         }
@@ -130,6 +135,25 @@ impl<S: Space> SurfaceState<S> {
     /// Where a point is now (m).
     pub fn place(&self, point: usize) -> S::Vector {
         self.surface.points[point] + self.displacement[point]
+    }
+}
+
+/// The areas that points of systems stand for, by system and node (m^2; m in the plane), of those that were asked for.
+#[derive(Default)]
+struct Areas(HashMap<u32, HashMap<u32, f64>>);
+
+impl Areas {
+    /// Of the point of a contact; none where it is none of the surface of a system.
+    fn of_point<S: Space>(&mut self, s: &Simulation<S>, contact: &Contact<S>) -> Option<f64> {
+        let carrier = s.state.bodies.carrier(contact.bodies[0] as usize)?;
+        let areas = self.0.entry(carrier.system).or_insert_with(|| {
+            let system = s.state.systems.get(carrier.system as usize);
+            let surface = system.and_then(|system| system.touching_surface());
+            let by_node = surface.map(|surface| surface.nodes.into_iter().zip(surface.areas));
+            by_node.into_iter().flatten().collect()
+        });
+        let (node, _) = s.nodes_of_side(contact, 0)?.terms().next()?;
+        areas.get(&node).copied()
     }
 }
 

@@ -15,6 +15,7 @@ mod frequency;
 mod grains;
 mod half_space;
 mod line_contact;
+mod mean_places;
 mod moments;
 mod newton;
 mod patch;

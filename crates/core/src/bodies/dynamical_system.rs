@@ -169,7 +169,8 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
         0
     }
 
-    /// Moves the coordinates by a time (s) at the current velocities.
+    /// Moves the coordinates by a time (s) at the current velocities. A step does so twice: by (1 - theta) h at the velocities of its start, after
+    /// [`Self::begin_step`], and by theta h at those of its end.
     fn advance(&mut self, time: f64);
 
     /// v_free, the velocities at the end of the step without contacts; those of an imposed motion as they are imposed.
@@ -244,7 +245,7 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     }
 
     /// Of a contactor that is a point of a surface whose displacement is linear on its facets: the facets at it, each with its D corners as
-    /// they are now, outside being where they are anticlockwise, in the plane on their right (m), and the place of the point among them. None of
+    /// they are now, outside being where they are anticlockwise, in the plane on their left (m), and the place of the point among them. None of
     /// others.
     fn facets_at(&self, _contactor: usize) -> Vec<([S::Vector; 3], usize)> {
         Vec::new()
@@ -253,6 +254,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// The nodes of a weighted sum of vertices of the surface of a contactor, whose displacement is linear between them; none of
     /// surfaces of which it is not.
     fn vertex_nodes(&self, _contactor: &Contactor, _weights: &[(u32, f64)]) -> Option<Nodes> {
+        None
+    }
+
+    /// Sides along x and y (m; along x in the plane) of the equal cells whose middles are its points and the vertices of its surface; none of
+    /// other systems. A uniform pressure on the points of one grid is one on the nearest places of a grid of equal cells.
+    fn cell_size(&self) -> Option<[f64; 2]> {
         None
     }
 
@@ -401,26 +408,49 @@ pub fn compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
     system: &T,
     nodes: &[u32],
 ) -> Vec<S::Matrix> {
+    let points: Vec<Nodes> = nodes.iter().copied().map(Nodes::one).collect();
+    point_compliance_by_solving(system, &points)
+}
+
+/// The same of points that are sums of nodes, by solving for each point.
+fn point_compliance_by_solving<S: Space, T: DynamicalSystem<S> + ?Sized>(
+    system: &T,
+    points: &[Nodes],
+) -> Vec<S::Matrix> {
     let zero = S::Matrix::diagonal(&S::Vector::zero());
-    let mut blocks = vec![zero; nodes.len() * nodes.len()];
+    let mut blocks = vec![zero; points.len() * points.len()];
     let mut response = vec![0.0; system.freedoms()];
-    for (b, node) in nodes.iter().enumerate() {
+    for (b, point) in points.iter().enumerate() {
         for k in 0..S::D {
             let mut unit = S::Vector::zero();
             unit[k] = 1.0;
             response.fill(0.0);
-            system.add_impulse(*node, &unit, &mut response);
+            for (node, weight) in point.terms() {
+                system.add_impulse(node, &(unit * weight), &mut response);
+            }
             system.solve(&mut response);
-            for (a, seen) in nodes.iter().enumerate() {
-                let block = &mut blocks[a * nodes.len() + b];
-                *block = *block + S::Matrix::dyad(&system.node_velocity(*seen, &response), &unit);
+            for (a, seen) in points.iter().enumerate() {
+                let velocity = seen.terms().fold(S::Vector::zero(), |sum, (node, weight)| {
+                    sum + system.node_velocity(node, &response) * weight
+                });
+                let block = &mut blocks[a * points.len() + b];
+                *block = *block + S::Matrix::dyad(&velocity, &unit);
             }
         }
     }
     blocks
 }
 
-/// The blocks of points that are sums of nodes (1/kg), row by row, from those of the nodes.
+/// Points are far fewer than the nodes that they are sums of where nodes are more than this times as many: one solution for each point in each step is
+/// then cheaper than one for each node that is kept, and needs no memory.
+const FAR_FEWER: usize = 16;
+
+/// Whether points are far fewer than the nodes that they are sums of.
+pub(crate) fn far_fewer(points: usize, nodes: usize) -> bool {
+    FAR_FEWER * points < nodes
+}
+
+/// The blocks of points that are sums of nodes (1/kg), row by row, from those of the nodes unless these are many more.
 pub fn compliance_of_points<S: Space, T: DynamicalSystem<S> + ?Sized>(
     system: &T,
     points: &[Nodes],
@@ -429,6 +459,9 @@ pub fn compliance_of_points<S: Space, T: DynamicalSystem<S> + ?Sized>(
     let mut nodes: Vec<u32> = terms.map(|(node, _)| node).collect();
     nodes.sort_unstable();
     nodes.dedup();
+    if far_fewer(points.len(), nodes.len()) {
+        return point_compliance_by_solving(system, points);
+    }
     let blocks = system.compliance(&nodes);
     let place = |node: u32| nodes.binary_search(&node).unwrap_or_default();
     let terms = |point: &Nodes| point.terms().map(|(n, w)| (place(n), w)).collect();

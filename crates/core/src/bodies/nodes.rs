@@ -19,6 +19,9 @@ enum Terms {
     Many(Arc<[(u32, f64)]>),
 }
 
+/// Weight below which a place on a facet is not at a vertex.
+const ROUNDING: f64 = 1e-9;
+
 /// Nodes that are kept in place: those of a facet with quadratic shape functions.
 const FEW: usize = 8;
 
@@ -53,6 +56,22 @@ impl Nodes {
             weights,
             count,
         }))
+    }
+
+    /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to rounding, that node itself, and on an edge two
+    /// nodes, which cost the solver less. None of no vertex.
+    pub fn on_facet(terms: &[(u32, f64)]) -> Option<Self> {
+        let there = terms.iter().filter(|(_, weight)| weight.abs() > ROUNDING);
+        let there: Vec<_> = there.copied().collect();
+        if there.len() == terms.len() {
+            return Self::sum(terms);
+        }
+        if let [(node, _)] = there[..] {
+            return Some(Self::one(node));
+        }
+        let all: f64 = there.iter().map(|(_, weight)| weight).sum();
+        let scaled = there.iter().map(|(node, weight)| (*node, weight / all));
+        Self::sum(&scaled.collect::<Vec<_>>())
     }
 
     /// Number of nodes.
@@ -92,6 +111,18 @@ impl Nodes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_place_at_a_vertex_is_its_node() {
+        let at = |x: f64| [(4, x), (7, 1.0 - x)];
+        for (x, node) in [(1e-10, 7), (-1e-10, 7), (1.0 - 1e-10, 4)] {
+            assert_eq!(Nodes::on_facet(&at(x)), Some(Nodes::one(node)));
+        }
+        assert_eq!(Nodes::on_facet(&at(1e-8)), Nodes::sum(&at(1e-8)));
+        let edge = [(4, 0.25), (5, 1e-12), (7, 0.75)];
+        assert_eq!(Nodes::on_facet(&edge), Nodes::sum(&[(4, 0.25), (7, 0.75)]));
+        assert_eq!(Nodes::on_facet(&[]), None);
+    }
 
     #[test]
     fn any_number_of_nodes_is_kept_in_order() {

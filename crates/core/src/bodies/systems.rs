@@ -342,6 +342,16 @@ impl<S: Space> Systems<S> {
         entry.system.vertex_nodes(contactor, weights)
     }
 
+    /// Whether two contactors are on grids of equal cells, up to a share of these.
+    pub(crate) fn equal_cells(&self, carriers: [Carrier; 2], tolerance: f64) -> bool {
+        let cells = carriers.map(|c| self.entries[c.system as usize].system.cell_size());
+        let [Some(one), Some(other)] = cells else {
+            return false;
+        };
+        let mut along = one.iter().zip(other).take(S::D - 1);
+        along.all(|(a, b)| (a - b).abs() <= tolerance * a)
+    }
+
     /// Velocity of a point of a system at the current velocities (m/s).
     pub fn velocity_at(&self, system: usize, nodes: &Nodes) -> S::Vector {
         let system = &self.entries[system].system;

@@ -235,6 +235,25 @@ impl<S: Space> Network<S> {
         sorted && self.memory.iter().all(memory_fits) && self.contacts.iter().all(in_range)
     }
 
+    /// Gives a contact another normal; what it remembers along the surface turns with it.
+    pub(crate) fn turn(&mut self, contact: usize, normal: &S::Vector) {
+        let contact = &mut self.contacts[contact];
+        let from = std::mem::replace(&mut contact.normal, *normal);
+        if from == *normal {
+            return;
+        }
+        let force = &mut contact.spring.force_t;
+        *force = S::transport(&from, normal, 0.0, force);
+        if let Some(slot) = contact.memory() {
+            let memory = &mut self.memory[contact.law as usize];
+            let opening = &mut memory.bonds[slot].opening_t;
+            *opening = S::transport(&from, normal, 0.0, opening);
+            if let Some(rotation) = memory.rotations.get_mut(slot) {
+                *rotation = S::transport_spin(&from, normal, 0.0, rotation);
+            }
+        }
+    }
+
     /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs has
     /// changed.
     pub fn forget_neighbours(&mut self) {

@@ -161,6 +161,25 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
+    /// The facets at a vertex on the border, of which one is known; none at a vertex that is not on it.
+    fn about(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
+        let (mut found, mut next, mut border) = (vec![known], 0, false);
+        while next < found.len() {
+            let k = found[next] as usize;
+            next += 1;
+            for side in 0..3 {
+                let edge = [self.triangles[k][side], self.triangles[k][(side + 1) % 3]];
+                match self.beside[k][side] {
+                    _ if !edge.contains(&vertex) => {}
+                    None => border = true,
+                    Some(other) if !found.contains(&other) => found.push(other),
+                    Some(_) => {}
+                }
+            }
+        }
+        border.then_some(found)
+    }
+
     pub(super) fn facet(&self, k: u32) -> Facet<V> {
         let t = self.triangles[k as usize];
         Facet {
@@ -211,6 +230,24 @@ impl Surface<Dim3> for Mesh {
             vertices: self.triangles[facet as usize],
             beside: self.beside[facet as usize],
         })
+    }
+
+    fn border_normal(&self, feature: u32) -> Option<V> {
+        let (name, part) = (feature / 8, feature % 8);
+        let beside = *self.beside.get(name as usize).filter(|_| self.deforms)?;
+        let opposite = match part {
+            0 => return None,
+            1..=3 => part as usize - 1,
+            // A vertex, where facets around it end.
+            _ => {
+                let about = self.about(name, self.triangles[name as usize][part as usize & 3]);
+                let normals = about?.into_iter().map(|k| self.facet(k).normal());
+                return normals.sum::<V>().try_normalize(0.0);
+            }
+        };
+        // The edge after the next corner is opposite to this one.
+        let ends = beside[(opposite + 1) % 3].is_none();
+        ends.then(|| self.facet(name).normal())
     }
 
     fn vertices_within(&self, centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {

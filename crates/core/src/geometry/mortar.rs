@@ -15,6 +15,10 @@
 //! 3 phi - phi_2 - phi_3 on a triangle with the shape functions phi_2, phi_3 of the other corners. Where the other surface ends below a facet psi is found
 //! anew on what is covered. The weights sum to 1, and sum w_k t_k is the place of the point. They may be negative.
 //!
+//! What is worn off where a point rubs comes from below its facets: vertex k gives the share s_k = int_C phi phi_k dt / int_C phi dt of it, with the shape
+//! function phi of the point. Shares sum to 1, and none is negative. A depth that is the same at all points, on the areas that they stand for, is the
+//! same at all vertices, since the phi of all points sum to 1.
+//!
 //! Sources: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005)
 //! 3147; M. A. Puso and T. A. Laursen, Comput. Methods Appl. Mech. Eng. 193 (2004) 601 (facets in space); T. Cichosz and M. Bischoff,
 //! Comput. Methods Appl. Mech. Eng. 200 (2011) 1317 (facets that are covered in part).
@@ -25,6 +29,8 @@ use super::overlap::{Along, integrate, shape_functions, signed_size};
 const ROUNDING: f64 = 1e-6;
 /// Weights of rounding.
 const NONE: f64 = 1e-12;
+/// Largest sum of the sizes of weights of a point beside the other surface: with one facet of which half is covered it is 4.5, and 1.7 where all is.
+const FARTHEST: f64 = 4.5;
 /// Smallest determinant of the second moments of what is covered, over the product of these, from which on it is an area.
 const FLAT: f64 = 1e-12;
 
@@ -51,10 +57,48 @@ struct Facet {
     first: Along,
     squares: Along,
     product: f64,
-    /// Over the same the integrals of the shape function of a vertex of the other surface, alone and with the coordinates.
-    vertices: Vec<(u32, f64, Along)>,
+    /// Over the same the integrals of the shape functions of vertices of the other surface.
+    vertices: Vec<Term>,
     /// Integral of the shape function of the point over the same.
     own: f64,
+}
+
+/// Integrals of the shape function of a vertex of the other surface over what is covered of a facet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Term {
+    vertex: u32,
+    alone: f64,
+    /// With the coordinates.
+    with: Along,
+    /// With the shape function of the point.
+    own: f64,
+}
+
+/// The vertices of another surface that a point faces, in increasing order, with numbers that sum to 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Faced {
+    /// The weights of the mean place.
+    pub weights: Vec<(u32, f64)>,
+    /// The shares of what is worn off; none is negative.
+    pub shares: Vec<(u32, f64)>,
+}
+
+/// Sums up the numbers of each vertex, leaves out those of rounding, and has the others sum to 1; none where they sum to nothing.
+fn normalised(mut all: Vec<(u32, f64)>) -> Option<Vec<(u32, f64)>> {
+    all.sort_by_key(|(vertex, _)| *vertex);
+    let mut sums: Vec<(u32, f64)> = Vec::with_capacity(all.len());
+    for (vertex, number) in all {
+        match sums.last_mut() {
+            Some((last, sum)) if *last == vertex => *sum += number,
+            _ => sums.push((vertex, number)),
+        }
+    }
+    let total = |sums: &[(u32, f64)]| sums.iter().map(|s| s.1).sum::<f64>();
+    let sum = total(&sums);
+    sums.retain(|(_, number)| number.abs() > NONE * sum);
+    let sum = total(&sums);
+    sums.iter_mut().for_each(|(_, number)| *number /= sum);
+    (!sums.is_empty() && sum > 0.0).then_some(sums)
 }
 
 /// From where to where corners reach along an axis (m).
@@ -73,26 +117,28 @@ impl Facet {
     /// Adds what it has in common with a facet of the other surface; gives its size.
     fn face(&mut self, vertices: &[u32], at: &[Along]) -> f64 {
         let own = self.corners;
-        let (mut one, mut parts) = (0.0, [(0.0, [0.0; 2]); 3]);
+        let (mut one, mut parts) = (0.0, [Term::default(); 3]);
         integrate(&own[..self.count], at, |t, weight| {
             one += weight;
-            self.own += weight * shape_functions(&own[..self.count], t)[self.point];
+            let of_point = weight * shape_functions(&own[..self.count], t)[self.point];
+            self.own += of_point;
             for (axis, t) in t.iter().enumerate() {
                 self.first[axis] += weight * t;
                 self.squares[axis] += weight * t * t;
             }
             self.product += weight * t[0] * t[1];
             for (part, phi) in parts.iter_mut().zip(shape_functions(at, t)) {
-                part.0 += weight * phi;
-                part.1[0] += weight * phi * t[0];
-                part.1[1] += weight * phi * t[1];
+                part.alone += weight * phi;
+                part.with[0] += weight * phi * t[0];
+                part.with[1] += weight * phi * t[1];
+                part.own += of_point * phi;
             }
         });
         self.one += one;
         if one > 0.0 {
             let parts = vertices.iter().zip(parts);
             self.vertices
-                .extend(parts.map(|(k, (alone, with))| (*k, alone, with)));
+                .extend(parts.map(|(k, part)| Term { vertex: *k, ..part }));
         }
         one
     }
@@ -123,7 +169,7 @@ impl Facet {
 
 impl Star {
     /// The facets at a point, each with its D corners in coordinates from the point and the place of the point among them. None where there
-    /// is no facet, or one that does not face a surface whose facets are positive.
+    /// is no facet that faces a surface whose facets are positive; others are left out.
     pub fn new(
         facets: impl IntoIterator<Item = ([Along; 3], usize)>,
         count: usize,
@@ -143,10 +189,9 @@ impl Star {
                 own: 0.0,
             })
         };
-        let facets: Option<Vec<Facet>> = facets.into_iter().map(facet).collect();
-        let facets = facets.filter(|all| !all.is_empty())?;
+        let facets: Vec<Facet> = facets.into_iter().filter_map(facet).collect();
         let covered = false;
-        Some(Self { facets, covered })
+        (!facets.is_empty()).then_some(Self { facets, covered })
     }
 
     /// Whether a facet of the other surface may face it.
@@ -172,34 +217,33 @@ impl Star {
         covers
     }
 
-    /// The vertices of the other surface that the point faces, in increasing order, and their weights, which sum to 1. None where the point
-    /// is beside the other surface, or faces two layers of it.
-    pub fn weights(&self) -> Option<Vec<(u32, f64)>> {
+    /// The vertices of the other surface that the point faces. None where it faces two layers of it, or is beside it: of one that is `beyond` its
+    /// border what is covered of its facets counts, up to about half of one.
+    pub fn faced(&self, beyond: bool) -> Option<Faced> {
         let twice = |f: &Facet| f.one > (1.0 + ROUNDING) * f.size;
-        if !self.covered || self.facets.iter().any(twice) {
+        if !(self.covered || beyond) || self.facets.iter().any(twice) {
             return None;
         }
-        let mut all: Vec<(u32, f64)> = Vec::new();
+        let (mut weights, mut shares) = (Vec::new(), Vec::new());
         for facet in &self.facets {
+            let terms = facet.vertices.iter();
+            shares.extend(terms.clone().map(|term| (term.vertex, term.own)));
             if let Some((b, c)) = facet.dual() {
-                let terms = facet.vertices.iter();
-                all.extend(terms.map(|(k, phi, t)| (*k, c * (phi + b[0] * t[0] + b[1] * t[1]))));
+                let psi = |t: &Term| c * (t.alone + b[0] * t.with[0] + b[1] * t.with[1]);
+                weights.extend(terms.map(|term| (term.vertex, psi(term))));
             }
         }
-        all.sort_by_key(|(vertex, _)| *vertex);
-        let mut weights: Vec<(u32, f64)> = Vec::with_capacity(all.len());
-        for (vertex, weight) in all {
-            match weights.last_mut() {
-                Some((last, sum)) if *last == vertex => *sum += weight,
-                _ => weights.push((vertex, weight)),
-            }
+        let weights = normalised(weights)?;
+        let sizes: f64 = weights.iter().map(|(_, weight)| weight.abs()).sum();
+        if !self.covered && sizes > FARTHEST {
+            return None;
         }
-        let total = |weights: &[(u32, f64)]| weights.iter().map(|w| w.1).sum::<f64>();
-        let sum = total(&weights);
-        weights.retain(|(_, w)| w.abs() > NONE * sum);
-        let sum = total(&weights);
-        weights.iter_mut().for_each(|(_, w)| *w /= sum);
-        (!weights.is_empty()).then_some(weights)
+        // None is negative but by rounding.
+        shares
+            .iter_mut()
+            .for_each(|(_, share)| *share = share.max(0.0));
+        let shares = normalised(shares)?;
+        Some(Faced { weights, shares })
     }
 }
 

@@ -393,6 +393,18 @@ impl Surface<Dim2> for Polyline {
         }
     }
 
+    fn border_normal(&self, feature: u32) -> Option<Vector2<f64>> {
+        let last = self.segments() - 1;
+        let segment = match feature {
+            u32::MAX => 0,
+            vertex if vertex as usize == 2 * last + 1 => last,
+            _ => return None,
+        };
+        let along = self.points[segment + 1] - self.points[segment];
+        let open = self.deforms() && !self.goes_on();
+        open.then(|| Vector2::new(-along.y, along.x).normalize())
+    }
+
     fn receding(&self) -> Option<&dyn Recede<Dim2>> {
         Some(self)
     }

@@ -166,6 +166,11 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             ],
         })
     }
+    /// Returns the normal of the facets at the border of a surface that deforms where a feature is on it, their mean at a vertex; `None` of
+    /// other features and surfaces.
+    fn border_normal(&self, _feature: u32) -> Option<S::Vector> {
+        None
+    }
     /// Returns whether it encloses its body, which is then smaller than half a period: contacts are looked for at its nearest image.
     fn is_closed(&self) -> bool {
         false

@@ -1,6 +1,7 @@
 //! Recession: worn surfaces are lowered by the depth of their scars.
 //!
-//! What a step wears off is put on the scars with the closest points of its contacts, at q_m. The surfaces fall after the step's
+//! What a step wears off is put on the scars with the closest points of its contacts, at q_m; that of a contact on a mean place on all vertices below
+//! the facets of its point ([`crate::geometry::mortar`]). The surfaces fall after the step's
 //! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
 //! sinks into the gap gives its potential energy in the next step, as it does over any open gap.
 
@@ -72,22 +73,31 @@ impl<S: Space> Simulation<S> {
 
 /// Puts what the step wore off on the scars.
 fn put_losses<S: Space>(s: &mut Simulation<S>) {
-    let Some(losses) = &s.state.network.losses else {
-        return;
-    };
-    for loss in losses {
+    let losses = s.state.network.losses.take();
+    for loss in losses.iter().flatten() {
         let contact = &s.state.network.contacts[loss.contact as usize];
         let surface = contact.key.surface();
-        let mut scars = s.state.scars.iter_mut();
-        let Some(scar) = scars.find(|s| Some(s.surface) == surface) else {
+        let mut scars = s.state.scars.iter();
+        let Some(scar) = scars.position(|s| Some(s.surface) == surface) else {
             continue;
         };
-        let carried = &s.shapes.surfaces[scar.surface];
-        let rotation = &s.state.bodies.rotation[carried.body as usize];
-        let closest_point = closest_point(carried, rotation, &contact.arms[1]);
-        let put = scar.put(&s.shapes, &closest_point, loss.volume);
+        let below = s.worn_shares(contact).map(|shares| {
+            let shares = shares.iter().map(|(k, part)| (*k as usize, *part));
+            shares.collect::<Vec<_>>()
+        });
+        let scar = &mut s.state.scars[scar];
+        let put = match below {
+            Some(shares) => scar.share(shares, loss.volume),
+            None => {
+                let carried = &s.shapes.surfaces[scar.surface];
+                let rotation = &s.state.bodies.rotation[carried.body as usize];
+                let closest_point = closest_point(carried, rotation, &contact.arms[1]);
+                scar.put(&s.shapes, &closest_point, loss.volume)
+            }
+        };
         s.state.worn_through = s.state.worn_through.take().or(put.err());
     }
+    s.state.network.losses = losses;
 }
 
 fn lower<S: Space>(s: &mut Simulation<S>, due: impl Fn(&Scar<S>) -> bool) {

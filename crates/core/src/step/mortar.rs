@@ -4,25 +4,40 @@
 use super::Simulation;
 use crate::bodies::Nodes;
 use crate::contact::{Contact, Key};
-use crate::geometry::mortar::Star;
+use crate::geometry::mortar::{Faced, Star};
 use crate::geometry::overlap::{Along, signed_size};
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Space, VectorLike};
+use std::collections::HashSet;
 
 /// Least cosine between a facet and the contact along it.
 const STEEPEST: f64 = 0.2;
-/// Most facets that are looked at around a point.
-const MOST: usize = 2048;
+/// Largest difference of the cells of two grids that are equal, as a share.
+const EQUAL: f64 = 1e-9;
 
 /// What a contact acts on of its antagonist.
 #[derive(Clone, Debug)]
 pub(super) enum Reach<S: Space> {
-    /// The mean place that its point faces (m), with its nodes.
-    Mean(Nodes, S::Vector),
+    /// The mean place that its point faces.
+    Mean(Box<MeanPlace<S>>),
     /// The nearest place, because the mean one is not to be found.
     Nearest,
-    /// The nearest place, of a contact that is none of a point of a deformable body with the surface of another.
+    /// The nearest place, of a contact that is none of a point of a deformable body with the surface of another, or of one on an equal grid,
+    /// where that carries a uniform pressure.
     Other,
+}
+
+/// The mean place that a point faces.
+#[derive(Clone, Debug)]
+pub(super) struct MeanPlace<S: Space> {
+    /// The nodes that the contact acts on.
+    nodes: Nodes,
+    /// Where it is (m).
+    place: S::Vector,
+    /// Normal of the contact: beyond the border of a surface that of the facets there.
+    normal: S::Vector,
+    /// Vertices of the surface with their shares of what is worn off.
+    shares: Vec<(u32, f64)>,
 }
 
 /// What the contacts of the network act on, in its order, found once for the places of the step.
@@ -51,7 +66,7 @@ impl<S: Space> MeanPlaces<S> {
     pub(super) fn nodes(&self, contact: usize, key: &Key) -> Option<&Nodes> {
         debug_assert!(self.of.get(contact).is_none_or(|of| of.0 == *key));
         match self.found.get(contact)? {
-            Reach::Mean(nodes, _) => Some(nodes),
+            Reach::Mean(mean) => Some(&mean.nodes),
             Reach::Nearest | Reach::Other => None,
         }
     }
@@ -75,7 +90,7 @@ fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
 }
 
 /// Has a star face the facets of a surface from one of them on, of which `project` gives the coordinates along the contact. None where one
-/// that it faces is steep, and of too many.
+/// that it faces is steep.
 fn face<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,
@@ -83,10 +98,10 @@ fn face<S: Space>(
     project: impl Fn(&S::Vector) -> Along,
 ) -> Option<()> {
     let vertices = surface.moving_vertices();
-    let mut seen = vec![near];
+    let (mut found, mut seen) = (vec![near], HashSet::from([near]));
     let mut next = 0;
-    while next < seen.len() {
-        let facet = surface.moving_facet(seen[next])?;
+    while next < found.len() {
+        let facet = surface.moving_facet(found[next])?;
         let corners = facet.vertices.map(|v| vertices[v as usize]);
         let at = corners.each_ref().map(&project);
         let (ids, at) = (&facet.vertices[..S::D], &at[..S::D]);
@@ -98,13 +113,10 @@ fn face<S: Space>(
         }
         if faces || next == 0 {
             for beside in facet.beside.into_iter().flatten() {
-                if !seen.contains(&beside) {
-                    seen.push(beside);
+                if seen.insert(beside) {
+                    found.push(beside);
                 }
             }
-        }
-        if seen.len() > MOST {
-            return None;
         }
         next += 1;
     }
@@ -130,34 +142,55 @@ impl<S: Space> Simulation<S> {
         let systems = &self.state.systems;
         let facets = systems.facets_at(point);
         if facets.is_empty() || systems.vertex_nodes(carrier, &[(0, 1.0)]).is_none() {
-            return Reach::Nearest;
+            return match systems.equal_cells([point, carrier], EQUAL) {
+                true => Reach::Other,
+                false => Reach::Nearest,
+            };
         }
-        let b = contact.bodies[1] as usize;
-        let (origin, rotation) = (self.state.bodies.position[b], self.state.bodies.rotation[b]);
-        let local = |x: &S::Vector| S::unrotate(&rotation, &(*x - origin));
-        let at = local(&self.state.bodies.position[contact.bodies[0] as usize]);
-        let normal = S::unrotate(&rotation, &contact.normal);
-        let along = along::<S>(&normal);
-        let project = |x: &S::Vector| along(*x - at);
-        let about = facets.iter().map(|(corners, place)| {
-            let corners = corners.each_ref().map(|x| project(&local(x)));
-            (corners, *place)
-        });
-        let weights = || {
-            let mut star = Star::new(about, S::D)?;
-            let near = surface.facet_of(u32::try_from(contact.key.feature).ok()?);
-            face(&mut star, surface, near, project)?;
-            star.weights()
-        };
-        let vertices = surface.moving_vertices();
-        let mean = weights().and_then(|weights| {
-            let nodes = systems.vertex_nodes(carrier, &weights)?;
-            let mean = weights.iter().fold(S::Vector::zero(), |sum, (k, w)| {
+        let mean = || {
+            let feature = u32::try_from(contact.key.feature).ok()?;
+            let b = contact.bodies[1] as usize;
+            let (origin, rotation) = (self.state.bodies.position[b], self.state.bodies.rotation[b]);
+            let local = |x: &S::Vector| S::unrotate(&rotation, &(*x - origin));
+            let at = local(&self.state.bodies.position[contact.bodies[0] as usize]);
+            let about: Vec<_> = facets
+                .iter()
+                .map(|(corners, place)| (corners.each_ref().map(&local), *place))
+                .collect();
+            let faced = |normal: &S::Vector, beyond: bool| -> Option<Faced> {
+                let along = along::<S>(normal);
+                let project = |x: &S::Vector| along(*x - at);
+                let about = about
+                    .iter()
+                    .map(|(corners, place)| (corners.each_ref().map(project), *place));
+                let mut star = Star::new(about, S::D)?;
+                face(&mut star, surface, surface.facet_of(feature), project)?;
+                star.faced(beyond)
+            };
+            // Towards a point beyond the border the direction from there may be any.
+            let border = surface.border_normal(feature);
+            let beyond = border.and_then(|normal| Some((faced(&normal, true)?, normal)));
+            let (faced, normal) = match beyond {
+                Some((faced, normal)) => (faced, S::rotate(&rotation, &normal)),
+                None => {
+                    let normal = S::unrotate(&rotation, &contact.normal);
+                    (faced(&normal, false)?, contact.normal)
+                }
+            };
+            let nodes = systems.vertex_nodes(carrier, &faced.weights)?;
+            let vertices = surface.moving_vertices();
+            let terms = faced.weights.iter();
+            let mean = terms.fold(S::Vector::zero(), |sum, (k, w)| {
                 sum + vertices[*k as usize] * *w
             });
-            Some(Reach::Mean(nodes, origin + S::rotate(&rotation, &mean)))
-        });
-        mean.unwrap_or(Reach::Nearest)
+            Some(MeanPlace {
+                nodes,
+                place: origin + S::rotate(&rotation, &mean),
+                normal,
+                shares: faced.shares,
+            })
+        };
+        mean().map_or(Reach::Nearest, |mean| Reach::Mean(Box::new(mean)))
     }
 
     /// The nodes of a system that a contact acts on, where it stands now: those of the mean place that its point faces, or of the contact
@@ -165,11 +198,20 @@ impl<S: Space> Simulation<S> {
     pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
         let carrier = self.state.bodies.carrier(contact.bodies[side] as usize)?;
         match self.reach(contact) {
-            Reach::Mean(nodes, _) if side == 1 => Some(nodes),
+            Reach::Mean(mean) if side == 1 => Some(mean.nodes),
             _ => {
                 let systems = &self.state.systems;
                 Some(systems.contact_nodes(carrier, &contact.arms[side]))
             }
+        }
+    }
+
+    /// The vertices of the surface of the antagonist below the facets of a point, with their shares of what is worn off there; none of a contact on
+    /// the nearest place.
+    pub(crate) fn worn_shares(&self, contact: &Contact<S>) -> Option<&[(u32, f64)]> {
+        match self.workspace.means.known(contact)? {
+            Reach::Mean(mean) => Some(&mean.shares),
+            Reach::Nearest | Reach::Other => None,
         }
     }
 
@@ -178,7 +220,7 @@ impl<S: Space> Simulation<S> {
     pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
         let contacts = self.state.network.contacts.iter();
         contacts.filter_map(|contact| match self.workspace.means.known(contact)? {
-            Reach::Mean(..) => Some((contact, true)),
+            Reach::Mean(_) => Some((contact, true)),
             Reach::Nearest => Some((contact, false)),
             Reach::Other => None,
         })
@@ -201,19 +243,52 @@ impl<S: Space> Simulation<S> {
                 Some(known) => known.clone(),
                 None => self.reach(contact),
             };
-            means.of.push((contact.key, contact.normal));
-            if let Reach::Mean(_, place) = &reach {
-                let bodies = contact
+            if let Reach::Mean(mean) = &reach {
+                self.state.network.turn(k, &mean.normal);
+                let contact = &mut self.state.network.contacts[k];
+                let [a, b] = contact
                     .bodies
                     .map(|b| self.state.bodies.position[b as usize]);
-                let gap = (bodies[0] - *place).dot(&contact.normal);
-                let arm = *place - bodies[1];
-                let contact = &mut self.state.network.contacts[k];
-                contact.gap = gap;
-                contact.arms[1] = arm;
+                contact.gap = (a - mean.place).dot(&contact.normal);
+                contact.arms[1] = mean.place - b;
             }
+            let contact = &self.state.network.contacts[k];
+            means.of.push((contact.key, contact.normal));
             means.found.push(reach);
         }
         self.workspace.means = means;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polyline::Polyline;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
+
+    /// The mean place of a point above the foot of a flank of length one, whose cosine against the contact is this.
+    fn below(cosine: f64) -> Option<Faced> {
+        let top = Vector2::new(cosine, (1.0 - cosine * cosine).sqrt());
+        let ends = [Vector2::new(-2.0, 0.0), top + Vector2::new(2.0, 0.0)];
+        let chain = vec![ends[0], Vector2::zeros(), top, ends[1]];
+        let mut surface = Polyline::new(chain.clone(), None).unwrap();
+        Surface::<Dim2>::move_vertices(&mut surface, &chain);
+        let about = [
+            ([[0.0; 2], [-1.0, 0.0], [0.0; 2]], 0),
+            ([[1.0, 0.0], [0.0; 2], [0.0; 2]], 1),
+        ];
+        let mut star = Star::new(about, 2)?;
+        let up = Vector2::new(0.0, 1.0);
+        let along = along::<Dim2>(&up);
+        let at = Vector2::new(0.05, 0.0);
+        face(&mut star, &surface, 0, |x| along(*x - at))?;
+        star.faced(false)
+    }
+
+    #[test]
+    fn a_steep_facet_below_a_point_leaves_it_without_a_mean_place() {
+        assert!(below(1.01 * STEEPEST).is_some());
+        assert!(below(0.99 * STEEPEST).is_none());
     }
 }

@@ -2,6 +2,7 @@
 //! those of rigid bodies.
 
 use super::{Simulation, StepError};
+use crate::bodies::dynamical_system::far_fewer;
 use crate::bodies::{Compliance, ContactorShape, DynamicalSystem, Nodes, SystemStep, TurningNode};
 use crate::contact::detect;
 use crate::energy::BodyWork;
@@ -264,32 +265,34 @@ impl<S: Space> Simulation<S> {
         for at in found.turned.iter().flatten().flatten() {
             touched[at.system as usize].push(at.node);
         }
-        let mut kept = Vec::with_capacity(systems);
-        for (system, nodes) in touched.iter_mut().enumerate() {
-            nodes.sort_unstable();
-            nodes.dedup();
-            kept.push(self.state.systems.kept_compliance(system, nodes));
-        }
         let mut points: Vec<Vec<Nodes>> = vec![Vec::new(); systems];
         for side in found.sides.iter().flatten() {
             if let Side::Nodes { system, nodes } = side {
-                let system = *system as usize;
-                if kept[system].is_none() {
-                    points[system].push(nodes.clone());
-                }
+                points[*system as usize].push(nodes.clone());
             }
         }
         for at in found.turned.iter().flatten().flatten() {
-            if kept[at.system as usize].is_none() {
-                points[at.system as usize].push(Nodes::one(at.node));
+            points[at.system as usize].push(Nodes::one(at.node));
+        }
+        let mut kept = Vec::with_capacity(systems);
+        for (system, (nodes, points)) in touched.iter_mut().zip(&mut points).enumerate() {
+            nodes.sort_unstable();
+            nodes.dedup();
+            *points = fewer_points(std::mem::take(points), nodes.len());
+            // A few points with many nodes each need no compliance of all these.
+            let all = points.is_empty() || !far_fewer(points.len(), nodes.len());
+            let of_system = all.then(|| self.state.systems.kept_compliance(system, nodes));
+            let of_system = of_system.flatten();
+            if of_system.is_some() {
+                points.clear();
             }
+            kept.push(of_system);
         }
         let before = std::mem::take(&mut self.workspace.systems);
         let known = before.nodal.into_iter().zip(before.points);
         let mut known = before.touched.into_iter().zip(known);
         let touched = touched.into_iter().zip(points).zip(kept);
         for (system, ((nodes, points), kept)) in touched.enumerate() {
-            let points = fewer_points(points, nodes.len());
             let same = known.next();
             let same = same.filter(|(touched, (_, of))| *touched == nodes && *of == points);
             let nodal = same.map_or_else(
@@ -423,7 +426,10 @@ impl<S: Space> Simulation<S> {
                 touched, points, ..
             } = &self.workspace.systems;
             let (touched, points) = (&touched[*system], &points[*system]);
-            let kept = self.state.systems.kept_compliance(*system, touched);
+            // Where there are points it is known by these.
+            let kept = points.is_empty();
+            let kept = kept.then(|| self.state.systems.kept_compliance(*system, touched));
+            let kept = kept.flatten();
             let again = self.nodal(*system, touched, points, kept);
             self.workspace.systems.nodal[*system] = again;
         }

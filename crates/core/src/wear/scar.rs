@@ -94,11 +94,22 @@ impl<S: Space> Scar<S> {
         closest_point: &S::Vector,
         volume: f64,
     ) -> Result<(), WornThrough> {
-        let shape = &shapes.surfaces[self.surface].shape;
-        let Some(shape) = shape.receding() else {
-            return Ok(());
-        };
-        for (vertex, part) in shape.shares(closest_point) {
+        match shapes.surfaces[self.surface].shape.receding() {
+            Some(shape) => self.share(shape.shares(closest_point), volume),
+            None => Ok(()),
+        }
+    }
+
+    /// Removes a volume (m^3; m^3/m in 2D) from vertices, by their shares of it, which add up to 1.
+    ///
+    /// # Errors
+    /// The surface is worn through; the volume is removed nevertheless.
+    pub fn share(
+        &mut self,
+        shares: impl IntoIterator<Item = (usize, f64)>,
+        volume: f64,
+    ) -> Result<(), WornThrough> {
+        for (vertex, part) in shares {
             if part == 0.0 {
                 continue;
             }

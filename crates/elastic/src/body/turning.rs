@@ -1,11 +1,12 @@
 //! Moments of contacts on a body of finite elements: what touches turns as its facet there, see [`crate::facet_spin`].
 //!
 //! The nodes that turn come after the points of the mesh: one for each facet of the part that touches, then one for each point of the mesh,
-//! which turns as the mean of the facets at it.
+//! which turns as the mean of the facets at it, and in space one for each edge of each facet, which turns as the mean of the two at it.
 
 use super::ElasticBody;
 use crate::compiled::Deformable;
 use crate::facet_spin::FacetSpin;
+use crate::surface::NearestPart;
 use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, block_of};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -15,27 +16,37 @@ impl<S: Deformable> ElasticBody<S> {
         let part = self.model.part.as_ref()?;
         let facet = (node as usize).checked_sub(self.model.mesh.points().len())?;
         let position = |p: u32| self.point_now(p);
-        Some(match facet.checked_sub(part.facets.len()) {
-            None => FacetSpin::new(&[part.corners(facet)], position),
-            Some(point) => {
-                let around = part.facets_around(point as u32);
-                let facets: Vec<[u32; 3]> = around.map(|f| part.corners(f)).collect();
-                FacetSpin::new(&facets, position)
+        let Some(point) = facet.checked_sub(part.facets.len()) else {
+            return Some(FacetSpin::new(&[part.corners(facet)], position));
+        };
+        let facets: Vec<[u32; 3]> = match point.checked_sub(self.model.mesh.points().len()) {
+            None => part
+                .facets_around(point as u32)
+                .map(|f| part.corners(f))
+                .collect(),
+            Some(edge) => {
+                let beside = part.facets_beside(edge / 3, edge % 3);
+                beside.map(|f| part.corners(f)).collect()
             }
-        })
+        };
+        Some(FacetSpin::new(&facets, position))
     }
 
     /// The node that turns with a contactor at an arm from its origin (m).
     pub(super) fn turning(&self, contactor: &Contactor, arm: &S::Vector) -> Option<(u32, f64)> {
         let part = self.model.part.as_ref()?;
-        let first = self.model.mesh.points().len() as u32;
+        let points = self.model.mesh.points().len() as u32;
+        let after = points + part.facets.len() as u32;
         let node = if contactor.shape == ContactorShape::Surface {
             let at = self.point_now(part.origin()) + *arm;
-            let (facet, _) = part.nearest::<S>(&at, |p| self.point_now(p));
-            first + facet as u32
+            match part.nearest_part::<S>(&at, |p| self.point_now(p)) {
+                NearestPart::Facet(facet) => points + facet as u32,
+                NearestPart::Point(point) => after + point,
+                NearestPart::Edge(facet, corner) => after + points + (3 * facet + corner) as u32,
+            }
         } else {
             let (point, _) = contactor.nodes.terms().next()?;
-            first + part.facets.len() as u32 + point
+            after + point
         };
         Some((node, self.facet_spin(node)?.length))
     }

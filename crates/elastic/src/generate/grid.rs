@@ -47,7 +47,7 @@ pub enum GridError {
     Ratio(f64),
     /// No row is high enough.
     #[error(
-        "no cells would join: the highest row away from `{side}` has {highest:.3e} m, and the narrowest two columns together {narrowest:.3e} m; let the rows grow with the distance from `{side}` (`fine` and `growth` along {axis}), or leave `coarsen` out"
+        "no cells would join: two columns join where a row is at least 1/{ratio} as high as they are wide, {needed:.3e} m for the narrowest two, and the highest row away from `{side}` has {highest:.3e} m; let the rows grow with the distance from `{side}` (`fine` and `growth` along {axis}), give `coarsen` a larger `ratio`, or leave it out"
     )]
     Nothing {
         /// The side.
@@ -56,8 +56,20 @@ pub enum GridError {
         axis: char,
         /// Height of the highest row (m).
         highest: f64,
-        /// Width of the narrowest pair of columns (m).
-        narrowest: f64,
+        /// Height at which the narrowest pair of columns would join (m).
+        needed: f64,
+        /// Width over height at which columns join.
+        ratio: f64,
+    },
+    /// One row of cells.
+    #[error(
+        "no cells would join: the first row from `{side}` keeps all its columns, and the block has no other along {axis}; give it more rows, or leave `coarsen` out"
+    )]
+    OneRow {
+        /// The side.
+        side: String,
+        /// The axis of the rows.
+        axis: char,
     },
     /// One column.
     #[error("the block has a single column, and none that could join; leave `coarsen` out")]
@@ -146,18 +158,23 @@ impl Grid {
             return Err(GridError::TooMany(most));
         }
         if grid.sets.len() == 1 {
-            return Err(grid.nothing(side, end));
+            return Err(grid.nothing(coarsening, end));
         }
         Ok(grid)
     }
 
     /// Why no columns join with the distance from this side, at an end of the axis.
-    fn nothing(&self, side: &str, end: usize) -> GridError {
+    fn nothing(&self, coarsening: &Coarsening, end: usize) -> GridError {
+        let side = coarsening.from.to_owned();
+        let axis = ['x', 'y', 'z'][self.axis];
         let others = (0..self.lines.len()).filter(|k| *k != self.axis);
         let pairs = others.flat_map(|k| self.lines[k].windows(3));
         let narrowest = pairs.map(|w| w[2] - w[0]).fold(f64::INFINITY, f64::min);
         if narrowest.is_infinite() {
             return GridError::Single;
+        }
+        if self.rows.len() == 1 {
+            return GridError::OneRow { side, axis };
         }
         let mut heights: Vec<f64> = self.lines[self.axis]
             .windows(2)
@@ -167,10 +184,11 @@ impl Grid {
             heights.reverse();
         }
         GridError::Nothing {
-            side: side.to_owned(),
-            axis: ['x', 'y', 'z'][self.axis],
+            side,
+            axis,
             highest: heights.iter().skip(1).copied().fold(0.0, f64::max),
-            narrowest,
+            needed: narrowest / coarsening.ratio,
+            ratio: coarsening.ratio,
         }
     }
 

@@ -303,6 +303,15 @@ fn grids_that_cannot_be_say_why() {
         "{said}"
     );
     assert!(said.to_string().contains("1.250e-1 m") && said.to_string().contains("2.500e-1 m"));
+    // With a ratio of 1/20 a row must be twenty times as high.
+    let said = error(&even, "left", 0.05, MOST);
+    assert!(said.to_string().contains("1/0.05") && said.to_string().contains("5.000e0 m"));
+    let one_row = [vec![0.0, 1.0, 2.0], vec![0.0, 1.0]];
+    let said = error(&one_row, "top", 1.0, MOST);
+    assert!(
+        matches!(said, GridError::OneRow { axis: 'y', .. }),
+        "{said}"
+    );
     let single = [vec![0.0, 1.0], vec![0.0, 1.0, 2.0]];
     assert_eq!(error(&single, "top", 1.0, MOST), GridError::Single);
     let points = coarsened(&lines, "top", 1.0).points();

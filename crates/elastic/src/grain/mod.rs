@@ -253,16 +253,8 @@ impl<S: Deformable> ElasticGrain<S> {
             })
             .min_by(|a, b| a.0.total_cmp(&b.0))
             .map_or((&[0; 3], [1.0, 0.0, 0.0]), |(_, found)| found);
-        // A vertex itself, up to rounding, is one node.
         let terms = vertices.iter().zip(weights).take(S::D);
-        let terms = terms.filter(|(_, w)| *w > AT_VERTEX);
         let terms: Vec<(u32, f64)> = terms.map(|(v, w)| (*v, w)).collect();
-        match terms[..] {
-            [(v, _)] => Nodes::one(v),
-            _ => Nodes::sum(&terms).unwrap_or_else(|| Nodes::one(vertices[0])),
-        }
+        Nodes::on_facet(&terms).unwrap_or_else(|| Nodes::one(vertices[0]))
     }
 }
-
-/// Share of a vertex below which a place on a facet is not on it.
-const AT_VERTEX: f64 = 1e-9;

@@ -220,14 +220,14 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         let cells = self.fixed.grid.len();
         let base = self.fixed.places[origin as usize];
         let middle = self.fixed.grid.middle(origin as usize);
-        // The place without load of what is there now: displacements are small against cells, so that twice is enough.
+        // The place without load of what is there now: displacements are small against cells, so that three times are enough.
         let mut at = self.node_position(origin) + *arm - self.entries(&self.displacement, cells);
         for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
             at[axis] += x - base[axis];
         }
         let repeats = self.fixed.repeats;
         let mut weights = self.fixed.grid.weights::<S>(&at, repeats);
-        for _ in 0..2 {
+        for _ in 0..3 {
             let moved = weights
                 .iter()
                 .fold(S::Vector::zero(), |sum, (cell, weight)| {
@@ -235,11 +235,15 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
                 });
             weights = self.fixed.grid.weights::<S>(&(at - moved), repeats);
         }
-        Nodes::sum(&weights).unwrap_or_else(|| contactor.nodes.clone())
+        Nodes::on_facet(&weights).unwrap_or_else(|| contactor.nodes.clone())
     }
 
     fn expected_velocity(&self, _contactor: &Contactor, free: &[f64]) -> (S::Vector, S::Spin) {
         (self.entries(free, self.fixed.grid.len()), S::Spin::zero())
+    }
+
+    fn cell_size(&self) -> Option<[f64; 2]> {
+        Some(self.fixed.grid.size)
     }
 
     fn surface(&self, contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {

@@ -51,7 +51,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let (balls, others) = (read.grains.len(), read.shaped.len());
         let which = match others {
             0 => String::new(),
-            n => format!(" ({balls} balls, {n} of other shapes)"),
+            n => format!(" ({balls} balls, {n} of other shapes or that deform)"),
         };
         let deformed = read.shaped.iter().filter(|g| g.deformed.is_some()).count();
         let deform = self.case.elastic_grains.iter();

@@ -82,7 +82,9 @@ impl<S: Dimensional> Builder<'_, S> {
             let below = match error {
                 GridError::Side(..) => ".coarsen.from",
                 GridError::Ratio(_) => ".coarsen.ratio",
-                GridError::Nothing { .. } | GridError::Single => ".coarsen",
+                GridError::Nothing { .. } | GridError::Single | GridError::OneRow { .. } => {
+                    ".coarsen"
+                }
                 GridError::Lines | GridError::TooMany(_) => "",
             };
             self.fail(format!("{here}{below}"), error.to_string())

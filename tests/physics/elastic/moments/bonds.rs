@@ -31,7 +31,7 @@ fn bonded<S: Space>(step: f64, theta: f64, twist: f64, place: &[f64]) -> Rolling
 }
 
 /// Radius of the bond (m), its area and its moments of inertia in bending and in torsion.
-fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
+pub fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
     let network = &s.state.network;
     let bonds = network.contacts.iter().filter_map(|c| network.bond(c));
     let areas: Vec<f64> = bonds.map(|b| b.area).collect();

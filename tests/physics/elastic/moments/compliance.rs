@@ -28,7 +28,8 @@ fn gives_way<S: Dimensional>(n: usize, axis: usize) -> f64 {
     });
     let contactor = &system.contactors()[0];
     let middle = system.contactor_motion(contactor).position;
-    let mut place = S::Vector::from_slice(&[1e-4; 3][..S::D]);
+    // Inside a facet: at an edge the two at it turn.
+    let mut place = S::Vector::from_slice(&[2e-4, 1e-4, 0.0][..S::D]);
     place[S::D - 1] = 0.0;
     let (node, length) = system.turning_node(contactor, &(place - middle)).unwrap();
     let block = system.compliance(&[node])[0];

@@ -1,5 +1,6 @@
 //! A block that nothing holds and a grain that is bonded to it: angular momentum is kept.
 
+use super::bonds::section;
 use super::*;
 use fretwork::geometry::space::Dim3;
 
@@ -88,4 +89,37 @@ fn a_bond_keeps_angular_momentum() {
         keeps::<Dim2>(strain);
         keeps::<Dim3>(strain);
     }
+}
+
+/// What a bond that bends hands over from the grain to the block, which is stiff against it: the oscillator of k_n I between two moments of inertia, which
+/// starts at rest with the relative spin w, has J w (1 - cos omega t) of it by then.
+fn hands_over<S: Dimensional + Steps>() {
+    let (step, time, k_n, between) = (5e-5, 5e-3, 1e5, 14.0);
+    let case = bonded::<S>(step);
+    let parameters = case.parameters.replace("1e8", "1e5");
+    let mut s = on_a_free_block::<S>(&Rolling { parameters, ..case }, Strain::Corotational);
+    let grain = S::BALL_INERTIA * s.state.bodies.mass[ball(&s)] * R * R;
+    let (long, high): (f64, f64) = (0.04, 0.02);
+    let mass = RUBBER.density * high * long.powi(S::D as i32 - 1);
+    let block = mass * (long * long + high * high) / 12.0;
+    let inertia = grain * block / (grain + block);
+    go(&mut s, (time / step) as usize);
+    let turned = grain * (spin(&s) - S::Spin::from_slice(&vec![-10.0; S::Spin::N])).norm();
+    let [_, _, bending, _] = section(&s);
+    let omega = (k_n * bending / inertia).sqrt();
+    // About both axes along the surface in space, none about the normal.
+    let axes = (S::D as f64 - 1.0).sqrt();
+    let expected = axes * inertia * between * (1.0 - (omega * time).cos());
+    println!(
+        "{}D: {turned:e} of {expected:e} kg m^2/s handed over, omega t = {}",
+        S::D,
+        omega * time
+    );
+    near(expected, turned, 0.02);
+}
+
+#[test]
+fn a_bond_hands_angular_momentum_over() {
+    hands_over::<Dim2>();
+    hands_over::<Dim3>();
 }

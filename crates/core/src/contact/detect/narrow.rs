@@ -198,23 +198,25 @@ impl<'a, S: Space> Narrow<'a, S> {
             touches.extend(surface.shape.enclosing(&local));
         }
         let mut alone = Vec::new();
-        if surface.shape.deforms() && ball.radius > 0.0 {
-            // The vertices of a grain are points of their own.
-            if !surface.shape.is_closed() {
-                let found = touches.len();
-                let reach = ball.radius + margin;
-                surface.shape.vertices_within(&local, reach, &mut touches);
-                let (first, more) = touches.split_at_mut(found);
-                let mut kept = 0;
-                for k in 0..more.len() {
-                    if first.iter().all(|t| t.feature != more[k].feature) {
-                        more[kept] = more[k];
-                        kept += 1;
-                    }
+        // The vertices of a grain are points of their own.
+        let several = ball.radius > 0.0 && !surface.shape.is_closed();
+        if surface.shape.deforms() && several {
+            let found = touches.len();
+            let reach = ball.radius + margin;
+            surface.shape.vertices_within(&local, reach, &mut touches);
+            let (first, more) = touches.split_at_mut(found);
+            let mut kept = 0;
+            for k in 0..more.len() {
+                if first.iter().all(|t| t.feature != more[k].feature) {
+                    more[kept] = more[k];
+                    kept += 1;
                 }
-                touches.truncate(found + kept);
             }
-            // Its area, with bonds and attraction, is that of a ball once: at the nearest point.
+            touches.truncate(found + kept);
+        }
+        // Its area, with bonds and attraction, is that of a ball or of a point of a surface once: at the nearest point.
+        let point_of_surface = ball.radius == 0.0 && ball.area == S::Vector::zero();
+        if surface.shape.deforms() && (ball.radius > 0.0 || point_of_surface) {
             let nearest = touches.iter().map(|t| t.distance);
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             let first = touches.iter().find(|t| t.distance == nearest);

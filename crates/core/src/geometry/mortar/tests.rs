@@ -4,6 +4,13 @@ use super::*;
 
 /// The weights of a point of a chain on another one; both go along the same line, the points against it.
 fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)>> {
+    star_on_chain(points, k, vertices)?
+        .faced(false)
+        .map(|f| f.weights)
+}
+
+/// The facets at that point, and what they face.
+fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     let at = |j: usize| [points[j] - points[k], 0.0];
     let before = k.checked_sub(1).map(|b| ([at(k), at(b), [0.0; 2]], 0));
     let after = (k + 1 < points.len()).then(|| ([at(k + 1), at(k), [0.0; 2]], 1));
@@ -12,7 +19,86 @@ fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)
         let at = [v, v + 1].map(|v| [vertices[v] - points[k], 0.0]);
         star.face(&[v as u32, v as u32 + 1], &at);
     }
-    star.weights()
+    Some(star)
+}
+
+/// What is worn off by the same depth at all points, on the lengths that these stand for, is the same depth at all vertices, of meshes of any sizes.
+#[test]
+fn an_even_depth_stays_even() {
+    let coarse = [0.0, 0.8, 1.6];
+    let fine = [0.0, 0.1, 0.2, 0.3, 0.5, 0.61, 0.7, 0.9, 1.1, 1.25, 1.5, 1.6];
+    for (points, vertices) in [(&coarse[..], &fine[..]), (&fine[..], &coarse[..])] {
+        let stands_for = |all: &[f64], k: usize| {
+            0.5 * (all[(k + 1).min(all.len() - 1)] - all[k.saturating_sub(1)])
+        };
+        let mut worn = vec![0.0; vertices.len()];
+        for k in 0..points.len() {
+            let shares = star_on_chain(points, k, vertices)
+                .unwrap()
+                .faced(false)
+                .unwrap()
+                .shares;
+            let sum: f64 = shares.iter().map(|s| s.1).sum();
+            assert!((sum - 1.0).abs() < 1e-14 && shares.iter().all(|s| s.1 > 0.0));
+            for (v, share) in shares {
+                worn[v as usize] += share * stands_for(points, k);
+            }
+        }
+        for (v, worn) in worn.iter().enumerate() {
+            assert!((worn / stands_for(vertices, v) - 1.0).abs() < 1e-13, "{v}");
+        }
+    }
+}
+
+/// A point beside a surface faces what its facets face of it, up to half of one, and a linear function is met at the point.
+#[test]
+fn a_point_beyond_the_end_faces_what_its_facets_face() {
+    let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
+    for (beyond, faces) in [(1e-4, true), (0.1, true), (0.19, true), (0.3, false)] {
+        let points = [1.0 + beyond - 0.4, 1.0 + beyond, 1.4 + beyond];
+        let star = star_on_chain(&points, 1, &vertices).unwrap();
+        assert_eq!(star.faced(false), None);
+        let found = star.faced(true);
+        assert_eq!(found.is_some(), faces, "{beyond}");
+        let Some(found) = found else { continue };
+        let mean: f64 = found
+            .weights
+            .iter()
+            .map(|(v, w)| vertices[*v as usize] * w)
+            .sum();
+        assert!((mean - points[1]).abs() < 1e-12, "{beyond}: {mean}");
+        assert!(found.shares.iter().all(|s| s.1 > 0.0));
+    }
+}
+
+/// Two layers below a facet are told from one.
+#[test]
+fn two_layers_have_no_mean_place() {
+    let points = [0.0, 0.4, 0.8];
+    let mut star = star_on_chain(&points, 1, &[0.0, 0.5, 0.9]).unwrap();
+    assert!(star.faced(false).is_some());
+    star.face(&[7, 8], &[[-0.1, 0.0], [0.2, 0.0]]);
+    assert_eq!(star.faced(false), None);
+}
+
+/// A facet that is turned away is left out: a corner of which one side goes up.
+#[test]
+fn a_facet_that_is_turned_away_faces_nothing() {
+    let own = [
+        ([[0.0; 2], [-0.4, 0.0], [0.0; 2]], 0),
+        ([[-0.01, 0.0], [0.0; 2], [0.0; 2]], 1),
+    ];
+    let mut star = Star::new(own, 2).unwrap();
+    for v in 0..10u32 {
+        let at = [v, v + 1].map(|v| [0.1 * f64::from(v) - 0.5, 0.0]);
+        star.face(&[v, v + 1], &at);
+    }
+    let weights = star.faced(false).unwrap().weights;
+    let mean: f64 = weights
+        .iter()
+        .map(|(v, w)| w * (0.1 * f64::from(*v) - 0.5))
+        .sum();
+    assert!(mean.abs() < 1e-14, "{weights:?}");
 }
 
 /// Triangles over a square whose lines have these places, by their corners, all anticlockwise; diagonals alternate.
@@ -59,7 +145,7 @@ fn on_grid(
         assert!(star.is_near(&at) || !star.face(t, &at));
         star.face(t, &at);
     }
-    (star.weights(), area)
+    (star.faced(false).map(|f| f.weights), area)
 }
 
 /// A uniform pressure p on the points, p times the length that each stands for, is a uniform pressure on the vertices; and the mean

@@ -1,6 +1,6 @@
 //! Large systems against the whole product with their compliance.
 
-use crate::geometry::space::{Dim3, VectorLike};
+use crate::geometry::space::Dim3;
 use crate::solve::NodalSystem;
 use nalgebra::{Matrix3, Vector3};
 
