@@ -69,8 +69,18 @@ def check_contacts(data, dimension):
     normal = np.array([data[f"normal_{a}"][:] for a in axes])
     t = [data[f"force_tangential_{k}"][:] for k in range(1, dimension)]
     norm = np.sqrt(sum(x**2 for x in t))
-    if not np.allclose(norm, data["force_tangential"][:], rtol=1e-12, atol=0.0):
+    # Without friction what is left of the tangential part is round-off of the normal force.
+    pushes = data["force_normal"][:]
+    round_off = 1e-12 * np.hypot(pushes, norm)
+    if (np.abs(norm - data["force_tangential"][:]) > round_off).any():
         fail("the components of tangential forces are not those of their norm")
+    force = data["force"][:]
+    if not np.array_equal(data["normal"][:, :dimension].T, normal):
+        fail("the vectors `normal` are not their components")
+    if (np.abs((force[:, :dimension].T * normal).sum(axis=0) - pushes) > round_off).any():
+        fail("the vectors `force` do not have the normal force along the normal")
+    if (np.abs(np.linalg.norm(force, axis=1) - np.hypot(pushes, norm)) > round_off).any():
+        fail("the vectors `force` are not as large as normal and tangential force")
     if not np.allclose((normal**2).sum(axis=0), 1.0, rtol=1e-12):
         fail("normals are not of length 1")
     if dimension == 3:
@@ -81,6 +91,30 @@ def check_contacts(data, dimension):
         fail("identities of bodies are no whole numbers of 64 bits")
     if not set(np.unique(data["status"][:])) <= {0.0, 1.0, 2.0, 3.0, 4.0}:
         fail("contacts have a status that is none")
+
+
+def check_motion(data, dimension):
+    """Vectors of grains are their components, and identities are told."""
+    for vector, part in (("velocity", "velocity"), ("angular_velocity", "spin"))[:dimension - 1]:
+        parts = np.array([data[f"{part}_{a}"][:] for a in "xyz"]).T
+        if not np.array_equal(data[vector][:], parts):
+            fail(f"the vectors `{vector}` of grains are not their components")
+    if dimension == 3 and not np.allclose(np.linalg.norm(data["angular_velocity"][:], axis=1), data["spin"][:], rtol=1e-12, atol=0.0):
+        fail("`spin` is not the norm of `angular_velocity`")
+    turns = [f"orientation_{a}" for a in "wxyz"]
+    if all(t in data for t in turns) and not np.allclose(sum(data[t][:]**2 for t in turns), 1.0, rtol=1e-12):
+        fail("orientations of grains are no unit quaternions")
+    if (data["corners"][:] > 0).any() and "angle" not in data and turns[0] not in data:
+        fail("grains that are no balls have no orientation")
+
+
+def check_identities(views):
+    """Bodies of contacts are grains, or bodies with an outline or a surface."""
+    known = set(views["grains/PointData/id"][:].astype(int)) | set(views["bodies/CellData/body"][:].astype(int))
+    for side in ("body_1", "body_2"):
+        strangers = set(views[f"contacts/CellData/{side}"][:]) - known
+        if strangers:
+            fail(f"{side} of contacts names bodies {sorted(strangers)[:5]} that are neither grains nor bodies")
 
 
 def mesh_state(view, k):
@@ -206,10 +240,30 @@ def check_h5(path, live):
                 fail(f"{bare} in {group} have no unit or no explanation")
         check_ledger(f["statistics"])
         check_contacts(f["views/contacts/CellData"], int(f.attrs["dimension"]))
+        check_motion(f["views/grains/PointData"], int(f.attrs["dimension"]))
+        check_identities(f["views"])
         check_meshes(os.path.dirname(path), f, live)
         views = {name: check_view(f["views"][name], name) for name in ("grains", "contacts", "bodies")}
         laws = [b.decode() if isinstance(b, bytes) else b for b in f["plugins/name"][:]]
         print(f"h5py {h5py.__version__}: {next(iter(lengths.values()))} rows of {len(lengths)} statistics, states {views}, laws {laws}")
+
+
+# Arrays of the files that ParaView opens, and their numbers of components: what its filters, such as Glyph, take.
+ARRAYS = {
+    "grains": ("Point", {"id": 1, "radius": 1, "velocity": 3, "spin": 1}),
+    "contacts": ("Cell", {"body_1": 1, "body_2": 1, "status": 1, "force": 3, "normal": 3, "force_normal": 1}),
+    "bodies": ("Cell", {"body": 1}),
+}
+
+
+def check_arrays(name, data):
+    """VTK gives the arrays of grains, contacts and bodies as numbers and vectors."""
+    place, arrays = ARRAYS[name]
+    given = data.GetPointData() if place == "Point" else data.GetCellData()
+    for array, components in arrays.items():
+        found = given.GetArray(array)
+        if found is None or found.GetNumberOfComponents() != components:
+            fail(f"VTK has no array {array} of {components} components in {name}.vtkhdf")
 
 
 def check_vtk(path, name):
@@ -231,6 +285,8 @@ def check_vtk(path, name):
         arrays = data.GetPointData().GetNumberOfArrays() + data.GetCellData().GetNumberOfArrays()
         if arrays == 0:
             fail(f"VTK finds no data on {name} at step {k}")
+        if name in ARRAYS:
+            check_arrays(name, data)
         seen.append((times[k], data.GetNumberOfPoints(), data.GetNumberOfCells(), arrays))
     print(f"VTK {vtkVersion.GetVTKVersion()} {name}: " + "; ".join(
         f"t {t:.4e}: {p} points, {c} cells, {a} arrays" for t, p, c, a in seen))
@@ -246,7 +302,10 @@ def main():
         fail(f"there is no {path}")
     check_h5(path, live)
     if not live:
-        check_vtk(path, "grains")
+        check_vtk(path, "results.h5")
+        missing = [name for name in ARRAYS if not os.path.exists(os.path.join(folders[0], f"{name}.vtkhdf"))]
+        if missing:
+            fail(f"there is no {missing[0]}.vtkhdf in {folders[0]}")
         for file in sorted(os.listdir(folders[0])):
             if file.endswith(".vtkhdf"):
                 check_vtk(os.path.join(folders[0], file), file.removesuffix(".vtkhdf"))

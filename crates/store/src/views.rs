@@ -3,7 +3,7 @@
 use super::results::{Header, Part, Results, ResultsError};
 use super::summary::Summary;
 use super::{meshes, shapes};
-use fretwork_core::fields::{FieldList, Fields, GrainPart, Value, orientation, removed};
+use fretwork_core::fields::{Field, FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Kind;
 use fretwork_core::step::{InDimension, Simulation, Steps};
@@ -56,15 +56,20 @@ pub fn header<S: Space>(
         version: summary.version.clone(),
         statistics: statistics.to_vec(),
         fields: [
-            columns(&fields.grains, false)
+            columns(&fields.grains, Kept::Number)
                 .chain(grain_columns.iter().cloned())
                 .collect(),
-            columns(&fields.contacts, false).collect(),
+            columns(&fields.contacts, Kept::Number).collect(),
             vec![Column::new("body", "", "identity of the body")],
         ],
         numbers: [
-            columns(&fields.grains, true).collect(),
-            columns(&fields.contacts, true).collect(),
+            columns(&fields.grains, Kept::Whole).collect(),
+            columns(&fields.contacts, Kept::Whole).collect(),
+            Vec::new(),
+        ],
+        vectors: [
+            columns(&fields.grains, Kept::Vector).collect(),
+            columns(&fields.contacts, Kept::Vector).collect(),
             Vec::new(),
         ],
     }
@@ -151,37 +156,62 @@ fn fields<S: Space>(s: &Simulation<S>, circuit: bool) -> Fields<S> {
     fields
 }
 
-/// Columns of fields of numbers, or of whole numbers.
-fn columns<S: Space, T>(fields: &FieldList<S, T>, whole: bool) -> impl Iterator<Item = Column> {
-    let listed = fields.iter().filter(move |f| f.is_whole() == whole);
+/// How the values of a field are kept in the file.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    Number,
+    Whole,
+    Vector,
+}
+
+impl Kept {
+    fn of<S: Space, T>(field: &Field<S, T>) -> Self {
+        match field.value {
+            Value::Number(_) => Self::Number,
+            Value::Whole(_) => Self::Whole,
+            Value::Vector(_) => Self::Vector,
+        }
+    }
+}
+
+/// Columns of the fields that are kept in this way.
+fn columns<S: Space, T>(fields: &FieldList<S, T>, kept: Kept) -> impl Iterator<Item = Column> {
+    let listed = fields.iter().filter(move |f| Kept::of(f) == kept);
     listed.map(|f| Column::new(f.name, f.unit, f.doc))
 }
 
 /// Appends the values of all fields for one thing.
 fn push_fields<S: Space, T>(part: &mut Part, fields: &FieldList<S, T>, s: &Simulation<S>, of: &T) {
     let (mut data, mut numbers) = (part.data.iter_mut(), part.numbers.iter_mut());
+    let mut vectors = part.vectors.iter_mut();
     for field in fields.iter() {
         match &field.value {
             Value::Number(get) => data.next().into_iter().for_each(|c| c.push(get(s, of))),
             Value::Whole(get) => numbers.next().into_iter().for_each(|c| c.push(get(s, of))),
+            Value::Vector(get) => vectors
+                .next()
+                .into_iter()
+                .for_each(|c| c.extend(get(s, of))),
         }
     }
 }
 
 /// A part with empty columns for these fields.
 fn empty<S: Space, T>(fields: &FieldList<S, T>) -> Part {
-    let count = |whole: bool| fields.iter().filter(|f| f.is_whole() == whole).count();
+    let count = |kept: Kept| fields.iter().filter(|f| Kept::of(f) == kept).count();
     Part {
-        data: vec![Vec::new(); count(false)],
-        numbers: vec![Vec::new(); count(true)],
+        data: vec![Vec::new(); count(Kept::Number)],
+        numbers: vec![Vec::new(); count(Kept::Whole)],
+        vectors: vec![Vec::new(); count(Kept::Vector)],
         ..Part::default()
     }
 }
 
-/// Bytes per grain and per contact of a recorded state: points, cells and fields of 8 bytes.
+/// Bytes per grain and per contact of a recorded state: points, cells and fields, 8 bytes a number.
 pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     let fields = fields(s, circuit);
-    let (grain, contact) = (fields.grains.iter().count(), fields.contacts.iter().count());
+    let grain: usize = fields.grains.iter().map(Field::width).sum();
+    let contact: usize = fields.contacts.iter().map(Field::width).sum();
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 

@@ -20,8 +20,9 @@ const FIGURES: [&str; 8] = [
 ];
 
 /// Files of the program in the folder of a run: they are in place when older files are removed, and no observer's.
-const OWN: [&str; 5] = [
+const OWN: [&str; 6] = [
     "results.h5",
+    "grains.vtkhdf",
     "bodies.vtkhdf",
     "contacts.vtkhdf",
     "statistics.csv",

@@ -67,7 +67,7 @@ fn every_column_of_the_shipped_cases_is_documented() {
 }
 
 /// Fields whose row in the page lacks, or does not say their unit.
-fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a str> {
+pub(super) fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a str> {
     let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(path).unwrap();
     let described = |(name, unit): &(&str, &str)| {
@@ -76,6 +76,28 @@ fn undocumented<'a>(fields: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<&'a
     };
     let missing = fields.filter(|f| !described(f));
     missing.map(|(name, _)| name).collect()
+}
+
+/// The tables of fields in the page: of what, and the names in their first column.
+pub(super) fn field_tables() -> Vec<(String, BTreeSet<String>)> {
+    let path = format!("{}/docs/outputs.md", env!("CARGO_MANIFEST_DIR"));
+    let page = std::fs::read_to_string(path).unwrap();
+    let mut tables: Vec<(String, BTreeSet<String>)> = Vec::new();
+    let mut open = false;
+    for line in page.lines() {
+        let Some(first) = line.strip_prefix('|').and_then(|l| l.split('|').next()) else {
+            open = false;
+            continue;
+        };
+        if let Some(kind) = first.trim().strip_prefix("of ") {
+            let kind = kind.split(',').next().unwrap_or(kind);
+            tables.push((kind.to_owned(), BTreeSet::new()));
+            open = true;
+        } else if let (true, Some((_, names))) = (open, tables.last_mut()) {
+            names.extend(first.split('`').skip(1).step_by(2).map(str::to_owned));
+        }
+    }
+    tables
 }
 
 #[test]

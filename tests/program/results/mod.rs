@@ -6,6 +6,7 @@ mod elastic_grains;
 mod fields;
 mod ledger;
 mod meshes;
+mod names;
 mod streams;
 
 use serde_json::Value;

@@ -204,7 +204,12 @@ fn a_callback_stops_a_run_with_all_its_files_and_it_goes_on_with_the_same_bits()
     let rows = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
     assert_eq!(rows.lines().count(), 251);
     assert!(!marked(&folder.0.join("results.h5")));
-    for file in ["contacts.vtkhdf", "bodies.vtkhdf", "mean_gap.txt"] {
+    for file in [
+        "grains.vtkhdf",
+        "contacts.vtkhdf",
+        "bodies.vtkhdf",
+        "mean_gap.txt",
+    ] {
         assert!(folder.0.join(file).exists(), "{file}");
     }
 

@@ -10,7 +10,7 @@
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
 //! /views/meshes/NAME, /views/surfaces/NAME                temporal VTKHDF UnstructuredGrid of deformable bodies
 //! /checkpoints/even, /checkpoints/odd                    states for `--resume`, see [`crate::checkpoint`]
-//! /VTKHDF      the grains' view, for ParaView             contacts.vtkhdf and others: links to the other views
+//! /VTKHDF      the grains' view                           grains.vtkhdf and others: links to the views, for ParaView
 //! ```
 
 mod dataset;
@@ -43,7 +43,7 @@ use shapes::Shaped;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use store::Store;
-use view::View;
+use view::{Columns, View};
 
 /// Contents that are known before the first step.
 #[derive(Clone, Debug, Default)]
@@ -68,6 +68,8 @@ pub struct Header {
     pub fields: [Vec<Column>; 3],
     /// Integer fields of grains, contacts and bodies.
     pub numbers: [Vec<Column>; 3],
+    /// Vector fields of grains, contacts and bodies.
+    pub vectors: [Vec<Column>; 3],
     /// Columns of broken bonds; empty if no interface has a cohesion law.
     pub broken: Vec<Column>,
     /// Columns of debris; empty without a circuit.
@@ -383,7 +385,7 @@ fn declare_meshes(store: &mut Store, meshes: &[Mesh]) -> Result<Vec<MeshView>, R
 
 /// Names of the files that link to the views, for ParaView, and these views.
 fn companions(meshes: &[Mesh]) -> Vec<[String; 2]> {
-    let always = ["contacts", "bodies"].map(|name| name.to_owned());
+    let always = ["grains", "contacts", "bodies"].map(str::to_owned);
     let of_meshes = meshes.iter().map(|mesh| mesh.group.clone());
     let names = always.into_iter().chain(of_meshes);
     names
@@ -409,11 +411,15 @@ fn declare_views(store: &mut Store, header: &Header) -> Result<Vec<View>, Result
         ("contacts", Cells::Lines),
         ("bodies", bodies),
     ];
-    let columns = header.fields.iter().zip(&header.numbers);
     let mut views = Vec::new();
-    for ((name, cells), (fields, numbers)) in kinds.into_iter().zip(columns) {
+    for (k, (name, cells)) in kinds.into_iter().enumerate() {
+        let columns = Columns {
+            data: &header.fields[k],
+            numbers: &header.numbers[k],
+            vectors: &header.vectors[k],
+        };
         let path = format!("/views/{name}");
-        views.push(View::declare(store, &path, cells, (fields, numbers))?);
+        views.push(View::declare(store, &path, cells, columns)?);
     }
     Ok(views)
 }

@@ -42,6 +42,19 @@ pub struct Part {
     pub data: Vec<Vec<f64>>,
     /// Integer fields, likewise.
     pub numbers: Vec<Vec<i64>>,
+    /// Vector fields, likewise, three numbers per value.
+    pub vectors: Vec<Vec<f64>>,
+}
+
+/// The fields of a view, in the order of the columns of its [`Part`]s.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns<'a> {
+    /// Of numbers.
+    pub data: &'a [Column],
+    /// Of integers.
+    pub numbers: &'a [Column],
+    /// Of vectors.
+    pub vectors: &'a [Column],
 }
 
 /// A view in the file.
@@ -55,6 +68,7 @@ pub struct View {
     offsets: [Growing; 4],
     data: Vec<Growing>,
     whole: Vec<Growing>,
+    vectors: Vec<Growing>,
     values: Growing,
     steps: [Growing; 3],
     cell_offsets: Growing,
@@ -73,7 +87,7 @@ impl View {
         store: &mut Store,
         path: &str,
         cells: Cells,
-        (fields, numbers): (&[Column], &[Column]),
+        columns: Columns<'_>,
     ) -> Result<Self, ResultsError> {
         store.group(path)?;
         store.integer_attribute(path, "Version", &[2, 0])?;
@@ -105,21 +119,29 @@ impl View {
         let values = store.growing::<f64>(&format!("{path}/Steps/Values"), 1, doc, FEW)?;
         let doc = ("m", "coordinates");
         let points = store.growing::<f64>(&format!("{path}/Points"), 3, doc, MANY)?;
-        let (mut data, mut whole, mut data_offsets) = (Vec::new(), Vec::new(), Vec::new());
-        for (k, field) in fields.iter().chain(numbers).enumerate() {
-            let (name, doc) = (
-                format!("{path}/{place}/{}", field.name),
-                (field.unit, field.doc),
-            );
-            if k < fields.len() {
-                data.push(store.growing::<f64>(&name, 1, doc, MANY)?);
-            } else {
-                whole.push(store.growing::<i64>(&name, 1, doc, MANY)?);
-            }
-            let name = format!("Steps/{place}Offsets/{}", field.name);
-            let doc = "first value of each state";
-            data_offsets.push(declare_whole(store, path, &name, (1, FEW), doc)?);
-        }
+        let mut data_offsets = Vec::new();
+        let [data, whole, vectors] = [
+            (columns.data, 1, false),
+            (columns.numbers, 1, true),
+            (columns.vectors, 3, false),
+        ]
+        .map(|(fields, width, whole)| {
+            let mut declare = |field: &Column| {
+                let name = format!("{path}/{place}/{}", field.name);
+                let doc = (field.unit, field.doc);
+                let values = match whole {
+                    true => store.growing::<i64>(&name, width, doc, MANY)?,
+                    false => store.growing::<f64>(&name, width, doc, MANY)?,
+                };
+                let name = format!("Steps/{place}Offsets/{}", field.name);
+                let doc = "first value of each state";
+                data_offsets.push(declare_whole(store, path, &name, (1, FEW), doc)?);
+                Ok(values)
+            };
+            let fields = fields.iter().map(&mut declare);
+            fields.collect::<Result<Vec<_>, ResultsError>>()
+        });
+        let (data, whole, vectors) = (data?, whole?, vectors?);
         Ok(Self {
             cells,
             points,
@@ -129,6 +151,7 @@ impl View {
             offsets: all.map(|n| n[2]),
             data,
             whole,
+            vectors,
             values,
             steps: [parts, number, first_points],
             cell_offsets,
@@ -157,12 +180,13 @@ impl View {
             .map(|k| store.rows(self.connectivity[k]) as i64)
             .collect();
         let first_point = store.rows(self.points) as i64;
-        let columns = self.data.iter().chain(&self.whole);
+        let columns = self.data.iter().chain(&self.whole).chain(&self.vectors);
         for (column, offsets) in columns.zip(&self.data_offsets) {
             let first = store.rows(*column) as i64;
             store.append(*offsets, &[first])?;
         }
-        for (column, values) in self.data.iter().zip(&part.data) {
+        let numbers = self.data.iter().zip(&part.data);
+        for (column, values) in numbers.chain(self.vectors.iter().zip(&part.vectors)) {
             store.append(*column, values)?;
         }
         for (column, values) in self.whole.iter().zip(&part.numbers) {

@@ -63,6 +63,7 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
     ];
     fields.extend(forces(newton));
     fields.extend(frame());
+    fields.extend(vectors(newton));
     let bond = |name, doc, get: fn(&crate::contact::Bond<S>) -> f64| {
         Field::number(name, "m", doc, move |s: &Simulation<S>, c: &Contact<S>| {
             s.state.network.bond(c).map_or(0.0, get)
@@ -138,6 +139,19 @@ fn forces<S: Space>(newton: &'static str) -> Vec<Field<S, Contact<S>>> {
         ));
     }
     fields
+}
+
+/// What stands as components as well, as vectors in world axes: viewers draw arrows of these.
+fn vectors<S: Space>(newton: &'static str) -> [Field<S, Contact<S>>; 2] {
+    [
+        Field::vector("force", newton, "force on body_1", |s, c| force(s, c)),
+        Field::vector(
+            "normal",
+            "",
+            "unit normal, from body_2 to body_1",
+            |_, c: &Contact<S>| c.normal,
+        ),
+    ]
 }
 
 /// Normal and tangent.

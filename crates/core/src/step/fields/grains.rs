@@ -110,6 +110,12 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
         velocity("velocity_x", 0),
         velocity("velocity_y", 1),
         velocity("velocity_z", 2),
+        Field::vector(
+            "velocity",
+            "m/s",
+            "velocity of the centre of mass of the body",
+            |s: &Simulation<S>, g: &GrainPart<S>| s.state.bodies.velocity[g.index()],
+        ),
         Field::number(
             "spin",
             "rad/s",
@@ -128,6 +134,12 @@ pub(super) fn standard<S: Space>() -> Vec<Field<S, GrainPart<S>>> {
     ];
     if S::D == 3 {
         fields.extend([spin("spin_x", 0), spin("spin_y", 1), spin("spin_z", 2)]);
+        fields.push(Field::vector(
+            "angular_velocity",
+            "rad/s",
+            "angular velocity",
+            |s: &Simulation<S>, g: &GrainPart<S>| s.state.bodies.spin[g.index()],
+        ));
     }
     fields
 }

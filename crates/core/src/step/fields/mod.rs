@@ -23,7 +23,7 @@ pub use contacts::id_fields;
 pub use grains::{GrainPart, ORIENTATION, orientation, removed};
 
 use crate::contact::Contact;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
 use std::fmt;
 use std::sync::Arc;
@@ -37,6 +37,8 @@ pub enum Value<S: Space, T> {
     Number(Get<S, T, f64>),
     /// A whole number, such as an identity.
     Whole(Get<S, T, i64>),
+    /// A vector in world axes, x, y, z; in 2D z is 0.
+    Vector(Get<S, T, [f64; 3]>),
 }
 
 /// A quantity that each thing of a kind (`T`: [`GrainPart`], [`Contact`]) carries.
@@ -81,17 +83,41 @@ impl<S: Space, T> Field<S, T> {
         }
     }
 
-    /// Its value as a number.
+    /// A field of vectors in world axes.
+    pub fn vector<V: VectorLike>(
+        name: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        get: impl Fn(&Simulation<S>, &T) -> V + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            doc,
+            value: Value::Vector(Arc::new(move |s, of| get(s, of).padded())),
+        }
+    }
+
+    /// Its value as a number, of a vector its norm.
     pub fn get(&self, s: &Simulation<S>, of: &T) -> f64 {
         match &self.value {
             Value::Number(get) => get(s, of),
             Value::Whole(get) => get(s, of) as f64,
+            Value::Vector(get) => get(s, of).iter().map(|x| x * x).sum::<f64>().sqrt(),
         }
     }
 
     /// Whether its values are whole numbers.
     pub fn is_whole(&self) -> bool {
         matches!(self.value, Value::Whole(_))
+    }
+
+    /// Numbers of a value: 3 of a vector, 1 of others.
+    pub fn width(&self) -> usize {
+        match self.value {
+            Value::Vector(_) => 3,
+            Value::Number(_) | Value::Whole(_) => 1,
+        }
     }
 }
 
@@ -100,6 +126,7 @@ impl<S: Space, T> Clone for Field<S, T> {
         let value = match &self.value {
             Value::Number(get) => Value::Number(get.clone()),
             Value::Whole(get) => Value::Whole(get.clone()),
+            Value::Vector(get) => Value::Vector(get.clone()),
         };
         Self { value, ..*self }
     }
