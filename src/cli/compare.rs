@@ -18,6 +18,9 @@ pub struct CompareArgs {
 pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let size = fretwork_report::compare(&args.dirs, &args.out)?;
     let (path, runs) = (args.out.display(), args.dirs.len());
-    inform(&format!("{path} ({:.1} MB): {runs} runs side by side; open it in a browser", size as f64 / 1e6));
+    inform(&format!(
+        "{path} ({:.1} MB): {runs} runs side by side; open it in a browser",
+        size as f64 / 1e6
+    ));
     Ok(())
 }

@@ -38,15 +38,21 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
         )));
     }
     let bytes = (!args.full).then_some((args.size * 1e6) as usize);
-    let law = |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
+    let law =
+        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
     let (path, size) = fretwork_report::report(&args.dir, &Options { bytes, law: &law })?;
-    inform(&format!("{} ({:.1} MB): open it in a browser", path.display(), size as f64 / 1e6));
+    inform(&format!(
+        "{} ({:.1} MB): open it in a browser",
+        path.display(),
+        size as f64 / 1e6
+    ));
     Ok(())
 }
 
 /// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.
 pub fn of_run(folder: &Path, quiet: bool) {
-    let law = |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
+    let law =
+        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
     let options = Options {
         bytes: Some(DEFAULT_BYTES),
         law: &law,

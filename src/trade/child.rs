@@ -271,7 +271,10 @@ impl Launcher {
 
     fn command(&self, sets: &[String], number: u64, place: &Path) -> Command {
         let mut command = Command::new(&self.program);
-        command.arg("run").arg(&self.case).args(["--json", "--no-report"]);
+        command
+            .arg("run")
+            .arg(&self.case)
+            .args(["--json", "--no-report"]);
         command.arg("--out").arg(place).args(["--threads", "1"]);
         let quiet = [
             "output.frames=0",

@@ -12,12 +12,13 @@
   const colour = (k) => (FW.isDark() ? DARK : LIGHT)[k % LIGHT.length];
   const ink = () => (FW.isDark() ? ["#c3c8d0", "#2c3038"] : ["#444a54", "#e6e8ec"]);
 
-  const axis = (label, scale, side) => {
+  const axis = (label, scale, side, whole) => {
     const [stroke, grid] = ink();
     const font = "12px system-ui, sans-serif";
     return {
       scale, side, label, stroke, font, labelFont: font, labelSize: 20, size: side === 2 ? 38 : 62, gap: 4,
       grid: { stroke: grid, width: 1, show: side !== 1 }, ticks: { stroke: grid, width: 1, size: 5 },
+      ...(whole ? { incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] } : {}),
       values: (_, ticks) => ticks.map((t) => (t === null ? "" : FW.number(t, 6))),
     };
   };
@@ -97,7 +98,8 @@
       const named = (label, unit) => (unit ? `${label} (${unit})` : label);
       const labels = shown.map((s, k) => {
         const own = spec.ys.filter((y) => of(y) === k);
-        return named(own.length === 1 ? own[0].label : spec.quantity || "", s.unit).trim();
+        const names = spec.quantity || own.map((y) => y.label).join(", ");
+        return named(own.length <= 3 || spec.quantity ? names : "", s.unit).trim();
       });
       const series = spec.ys.map((y, k) => ({
         label: y.label, stroke: () => colour(k), width: 1.6, scale: of(y) ? "y2" : "y", spanGaps: spec.gaps === true,
@@ -112,7 +114,7 @@
       const options = {
         width, height: Math.round(Math.min(340, Math.max(230, 0.55 * width))), mode: spec.loose ? 2 : 1,
         scales: { x: { time: false, range: spec.loose ? pad : plain }, y: { range: pad }, ...(units.length > 1 ? { y2: { range: pad } } : {}) },
-        axes: [axis(named(spec.x.label, across.unit), "x", 2), axis(labels[0], "y", 3), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
+        axes: [axis(named(spec.x.label, across.unit), "x", 2, spec.x.label === "cycle"), axis(labels[0], "y", 3), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
         series: [spec.loose ? null : { label: named(spec.x.label, across.unit), value: (_, v) => FW.number(v, 5) }, ...series],
         cursor: { drag: { x: true, y: spec.loose === true, uni: 20 }, ...(spec.link ? { sync: { key: "time" } } : {}),
           ...(spec.loose ? { dataIdx: nearest, points: { size: 0 } } : {}) },

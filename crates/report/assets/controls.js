@@ -10,11 +10,11 @@
 
   FW.controls = (viewer) => {
     const { scene, look } = viewer;
-    const play = element("button", { type: "button", "aria-label": "Play", onclick: () => viewer.play() }, "▶");
+    const play = element("button", { type: "button", class: "play", onclick: () => viewer.play() }, "Play");
     const scrub = element("input", { type: "range", class: "scrub", min: 0, max: scene.count - 1, step: 1, "aria-label": "Time", oninput: (e) => viewer.show(Number(e.target.value), true) });
     const time = element("span", { class: "time", "aria-live": "off" });
     const step = (text, label, by) => element("button", { type: "button", "aria-label": label, title: label, onclick: () => viewer.show(viewer.now + by, true) }, text);
-    const bar = element("div", { class: "bar" }, play, step("⏮", "Previous state", -1), step("⏭", "Next state", 1), scrub, time,
+    const bar = element("div", { class: "bar" }, play, step("‹", "Previous state", -1), step("›", "Next state", 1), scrub, time,
       choose("speed", [["0.25", "¼×"], ["0.5", "½×"], ["1", "1×"], ["2", "2×"], ["4", "4×"]], "1", (v) => { viewer.speed = Number(v); }),
       element("button", { type: "button", onclick: () => viewer.reset() }, "Reset view"));
     const fields = (list) => list.filter((f) => f.all[0] !== f.all[1]).map((f) => [f.name, f.name.replaceAll("_", " ") + (f.unit ? ` (${f.unit})` : ""), f.doc]);
@@ -38,7 +38,7 @@
     const turn = scene.flat ? "" : " (shift moves)";
     const help = element("p", { class: "keys" }, "Keys, with the picture in focus: ",
       ...[["space", "play"], [", .", "step"], ["Home End", "first, last"], ["arrows", (scene.flat ? "move" : "turn") + turn], ["+ −", "zoom"], ["0", "reset"], ["g", "grains"], ["c", "contacts"], ["f", "colours"], ["b", "first bodies"]]
-        .flatMap(([k, text]) => [element("kbd", {}, k), ` ${text}  `]),
+        .map(([k, text]) => element("span", {}, element("kbd", {}, k), ` ${text}`)),
       scene.flat ? "Drag to move, wheel or pinch to zoom." : "Drag to turn, shift-drag or two fingers to move, wheel or pinch to zoom.");
     return { bar, shown, help, play, scrub, time };
   };

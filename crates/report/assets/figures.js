@@ -91,7 +91,8 @@
     const others = columns.filter((c) => c !== slices && !["from", "to"].includes(c.name) && !rises(c));
     if (!axes.length || !others.length) { host.remove(); return; }
     let x = axes[0], y = others[0], chart = null;
-    heading(host, figure.data.name.replaceAll("_", " "), slices ? "Profiles of a table of the run, by slice of time; slice 0 is the whole time." : "A table of the run.");
+    const name = figure.data.name.replaceAll("_", " ");
+    heading(host, slices ? `Profiles across: ${name}` : `Table: ${name}`, `From ${figure.data.name}.csv${slices ? ", by slice of time" : ""}.`);
     const draw = () => {
       chart?.remove();
       const at = (slice) => { const c = (name) => columns.find((c) => c.name === name); const k = groups.get(slice)[0]; return c("from") && c("to") ? ` (${FW.quantity(c("from").values[k], "s", 3)} to ${FW.quantity(c("to").values[k], "s", 3)})` : ""; };

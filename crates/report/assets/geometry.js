@@ -42,7 +42,10 @@
     const range = field ? look.grainRange : null;
     const tint = (k) => (first[k] === 1 ? FW.colours.first : values ? FW.colourOf(range, values[k]) : FW.colours.grain);
     const balls = [], pieces = [];
-    for (let k = 0; k < shape.length; k++) (shape[k] === 0 ? balls : shape[k] > 1 ? pieces : []).push(k);
+    for (let k = 0; k < shape.length; k++) {
+      if (first[k] === 1 && !look.bodies) continue;
+      (shape[k] === 0 ? balls : shape[k] > 1 ? pieces : []).push(k);
+    }
     const layers = [];
     const at = new Float32Array(3 * balls.length), r = new Float32Array(balls.length);
     balls.forEach((k, i) => { at.set(places.subarray(3 * k, 3 * k + 3), 3 * i); r[i] = radius[k] / scene.size; });
@@ -75,7 +78,7 @@
     const force = arrays.get("contact:force_normal") || [], field = look.contactField;
     const values = field ? arrays.get(`contact:${field.name}`) : null;
     const thick = look.width / scene.size;
-    const drawn = [], weight = (k) => Math.min(1.6, Math.sqrt(Math.abs(force[k] || 0) / (look.force || 1)));
+    const drawn = [], weight = (k) => Math.min(1.3, Math.sqrt(Math.abs(force[k] || 0) / (look.force || 1)));
     for (let k = 0; k < count; k++) {
       const bonded = state[k] === 1 || state[k] === 2;
       if (bonded && look.contacts === "bonds") drawn.push(k);
@@ -116,13 +119,16 @@
       }
       for (let i = 1; i < points.length; i++) edges.add(points[i - 1], points[i], 0, edge);
       if (side[c] === 1) { for (let i = 2; i + 1 < points.length; i++) solid.triangle(points[0], points[i - 1], points[i], fill); continue; }
-      // The solid is on the right of the outline: across the whole of an open one, along each normal of a closed one.
+      // The solid is on the right of the outline: down to a straight line of an open one, along each normal of a closed one.
       const depth = scene.depth / scene.size;
       const normal = (p, q) => { const [dx, dy] = [q[0] - p[0], q[1] - p[1]], n = Math.hypot(dx, dy) || 1; return [(depth * dy) / n, (-depth * dx) / n, 0]; };
       const whole = normal(points[0], points[points.length - 1]);
+      const along = (p) => (p[0] * whole[0] + p[1] * whole[1]) / depth;
+      const bottom = points.reduce((most, p) => Math.max(most, along(p)), -Infinity) + depth;
+      const under = (p) => { const way = (bottom - along(p)) / depth; return [p[0] + way * whole[0], p[1] + way * whole[1], p[2]]; };
       for (let i = 1; i < points.length; i++) {
-        const n = side[c] === 2 ? normal(points[i - 1], points[i]) : whole;
-        const [p, q] = [points[i - 1], points[i]], [r, s] = [p, q].map((x) => [x[0] + n[0], x[1] + n[1], x[2]]);
+        const n = normal(points[i - 1], points[i]);
+        const [p, q] = [points[i - 1], points[i]], [r, s] = [p, q].map((x) => (side[c] === 2 ? [x[0] + n[0], x[1] + n[1], x[2]] : under(x)));
         solid.triangle(p, q, s, fill);
         solid.triangle(p, s, r, fill);
       }

@@ -50,7 +50,7 @@ precision highp float; in vec4 tint; out vec4 o; void main() { o = tint; }`;
 
   FW.Gl = class {
     constructor(canvas) {
-      const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+      const gl = canvas.getContext("webgl2", { alpha: false, antialias: true, preserveDrawingBuffer: true });
       if (!gl) throw new Error("it has no WebGL2");
       this.gl = gl;
       this.programs = { balls: program(gl, BALL_V, BALL_F), tris: program(gl, TRI_V, TRI_F), lines: program(gl, LINE_V, LINE_F) };

@@ -12,17 +12,28 @@
       this.frames.set(0, this.base);
       this.axes = this.flat ? ["x", "y"] : ["x", "y", "z"];
       const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-      const take = (name, radius) => this.axes.forEach((axis, a) => {
-        const values = this.base.get(`${name}.${axis}`) || [];
-        for (let k = 0; k < values.length; k++) {
-          const r = radius ? radius[k] : 0;
-          low[a] = Math.min(low[a], values[k] - r);
-          high[a] = Math.max(high[a], values[k] + r);
-        }
-      });
-      take("grain", this.base.get("grain:radius"));
-      this.head.meshes.forEach((_, k) => take(`mesh${k}`));
-      if (!(low[0] <= high[0])) take("body");
+      const boxes = (arrays) => {
+        const box = (name, radius, way) => {
+          const columns = this.axes.map((axis) => arrays.get(`${name}.${axis}`) || []);
+          const low = columns.map(() => Infinity), high = columns.map(() => -Infinity);
+          columns.forEach((values, a) => {
+            const moved = way && arrays.get(`${way}.${this.axes[a]}`);
+            for (let k = 0; k < values.length; k++) {
+              const x = values[k] + (moved ? moved[k] : 0), r = radius ? radius[k] : 0;
+              low[a] = Math.min(low[a], x - r);
+              high[a] = Math.max(high[a], x + r);
+            }
+          });
+          return [low, high];
+        };
+        return { all: [box("grain", arrays.get("grain:radius")), ...this.head.meshes.map((_, k) => box(`mesh${k}`, null, `mesh${k}.move`))], body: box("body") };
+      };
+      const join = ([l, h]) => this.axes.forEach((_, a) => { low[a] = Math.min(low[a], l[a]); high[a] = Math.max(high[a], h[a]); });
+      const [start, end] = [boxes(this.base), boxes(await this.frame(this.count - 1))];
+      [...start.all, ...end.all].forEach(join);
+      // First bodies are seen whole where they are not much larger than what is between them.
+      const wide = ([l, h]) => Math.hypot(...this.axes.map((_, a) => Math.max(0, h[a] - l[a])));
+      if (!(low[0] <= high[0]) || (!this.flat && wide(end.body) < 4 * wide([low, high]))) [start.body, end.body].forEach(join);
       for (let a = 0; a < 3; a++) if (!(low[a] <= high[a])) { low[a] = 0; high[a] = 0; }
       this.head.period.forEach((length, a) => {
         if (length && this.flat && a === 0) { low[0] = 0; high[0] = length; }

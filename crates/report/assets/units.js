@@ -6,6 +6,8 @@
   // Factor from the SI unit, and the unit with its prefix.
   FW.scaled = (most, unit) => {
     const size = Math.abs(most);
+    // Volumes have a unit in common, since cubes of prefixes are far apart.
+    if (/^m\^?3(?=$|[ /])/.test(unit) && size < 1e-2) return { factor: 1e9, unit: unit.replace(/^m\^?3/, "mm³") };
     if (!TAKES.test(unit) || !(size > 0) || !Number.isFinite(size)) return { factor: 1, unit };
     const all = unit.startsWith("s") ? PREFIXES.slice(3) : PREFIXES;
     const [step, prefix] = all.find(([step]) => size >= step) || all[all.length - 1];

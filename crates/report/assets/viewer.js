@@ -19,7 +19,14 @@
       const stage = element("div", { class: "stage" }, this.canvas, this.readout, this.rule);
       host.append(stage, this.still, this.parts.bar, this.parts.shown, this.key, this.parts.help);
       FW.moves(this, this.canvas, this.parts.shown);
-      new ResizeObserver(() => this.draw()).observe(this.canvas);
+      // A long layer needs less height than a heap.
+      const shape = () => {
+        if (!scene.flat) return;
+        const wanted = 1.15 * stage.clientWidth * (scene.extent[1] / scene.extent[0]);
+        this.canvas.style.height = `${Math.round(Math.max(200, Math.min(wanted, 0.66 * innerHeight, 620)))}px`;
+      };
+      shape();
+      new ResizeObserver(() => { shape(); this.draw(); }).observe(stage);
       this.canvas.addEventListener("webglcontextlost", (e) => e.preventDefault());
       this.canvas.addEventListener("webglcontextrestored", () => { this.gl = new FW.Gl(this.canvas); this.build(); });
     }
@@ -37,8 +44,8 @@
       return {
         grains: !flat && this.bonded ? "small" : "solid", grainField: field, grainRange: field && FW.range(field),
         contacts: this.bonded ? "bonds" : flat ? "chains" : "none", chains: true, contactField: undefined,
-        force: force ? Math.max(Math.abs(force.most[0]), Math.abs(force.most[1])) : 1, width: 0.3 * mean,
-        bodies: true, meshes: true, meshField: (find(fields, "von_mises", "pressure") || fields[0])?.name || "", stretch: 1, edges: false,
+        force: force ? Math.max(Math.abs(force.most[0]), Math.abs(force.most[1])) : 1, width: 0.26 * mean,
+        bodies: true, meshes: true, meshField: (find(fields, "von_mises", "pressure") || fields.find((f) => f.all[0] !== f.all[1]))?.name || "", stretch: 1, edges: false,
       };
     }
 
@@ -116,16 +123,14 @@
 
     stop() {
       this.playing = false;
-      this.parts.play.textContent = "▶";
-      this.parts.play.setAttribute("aria-label", "Play");
+      this.parts.play.textContent = "Play";
     }
 
     play() {
       if (this.playing) { this.stop(); return; }
       if (this.scene.count < 2) return;
       this.playing = true;
-      this.parts.play.textContent = "⏸";
-      this.parts.play.setAttribute("aria-label", "Pause");
+      this.parts.play.textContent = "Pause";
       let at = this.now >= this.scene.count - 1 ? -1 : this.now, due = 0;
       const tick = async (clock) => {
         if (!this.playing) return;
@@ -152,7 +157,9 @@
     await scene.open();
     const viewer = new Viewer(scene, document.getElementById("viewer"));
     await viewer.show(scene.count - 1);
-    viewer.picture();
+    // Where pictures are drawn by the processor, reading one back takes long: after everything else.
+    const idle = window.requestIdleCallback || ((call) => setTimeout(call, 500));
+    idle(() => { if (viewer.now === scene.count - 1) viewer.picture(); });
     FW.redraw = () => viewer.draw();
     FW.still = () => { if (!viewer.playing) viewer.picture(); };
     FW.shown = viewer;

@@ -66,7 +66,9 @@ impl Arrays {
             (true, true) => ((v - low) / (high - low) * (most - 1.0)).round(),
         };
         match kind {
-            Kind::U8 => self.bytes.extend(values.iter().map(|v| code(*v, 255.0) as u8)),
+            Kind::U8 => self
+                .bytes
+                .extend(values.iter().map(|v| code(*v, 255.0) as u8)),
             Kind::U16 => {
                 // Differences of neighbours are small: low and high bytes apart are packed better.
                 let codes: Vec<u16> = values.iter().map(|v| code(*v, 65535.0) as u16).collect();
@@ -79,7 +81,9 @@ impl Arrays {
             Kind::F32 => self
                 .bytes
                 .extend(values.iter().flat_map(|v| (*v as f32).to_le_bytes())),
-            Kind::F64 => self.bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
+            Kind::F64 => self
+                .bytes
+                .extend(values.iter().flat_map(|v| v.to_le_bytes())),
         }
     }
 
@@ -154,7 +158,10 @@ mod tests {
         second.push("a", Kind::U8, &[0.0, 1.0, f64::NAN]);
         second.push("b", Kind::F64, &[3.5]);
         let rest = second.without_those_of(&first);
-        let parts: Vec<_> = rest.parts().map(|(h, b)| (h.name.clone(), b.to_vec())).collect();
+        let parts: Vec<_> = rest
+            .parts()
+            .map(|(h, b)| (h.name.clone(), b.to_vec()))
+            .collect();
         assert_eq!(parts, [("b".to_owned(), 3.5f64.to_le_bytes().to_vec())]);
         let codes: Vec<_> = first.parts().map(|(_, b)| b.to_vec()).collect();
         assert_eq!(codes[0], [0, 254, 255]);

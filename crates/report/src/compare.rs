@@ -1,7 +1,7 @@
 //! Several runs side by side on one page.
 
 use crate::folder::RunFolder;
-use crate::page::{Page, difference_table, escape, section};
+use crate::page::{Page, difference_table, escape, footer, section, value};
 use crate::results::{self, ResultRow};
 use crate::series::Series;
 use crate::{ReportError, figures, write};
@@ -16,7 +16,10 @@ const ROWS: usize = 3000;
 /// # Errors
 /// A folder holds no run, or the page cannot be written.
 pub fn compare(folders: &[PathBuf], to: &Path) -> Result<usize, ReportError> {
-    let runs: Vec<RunFolder> = folders.iter().map(|f| RunFolder::open(f)).collect::<Result<_, _>>()?;
+    let runs: Vec<RunFolder> = folders
+        .iter()
+        .map(|f| RunFolder::open(f))
+        .collect::<Result<_, _>>()?;
     let html = page(&runs, &names(&runs));
     write(to, &html)?;
     Ok(html.len())
@@ -27,15 +30,25 @@ fn names(runs: &[RunFolder]) -> Vec<String> {
     let short: Vec<String> = runs.iter().map(RunFolder::name).collect();
     let name = |k: usize| {
         let alone = short.iter().filter(|n| **n == short[k]).count() == 1;
-        if alone { short[k].clone() } else { runs[k].path.display().to_string() }
+        if alone {
+            short[k].clone()
+        } else {
+            runs[k].path.display().to_string()
+        }
     };
     (0..runs.len()).map(name).collect()
 }
 
 fn page(runs: &[RunFolder], names: &[String]) -> String {
     let mut gaps: Vec<Vec<String>> = runs.iter().map(|r| r.gaps.clone()).collect();
-    let series: Vec<Series> = runs.iter().zip(&mut gaps).map(|(run, gaps)| Series::read(run, ROWS, gaps)).collect();
-    let mut body = String::from("<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n<h1>Runs side by side</h1>\n");
+    let series: Vec<Series> = runs
+        .iter()
+        .zip(&mut gaps)
+        .map(|(run, gaps)| Series::read(run, ROWS, gaps))
+        .collect();
+    let mut body = String::from(
+        "<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n<h1>Runs side by side</h1>\n",
+    );
     let titles: Vec<&str> = runs.iter().map(|r| r.title.as_str()).collect();
     let same = titles.windows(2).all(|w| w[0] == w[1]);
     if let Some(title) = titles.first().filter(|_| same) {
@@ -44,14 +57,24 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
     body += "</header>\n<nav aria-label=\"Sections\"><a href=\"#verdicts\">Verdicts</a><a href=\"#inputs\">Inputs that differ</a>\
              <a href=\"#results\">Results</a><a href=\"#figures\">Figures</a></nav>\n<main>\n";
     body += &section("verdicts", "Verdicts", &verdicts(runs, names, &gaps));
-    body += &section("inputs", "Inputs that differ", &difference_table(runs, names));
+    body += &section(
+        "inputs",
+        "Inputs that differ",
+        &difference_table(runs, names),
+    );
     body += &section("results", "Results", &result_table(runs, names));
     let figures = common_figures(&series);
-    let frames: String = (0..figures.len()).map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n")).collect();
+    let frames: String = (0..figures.len())
+        .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
+        .collect();
     let lead = "<p class=\"lead\">Drag to zoom, double-click to see all; figures over time are linked.</p>\n";
-    body += &section("figures", "Figures", &format!("{lead}<div class=\"figures\">\n{frames}</div>\n"));
-    body += "</main>\n<footer><p>Made by <code>fretwork compare</code>. The page is complete in itself and loads nothing. \
-             Figures are drawn with uPlot (MIT, © 2022 Leon Sorokin).</p></footer>\n";
+    body += &section(
+        "figures",
+        "Figures",
+        &format!("{lead}<div class=\"figures\">\n{frames}</div>\n"),
+    );
+    body += "</main>\n";
+    body += &footer("fretwork compare");
     let head = |(series, name): (&Series, &String)| {
         let mut head = series.head();
         head["name"] = json!(name);
@@ -64,7 +87,11 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
             "runs": series.iter().zip(names).map(head).collect::<Vec<Value>>(),
             "figures": figures,
         }),
-        blobs: series.iter().enumerate().map(|(k, s)| (format!("series-{k}"), s.packed())).collect(),
+        blobs: series
+            .iter()
+            .enumerate()
+            .map(|(k, s)| (format!("series-{k}"), s.packed()))
+            .collect(),
         viewer: false,
     }
     .html()
@@ -76,7 +103,10 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
         let verdict = crate::page::Verdict::of(run);
         let warnings = run.summary["warnings"].as_array();
         let warnings = warnings.into_iter().flatten().filter_map(Value::as_str);
-        let all: Vec<String> = warnings.map(escape).chain(gaps.iter().map(|g| escape(g))).collect();
+        let all: Vec<String> = warnings
+            .map(escape)
+            .chain(gaps.iter().map(|g| escape(g)))
+            .collect();
         rows += &format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td><span class=\"badge {}\">{}</span></td><td class=\"meaning\">{}</td></tr>\n",
             escape(name),
@@ -98,7 +128,9 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
         .iter()
         .map(|run| {
             let groups = results::groups(run).into_iter();
-            groups.flat_map(|(title, rows)| rows.into_iter().map(move |r| (title, r))).collect()
+            groups
+                .flat_map(|(title, rows)| rows.into_iter().map(move |r| (title, r)))
+                .collect()
         })
         .collect();
     let mut keys: Vec<(&'static str, String)> = Vec::new();
@@ -116,15 +148,18 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
     for (title, label) in &keys {
         if *title != group {
             group = title;
-            rows += &format!("<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{title}</th></tr>\n", runs.len() + 1);
+            rows += &format!(
+                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{title}</th></tr>\n",
+                runs.len() + 1
+            );
         }
         rows += &format!("<tr><th scope=\"row\">{}</th>", escape(label));
         for run in &all {
             let found = run.iter().find(|(t, r)| t == title && r.label == *label);
             rows += &match found {
                 Some((_, r)) => format!(
-                    "<td><span class=\"value\">{}</span> <span class=\"interval\">{}</span></td>",
-                    escape(&r.value),
+                    "<td>{} <span class=\"interval\">{}</span></td>",
+                    value(&r.value),
                     escape(&r.interval)
                 ),
                 None => "<td>none</td>".to_owned(),
@@ -132,7 +167,10 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
         }
         rows += "</tr>\n";
     }
-    let heads: String = names.iter().map(|n| format!("<th scope=\"col\">{}</th>", escape(n))).collect();
+    let heads: String = names
+        .iter()
+        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
+        .collect();
     format!(
         "<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Results\"><table id=\"side-by-side\"><thead><tr><th scope=\"col\">Result</th>{heads}</tr></thead>\n\
          <tbody>\n{rows}</tbody></table></div>\n"
@@ -145,14 +183,46 @@ fn common_figures(series: &[Series]) -> Vec<Value> {
     let mut out = Vec::new();
     let mut add = |title: &str, note: &str, kind: &str, x: &str, y: &str| {
         if varies(y) && (x == "time" || varies(x)) {
-            out.push(json!({"id": y, "title": title, "note": note, "kind": kind, "x": x, "y": [y]}));
+            out.push(
+                json!({"id": y, "title": title, "note": note, "kind": kind, "x": x, "y": [y]}),
+            );
         }
     };
-    add("Force against displacement, last cycle", "The area of a loop is the energy of its cycle.", "loops", "delta", "Q");
-    add("Friction over time", "Ratio of tangential to normal force, row by row.", "time", "time", "mu");
-    add("Damage ratio", "Broken bonds over bonds made.", "time", "time", "damage_ratio");
-    add("Energy of friction", "Dissipated by friction since the start.", "time", "time", "friction");
-    add("Worn volume", "Removed from first bodies since the start.", "time", "time", "worn_first");
+    add(
+        "Force against displacement, last cycle",
+        "The area of a loop is the energy of its cycle.",
+        "loops",
+        "delta",
+        "Q",
+    );
+    add(
+        "Friction over time",
+        "Ratio of tangential to normal force, row by row.",
+        "time",
+        "time",
+        "mu",
+    );
+    add(
+        "Damage ratio",
+        "Broken bonds over bonds made.",
+        "time",
+        "time",
+        "damage_ratio",
+    );
+    add(
+        "Energy of friction",
+        "Dissipated by friction since the start.",
+        "time",
+        "time",
+        "friction",
+    );
+    add(
+        "Worn volume",
+        "Removed from first bodies since the start.",
+        "time",
+        "time",
+        "worn_first",
+    );
     let mut others: Vec<String> = series.iter().flat_map(figures::energies).collect();
     others.sort();
     others.dedup();

@@ -66,12 +66,29 @@ pub(crate) fn of(run: &RunFolder, series: &Series, tables: &[Table]) -> Vec<Figu
         ));
     }
     let time = |id, title, note, y: Vec<String>| figure(id, title, note, "time", "time", y);
-    out.push(time("friction", "Friction over time", "Ratio of tangential to normal force, row by row.", varying(&["mu"])));
-    out.push(time("forces", "Forces on the tested body", "Tangential force Q and normal force P.", varying(&["Q", "P"])));
+    out.push(time(
+        "friction",
+        "Friction over time",
+        "Ratio of tangential to normal force, row by row.",
+        varying(&["mu"]),
+    ));
+    out.push(time(
+        "forces",
+        "Forces on the tested body",
+        "Tangential force Q and normal force P.",
+        varying(&["Q", "P"]),
+    ));
     if let Some(data) = by_cycle(&run.summary) {
         out.push(Figure {
             data,
-            ..figure("cycles", "Friction by cycle", "From forces, over each cycle; the plateau leaves the elastic travel out.", "cycles", "cycle", vec![])
+            ..figure(
+                "cycles",
+                "Friction by cycle",
+                "From forces, over each cycle; the plateau leaves the elastic travel out.",
+                "cycles",
+                "cycle",
+                vec![],
+            )
         });
     }
     out.push(time(
@@ -80,10 +97,25 @@ pub(crate) fn of(run: &RunFolder, series: &Series, tables: &[Table]) -> Vec<Figu
         "Broken bonds over bonds made, and the mean damage of all bonds.",
         varying(&["damage_ratio", "mean_damage"]),
     ));
-    out.push(time("energy", "Energies", "Entries of the energy ledger above a thousandth of the largest.", energies(series)));
+    out.push(time(
+        "energy",
+        "Energies",
+        "Entries of the energy ledger above a thousandth of the largest.",
+        energies(series),
+    ));
     let worn = |c: &&str| c.ends_with("_worn") || matches!(*c, "worn_first" | "worn_third");
-    let worn: Vec<&str> = series.columns.iter().map(|c| c.name.as_str()).filter(worn).collect();
-    out.push(time("wear", "Worn volume", "What the wear laws removed since the start.", varying(&worn)));
+    let worn: Vec<&str> = series
+        .columns
+        .iter()
+        .map(|c| c.name.as_str())
+        .filter(worn)
+        .collect();
+    out.push(time(
+        "wear",
+        "Worn volume",
+        "What the wear laws removed since the start.",
+        varying(&worn),
+    ));
     out.push(time(
         "circuit",
         "Masses of the tribological circuit",
@@ -104,7 +136,9 @@ pub(crate) fn of(run: &RunFolder, series: &Series, tables: &[Table]) -> Vec<Figu
         });
     }
     if series.columns.len() > 1 {
-        let first = ["mu", "kinetic", "contacts"].iter().find(|n| series.varies(n));
+        let first = ["mu", "kinetic", "contacts"]
+            .iter()
+            .find(|n| series.varies(n));
         out.push(figure(
             "any",
             "Any column of the statistics",
@@ -126,15 +160,29 @@ pub(crate) fn energies(series: &Series) -> Vec<String> {
     let Some(ledger) = series.columns.get(first..last) else {
         return Vec::new();
     };
-    let size = |values: &[f64]| values.iter().filter(|v| v.is_finite()).fold(0.0, |m: f64, v| m.max(v.abs()));
+    let size = |values: &[f64]| {
+        values
+            .iter()
+            .filter(|v| v.is_finite())
+            .fold(0.0, |m: f64, v| m.max(v.abs()))
+    };
     let most = ledger.iter().map(|c| size(&c.values)).fold(0.0, f64::max);
-    let matters = ledger.iter().filter(|c| size(&c.values) > NEGLIGIBLE * most);
-    matters.map(|c| c.name.clone()).filter(|n| series.varies(n)).collect()
+    let matters = ledger
+        .iter()
+        .filter(|c| size(&c.values) > NEGLIGIBLE * most);
+    matters
+        .map(|c| c.name.clone())
+        .filter(|n| series.varies(n))
+        .collect()
 }
 
 /// Results by cycle; none with fewer than two.
 fn by_cycle(summary: &Value) -> Option<Value> {
-    let cycles: Vec<&Value> = summary["cycles"].as_array()?.iter().filter(|c| c["complete"] == true).collect();
+    let cycles: Vec<&Value> = summary["cycles"]
+        .as_array()?
+        .iter()
+        .filter(|c| c["complete"] == true)
+        .collect();
     if cycles.len() < 2 {
         return None;
     }

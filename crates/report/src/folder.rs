@@ -34,7 +34,11 @@ impl RunFolder {
             reason,
         };
         if !path.is_dir() {
-            let there = if path.exists() { "is a file" } else { "does not exist" };
+            let there = if path.exists() {
+                "is a file"
+            } else {
+                "does not exist"
+            };
             return Err(no_run(format!(
                 "{there}; name the folder that `fretwork run` wrote, such as results/CASE"
             )));

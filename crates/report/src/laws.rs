@@ -69,12 +69,18 @@ pub(crate) struct Interface {
 /// The libraries that a run loaded.
 pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
     let column = |name: &str| run.reader.texts(&format!("plugins/{name}"));
-    let (kinds, names, versions, sums) = (column("kind"), column("name"), column("version"), column("sha256"));
+    let (kinds, names, versions, sums) = (
+        column("kind"),
+        column("name"),
+        column("version"),
+        column("sha256"),
+    );
     let stamps = run.summary["plugins"].as_array();
     let law = |k: usize| {
         let text = |list: &[String]| list.get(k).cloned().unwrap_or_default();
         let (kind, name) = (text(&kinds), text(&names));
-        let stamp = stamps.and_then(|s| s.iter().find(|s| s["kind"] == *kind && s["name"] == *name));
+        let stamp =
+            stamps.and_then(|s| s.iter().find(|s| s["kind"] == *kind && s["name"] == *name));
         Loaded {
             kind,
             name,
@@ -129,9 +135,16 @@ fn parameters(
         .flat_map(|(_, given)| given)
         .map(|(n, g)| (n.clone(), g.value, g.unit.clone().unwrap_or_default()))
         .collect();
-    let file = spec.parameters_from.as_deref().and_then(|f| files.laws.get(f));
+    let file = spec
+        .parameters_from
+        .as_deref()
+        .and_then(|f| files.laws.get(f));
     let of_file: Vec<_> = file.into_iter().flat_map(|f| f.of(kind, name)).collect();
-    let mut names: Vec<String> = info.iter().flat_map(|i| &i.parameters).map(|p| p.name.clone()).collect();
+    let mut names: Vec<String> = info
+        .iter()
+        .flat_map(|i| &i.parameters)
+        .map(|p| p.name.clone())
+        .collect();
     for given in own.iter().map(|o| &o.0).chain(of_file.iter().map(|f| &f.0)) {
         if !names.contains(given) {
             names.push(given.clone());
@@ -140,18 +153,29 @@ fn parameters(
     let row = |parameter: String| {
         let schema = info.and_then(|i| i.parameters.iter().find(|p| p.name == parameter));
         let si = || schema.map(|s| s.unit.clone()).unwrap_or_default();
-        let unit = |given: &str| if given.is_empty() { si() } else { given.to_owned() };
-        let doc = schema.map(|s| s.doc.clone()).unwrap_or_default();
-        let (value, unit, from) = if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
-            (*value, unit(given), "the case".to_owned())
-        } else if let Some((_, number)) = of_file.iter().find(|f| f.0 == parameter) {
-            (number.value, unit(&number.unit), number.source.clone())
-        } else if let Some((number, material)) = files.property(case, spec, &parameter) {
-            (number.value, unit(&number.unit), format!("material {material}: {}", number.source))
-        } else {
-            let default = schema.map_or(f64::NAN, |s| s.default);
-            (default, si(), "default of the law".to_owned())
+        let unit = |given: &str| {
+            if given.is_empty() {
+                si()
+            } else {
+                given.to_owned()
+            }
         };
+        let doc = schema.map(|s| s.doc.clone()).unwrap_or_default();
+        let (value, unit, from) =
+            if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
+                (*value, unit(given), "the case".to_owned())
+            } else if let Some((_, number)) = of_file.iter().find(|f| f.0 == parameter) {
+                (number.value, unit(&number.unit), number.source.clone())
+            } else if let Some((number, material)) = files.property(case, spec, &parameter) {
+                (
+                    number.value,
+                    unit(&number.unit),
+                    format!("material {material}: {}", number.source),
+                )
+            } else {
+                let default = schema.map_or(f64::NAN, |s| s.default);
+                (default, si(), "default of the law".to_owned())
+            };
         [parameter, crate::results::number(value), unit, from, doc]
     };
     names.into_iter().map(row).collect()

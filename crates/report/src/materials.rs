@@ -25,7 +25,9 @@ impl LawFile {
     pub fn of(&self, kind: &str, law: &str) -> Vec<(String, Sourced)> {
         let slots = self.0.slots.iter().filter(|(k, _)| k.word() == kind);
         let numbers = slots.filter_map(|(_, laws)| laws.get(law)).flatten();
-        numbers.map(|(name, number)| (name.clone(), number.clone())).collect()
+        numbers
+            .map(|(name, number)| (name.clone(), number.clone()))
+            .collect()
     }
 }
 
@@ -34,7 +36,12 @@ impl Files {
     pub fn read(run: &RunFolder) -> Self {
         let mut out = Self::default();
         for name in run.reader.datasets_in("materials") {
-            let Some(text) = run.reader.texts(&format!("materials/{name}")).into_iter().next() else {
+            let Some(text) = run
+                .reader
+                .texts(&format!("materials/{name}"))
+                .into_iter()
+                .next()
+            else {
                 continue;
             };
             let source = Source::from_text(name, text);

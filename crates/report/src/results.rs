@@ -1,7 +1,6 @@
 //! Results of a run with their uncertainty, and what they mean.
 
 use crate::folder::RunFolder;
-pub(crate) use fretwork_observe::quantity::quantity;
 use serde_json::Value;
 
 /// A result.
@@ -20,12 +19,24 @@ pub(crate) struct ResultRow {
 /// A group of results with its heading.
 pub(crate) type Group = (&'static str, Vec<ResultRow>);
 
-/// A number with five digits.
+/// A number with its unit, a prefix that suits it, and four digits.
+pub(crate) fn quantity(value: f64, unit: &str) -> String {
+    let text = fretwork_observe::quantity::quantity(value, unit);
+    let (number, unit) = text.split_once(' ').unwrap_or((&text, ""));
+    let micro = unit
+        .strip_prefix('u')
+        .filter(|rest| rest.starts_with(['m', 'N', 's', 'J', 'g', 'P', 'W']));
+    let unit = micro.map_or_else(|| unit.to_owned(), |rest| format!("µ{rest}"));
+    let unit = unit.replace("m3", "m³").replace("m2", "m²");
+    format!("{number} {unit}").trim_end().to_owned()
+}
+
+/// A number with four digits.
 pub(crate) fn number(value: f64) -> String {
     if value.is_finite() && value == value.trunc() && value.abs() < 1e7 {
         return format!("{value}");
     }
-    let text = fretwork_observe::quantity::number(value, 5);
+    let text = fretwork_observe::quantity::number(value, 4);
     match text.split_once('e') {
         Some((digits, power)) => format!("{}e{power}", trimmed(digits)),
         None => trimmed(&text).to_owned(),
@@ -60,16 +71,27 @@ fn interval(estimate: &Value, shown: impl Fn(f64) -> String) -> String {
     let size = estimate["value"].as_f64().unwrap_or(0.0).abs();
     let mut known = Vec::new();
     let mut unknown = Vec::new();
-    for (key, name) in [("scatter", "scatter"), ("step", "time step"), ("tolerance", "tolerance"), ("coupling", "coupling")] {
+    for (key, name) in [
+        ("scatter", "scatter"),
+        ("step", "time step"),
+        ("tolerance", "tolerance"),
+        ("coupling", "coupling"),
+    ] {
         match estimate[key].as_f64() {
-            Some(half) if half < size || key == "scatter" => known.push(format!("± {} ({name})", shown(half))),
+            Some(half) if half < size || key == "scatter" => {
+                known.push(format!("± {} ({name})", shown(half)))
+            }
             Some(_) => unknown.push(name),
             None => {}
         }
     }
     let mut text = known.join(" ");
     if !unknown.is_empty() {
-        text += &format!("{}effect of {} not known", if text.is_empty() { "" } else { "; " }, unknown.join(" and "));
+        text += &format!(
+            "{}effect of {} not known",
+            if text.is_empty() { "" } else { "; " },
+            unknown.join(" and ")
+        );
     }
     if let Some(method) = estimate["method"].as_str().filter(|m| !m.is_empty()) {
         text += &format!("{}{method}", if text.is_empty() { "" } else { "; " });
@@ -89,7 +111,10 @@ fn row(label: &str, value: Option<String>, interval: String, meaning: &str) -> O
 fn friction(s: &Value) -> Vec<ResultRow> {
     let own = |key: &str| s[key].as_f64().map(number);
     let estimate = &s["uncertainty"]["friction_coefficient"];
-    let mean = estimate["value"].as_f64().map(number).or_else(|| own("friction_coefficient"));
+    let mean = estimate["value"]
+        .as_f64()
+        .map(number)
+        .or_else(|| own("friction_coefficient"));
     let regime = s["fretting"]["regime"].as_str().map(str::to_owned);
     [
         row(
@@ -162,15 +187,27 @@ fn wear(s: &Value, unit: impl Fn(&'static str, &'static str) -> &'static str) ->
         "volume that the wear laws removed from both surfaces",
     ));
     for body in wear["bodies"].as_array().into_iter().flatten() {
-        let name = body["body"].as_str().or(body["name"].as_str()).unwrap_or("a body");
-        let Some(v) = positive(&body["volume"]) else { continue };
-        let rate = ["specific_rate", "rate", "specific_wear_rate", "k"].iter().find_map(|k| body[*k].as_f64());
+        let name = body["body"]
+            .as_str()
+            .or(body["name"].as_str())
+            .unwrap_or("a body");
+        let Some(v) = positive(&body["volume"]) else {
+            continue;
+        };
+        let rate = ["specific_rate", "rate", "specific_wear_rate", "k"]
+            .iter()
+            .find_map(|k| body[*k].as_f64());
         let rate = rate.map(fretwork_observe::quantity::wear_rate);
         let meaning = match rate {
             Some(rate) => format!("volume; specific wear rate k = V/(P s) = {rate}"),
             None => "volume".to_owned(),
         };
-        out.extend(row(&format!("worn off {name}"), Some(quantity(v, volume)), String::new(), &meaning));
+        out.extend(row(
+            &format!("worn off {name}"),
+            Some(quantity(v, volume)),
+            String::new(),
+            &meaning,
+        ));
     }
     out.extend(row(
         "worn between grains",
@@ -180,12 +217,33 @@ fn wear(s: &Value, unit: impl Fn(&'static str, &'static str) -> &'static str) ->
     ));
     let flow = wear["unit"].as_str().unwrap_or_default();
     for (key, label, meaning) in [
-        ("Qs", "source flow Qs", "mass that comes loose from the first bodies, per time"),
-        ("Qi", "internal flow Qi", "mass of third body that crosses a section of the contact, per time"),
-        ("Qe", "ejected flow Qe", "mass that leaves the contact, per time"),
-        ("Qw", "wear flow Qw", "mass that is lost: ejected and not recirculated, per time"),
+        (
+            "Qs",
+            "source flow Qs",
+            "mass that comes loose from the first bodies, per time",
+        ),
+        (
+            "Qi",
+            "internal flow Qi",
+            "mass of third body that crosses a section of the contact, per time",
+        ),
+        (
+            "Qe",
+            "ejected flow Qe",
+            "mass that leaves the contact, per time",
+        ),
+        (
+            "Qw",
+            "wear flow Qw",
+            "mass that is lost: ejected and not recirculated, per time",
+        ),
     ] {
-        out.extend(row(label, positive(&wear[key]).map(|v| quantity(v, flow)), String::new(), meaning));
+        out.extend(row(
+            label,
+            positive(&wear[key]).map(|v| quantity(v, flow)),
+            String::new(),
+            meaning,
+        ));
     }
     out
 }
@@ -195,14 +253,34 @@ fn energy(s: &Value, unit: &str) -> Vec<ResultRow> {
     let scale = energy["scale"].as_f64().unwrap_or(0.0);
     let mut out = Vec::new();
     for (key, label, meaning) in [
-        ("friction", "friction", "dissipated by friction since the start"),
+        (
+            "friction",
+            "friction",
+            "dissipated by friction since the start",
+        ),
         ("fracture", "fracture", "released by damage of bonds"),
         ("impact", "impact", "dissipated by impacts"),
-        ("viscous", "damping", "dissipated by damping of bonds, contacts and deformable bodies"),
-        ("adhesion", "adhesion", "work against attractive forces without opening"),
-        ("elastic", "elastic", "stored at the end in bonds, contacts and deformable bodies"),
+        (
+            "viscous",
+            "damping",
+            "dissipated by damping of bonds, contacts and deformable bodies",
+        ),
+        (
+            "adhesion",
+            "adhesion",
+            "work against attractive forces without opening",
+        ),
+        (
+            "elastic",
+            "elastic",
+            "stored at the end in bonds, contacts and deformable bodies",
+        ),
         ("kinetic", "kinetic", "kinetic energy at the end"),
-        ("external_work", "external work", "work of imposed forces and motions"),
+        (
+            "external_work",
+            "external work",
+            "work of imposed forces and motions",
+        ),
     ] {
         let value = energy[key].as_f64().filter(|e| e.abs() > 1e-3 * scale);
         let half = match key {
@@ -223,12 +301,22 @@ fn energy(s: &Value, unit: &str) -> Vec<ResultRow> {
 
 fn measures(s: &Value) -> Vec<ResultRow> {
     let units = &s["measure_units"];
-    let numbers = s["measures"].as_object().into_iter().flatten().filter_map(|(name, value)| {
-        let unit = units[name].as_str().unwrap_or_default();
-        row(name, value.as_f64().map(|v| quantity(v, unit)), String::new(), "")
-    });
+    let numbers = s["measures"]
+        .as_object()
+        .into_iter()
+        .flatten()
+        .filter_map(|(name, value)| {
+            let unit = units[name].as_str().unwrap_or_default();
+            row(
+                name,
+                value.as_f64().map(|v| quantity(v, unit)),
+                String::new(),
+                "",
+            )
+        });
     let findings = s["findings"].as_object().into_iter().flatten();
-    let findings = findings.filter_map(|(name, text)| row(name, text.as_str().map(str::to_owned), String::new(), ""));
+    let findings = findings
+        .filter_map(|(name, text)| row(name, text.as_str().map(str::to_owned), String::new(), ""));
     findings.chain(numbers).collect()
 }
 
@@ -239,14 +327,21 @@ mod tests {
 
     #[test]
     fn numbers_have_no_digits_that_say_nothing() {
-        for (value, text) in [(0.3, "0.3"), (7000.0, "7000"), (1.2e16, "1.2e16"), (0.32591234, "0.32591"), (0.0, "0")] {
+        for (value, text) in [
+            (0.3, "0.3"),
+            (7000.0, "7000"),
+            (1.2e16, "1.2e16"),
+            (0.32591234, "0.3259"),
+            (0.0, "0"),
+        ] {
             assert_eq!(number(value), text);
         }
     }
 
     #[test]
     fn half_widths_as_large_as_the_value_are_not_numbers() {
-        let estimate = json!({"value": 0.5, "scatter": 0.1, "step": 0.6, "tolerance": 0.02, "method": null});
+        let estimate =
+            json!({"value": 0.5, "scatter": 0.1, "step": 0.6, "tolerance": 0.02, "method": null});
         assert_eq!(
             interval(&estimate, |h| h.to_string()),
             "± 0.1 (scatter) ± 0.02 (tolerance); effect of time step not known"

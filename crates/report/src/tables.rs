@@ -35,13 +35,20 @@ fn table(path: &Path, name: &str) -> Option<Table> {
     if !small {
         return None;
     }
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(path).ok()?;
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_path(path)
+        .ok()?;
     let mut columns: Vec<(String, String, Vec<f64>)> = reader
         .headers()
         .ok()?
         .iter()
         .map(|head| {
-            let (name, unit) = head.strip_suffix(']').and_then(|h| h.rsplit_once('[')).unwrap_or((head, ""));
+            let (name, unit) = head
+                .strip_suffix(']')
+                .and_then(|h| h.rsplit_once('['))
+                .unwrap_or((head, ""));
             (name.trim().to_owned(), unit.trim().to_owned(), Vec::new())
         })
         .collect();
@@ -52,7 +59,9 @@ fn table(path: &Path, name: &str) -> Option<Table> {
         }
     }
     // A table by name, and not by number, is no figure.
-    let numbers = columns.iter().all(|c| !c.1.is_empty() || c.2.iter().any(|v| v.is_finite()));
+    let numbers = columns
+        .iter()
+        .all(|c| !c.1.is_empty() || c.2.iter().any(|v| v.is_finite()));
     columns.retain(|c| c.2.iter().any(|v| v.is_finite()));
     (columns.len() > 1 && numbers).then(|| Table {
         name: name.to_owned(),
@@ -63,7 +72,13 @@ fn table(path: &Path, name: &str) -> Option<Table> {
 impl Table {
     /// The table for the page; what is not a number is null.
     pub fn json(&self) -> Value {
-        let number = |v: &f64| if v.is_finite() { json!(*v as f32) } else { Value::Null };
+        let number = |v: &f64| {
+            if v.is_finite() {
+                json!(*v as f32)
+            } else {
+                Value::Null
+            }
+        };
         let column = |(name, unit, values): &(String, String, Vec<f64>)| {
             let values: Vec<Value> = values.iter().map(number).collect();
             json!({"name": name, "unit": unit, "values": values})

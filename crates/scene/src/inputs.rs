@@ -203,7 +203,9 @@ fn named(node: &Node, text: &str) -> Option<String> {
         match (group.shape, group.entries.as_slice()) {
             (Shape::Struct, entries) => {
                 let is_name = |key: &std::ops::Range<usize>| &text[key.clone()] == "name";
-                let entry = entries.iter().find(|e| e.key.as_ref().is_some_and(is_name))?;
+                let entry = entries
+                    .iter()
+                    .find(|e| e.key.as_ref().is_some_and(is_name))?;
                 return entry.value.string(text);
             }
             (Shape::Tuple, [only]) => node = &only.value,
@@ -236,7 +238,9 @@ mod tests {
 
     fn find(inputs: &[Input], path: &str) -> Input {
         let found = inputs.iter().find(|i| i.path == path);
-        found.unwrap_or_else(|| panic!("no {path} in {inputs:#?}")).clone()
+        found
+            .unwrap_or_else(|| panic!("no {path} in {inputs:#?}"))
+            .clone()
     }
 
     #[test]
@@ -249,17 +253,36 @@ mod tests {
             ("solver.tolerance", "", "", From::NotSet),
             ("bodies.slider.mass", "2.0", "kg/m", From::Given),
             ("bodies.slider.inertia", "", "kg m", From::NotSet),
-            ("bodies.slider.dofs.x", "Displacement(Sine)", "", From::Given),
-            ("bodies.slider.dofs.x.amplitude", "0.00001", "m", From::Given),
+            (
+                "bodies.slider.dofs.x",
+                "Displacement(Sine)",
+                "",
+                From::Given,
+            ),
+            (
+                "bodies.slider.dofs.x.amplitude",
+                "0.00001",
+                "m",
+                From::Given,
+            ),
             ("bodies.slider.dofs.x.frequency", "20.0", "Hz", From::Given),
             ("bodies.slider.dofs.x.offset", "0.0", "m", From::Default),
             ("interfaces.dry.contact", "\"coulomb\"", "", From::Given),
-            ("interfaces.dry.parameters.contact.mu", "0.3", "", From::Given),
+            (
+                "interfaces.dry.parameters.contact.mu",
+                "0.3",
+                "",
+                From::Given,
+            ),
             ("periodic.x", "", "m", From::NotSet),
             ("output.views", "20", "", From::Default),
         ] {
             let input = find(&inputs, path);
-            assert_eq!((input.value.as_str(), input.unit, input.from), (value, unit, from), "{path}");
+            assert_eq!(
+                (input.value.as_str(), input.unit, input.from),
+                (value, unit, from),
+                "{path}"
+            );
         }
     }
 

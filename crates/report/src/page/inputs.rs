@@ -67,15 +67,31 @@ pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
         }
         values.push(own);
     }
-    let shown = |k: usize, path: &str| values[k].get(path).map(|i| i.value.clone()).unwrap_or_default();
+    let shown = |k: usize, path: &str| {
+        values[k]
+            .get(path)
+            .map(|i| i.value.clone())
+            .unwrap_or_default()
+    };
     let differ = |path: &&String| (1..runs.len()).any(|k| shown(k, path) != shown(0, path));
     let mut rows = String::new();
     for path in paths.iter().filter(differ) {
-        let unit = values.iter().find_map(|v| v.get(path.as_str())).map_or("", |i| i.unit);
-        rows += &format!("<tr><th scope=\"row\"><code>{}</code></th><td>{}</td>", escape(path), escape(unit));
+        let unit = values
+            .iter()
+            .find_map(|v| v.get(path.as_str()))
+            .map_or("", |i| i.unit);
+        rows += &format!(
+            "<tr><th scope=\"row\"><code>{}</code></th><td>{}</td>",
+            escape(path),
+            escape(unit)
+        );
         for k in 0..runs.len() {
             let value = shown(k, path);
-            let value = if value.is_empty() { "not set".to_owned() } else { value };
+            let value = if value.is_empty() {
+                "not set".to_owned()
+            } else {
+                value
+            };
             rows += &format!("<td>{}</td>", escape(&value));
         }
         rows += "</tr>\n";
@@ -83,7 +99,10 @@ pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
     if rows.is_empty() {
         return "<p>All inputs are the same.</p>\n".to_owned();
     }
-    let heads: String = names.iter().map(|n| format!("<th scope=\"col\">{}</th>", escape(n))).collect();
+    let heads: String = names
+        .iter()
+        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
+        .collect();
     format!(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs that differ\"><table id=\"differences\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Unit</th>{heads}</tr></thead>\n\
          <tbody>\n{rows}</tbody></table></div>\n"

@@ -82,7 +82,11 @@ pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
             laws.join(", ")
         );
     }
-    if out.is_empty() { out } else { format!("<h3>Interfaces</h3>\n{out}") }
+    if out.is_empty() {
+        out
+    } else {
+        format!("<h3>Interfaces</h3>\n{out}")
+    }
 }
 
 /// The libraries of the laws.

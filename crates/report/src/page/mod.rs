@@ -10,6 +10,7 @@ mod verdict;
 pub(crate) use verdict::Verdict;
 
 pub(crate) use inputs::difference_table;
+pub(crate) use results::value;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -70,7 +71,8 @@ impl Page {
         let script = [&CHARTS, viewer, &[START]].concat().join("\n");
         let hash = |text: &str| STANDARD.encode(Sha256::digest(text.as_bytes()));
         let size: usize = self.blobs.iter().map(|b| b.1.len() + 80).sum();
-        let mut out = String::with_capacity(size + script.len() + style.len() + self.body.len() + (1 << 16));
+        let mut out =
+            String::with_capacity(size + script.len() + style.len() + self.body.len() + (1 << 16));
         out += "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
         out += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
         out += "<meta name=\"color-scheme\" content=\"light dark\">\n";
@@ -81,7 +83,10 @@ impl Page {
             hash(&style)
         );
         out += "<meta name=\"generator\" content=\"fretwork\">\n";
-        out += &format!("<title>{}</title>\n<style>{style}</style>\n</head>\n<body>\n", escape(&self.title));
+        out += &format!(
+            "<title>{}</title>\n<style>{style}</style>\n</head>\n<body>\n",
+            escape(&self.title)
+        );
         out += &self.body;
         out += &format!(
             "<script type=\"application/json\" id=\"data\">{}</script>\n",
@@ -120,7 +125,9 @@ pub(crate) fn escape(text: &str) -> String {
             '>' => out += "&gt;",
             '"' => out += "&quot;",
             '\'' => out += "&#39;",
-            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => out += &format!("\\u{{{:x}}}", c as u32),
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
+                out += &format!("\\u{{{:x}}}", c as u32)
+            }
             '\n' | '\t' => out.push(c),
             c if c.is_control() => out += &format!("\\u{{{:x}}}", c as u32),
             c => out.push(c),
@@ -131,12 +138,28 @@ pub(crate) fn escape(text: &str) -> String {
 
 /// JSON that stands in a script element: it cannot end the element.
 fn json_in_html(value: &Value) -> String {
-    value.to_string().replace('<', "\\u003c").replace("\u{2028}", "\\u2028").replace("\u{2029}", "\\u2029")
+    value
+        .to_string()
+        .replace('<', "\\u003c")
+        .replace("\u{2028}", "\\u2028")
+        .replace("\u{2029}", "\\u2029")
 }
 
 /// A SHA-256 or an identity, shortened for the eye, whole for the one who copies it.
 pub(crate) fn hash(text: &str) -> String {
-    format!("<code class=\"hash\" title=\"{0}\">{0}</code>", escape(text))
+    format!(
+        "<code class=\"hash\" title=\"{0}\">{0}</code>",
+        escape(text)
+    )
+}
+
+/// The end of a page: what made it, and the licence of what is in it.
+pub(crate) fn footer(command: &str) -> String {
+    format!(
+        "<footer><p>Made by <code>{command}</code>. The page is complete in itself and loads nothing.</p>\n\
+         <details><summary>Figures are drawn with uPlot; its licence</summary><pre>{}</pre></details></footer>\n",
+        escape(include_str!("../../assets/uPlot.LICENSE"))
+    )
 }
 
 /// A section with its heading.
@@ -154,10 +177,16 @@ mod tests {
 
     #[test]
     fn nothing_in_a_text_is_markup_or_ends_a_script() {
-        assert_eq!(escape("</script><b a='1'>&\"\u{7}\u{202e}"), "&lt;/script&gt;&lt;b a=&#39;1&#39;&gt;&amp;&quot;\\u{7}\\u{202e}");
+        assert_eq!(
+            escape("</script><b a='1'>&\"\u{7}\u{202e}"),
+            "&lt;/script&gt;&lt;b a=&#39;1&#39;&gt;&amp;&quot;\\u{7}\\u{202e}"
+        );
         let text = json_in_html(&json!({"a": "</script><!--"}));
         assert!(!text.contains('<'), "{text}");
-        assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), json!({"a": "</script><!--"}));
+        assert_eq!(
+            serde_json::from_str::<Value>(&text).unwrap(),
+            json!({"a": "</script><!--"})
+        );
     }
 
     #[test]

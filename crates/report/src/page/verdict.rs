@@ -20,7 +20,9 @@ pub(crate) enum Verdict {
 impl Verdict {
     /// The verdict of a run.
     pub fn of(run: &RunFolder) -> Self {
-        let notes = run.summary["warnings"].as_array().is_some_and(|w| !w.is_empty());
+        let notes = run.summary["warnings"]
+            .as_array()
+            .is_some_and(|w| !w.is_empty());
         match run.summary["trustworthy"].as_bool() {
             Some(true) if notes => Self::Noted,
             Some(true) => Self::Trustworthy,
@@ -51,19 +53,29 @@ impl Verdict {
 
     fn sentence(self) -> &'static str {
         match self {
-            Self::Trustworthy => "The run finished, and every check of convergence, energy, motion and laws passed.",
+            Self::Trustworthy => {
+                "The run finished, and every check of convergence, energy, motion and laws passed."
+            }
             Self::Noted => {
                 "The run finished, and every check of convergence, energy, motion and laws passed. Read the notes before \
                  using the numbers."
             }
-            Self::Not => "At least one check failed. What to change stands with each reason; results below may be wrong.",
-            Self::Unknown => "The run did not write its summary, so nothing was checked. What was recorded is shown as it is.",
+            Self::Not => {
+                "At least one check failed. What to change stands with each reason; results below may be wrong."
+            }
+            Self::Unknown => {
+                "The run did not write its summary, so nothing was checked. What was recorded is shown as it is."
+            }
         }
     }
 }
 
 fn texts(list: &Value) -> Vec<&str> {
-    list.as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+    list.as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .collect()
 }
 
 /// The verdict with its reasons, notes and gaps, worst first.
@@ -97,7 +109,20 @@ fn item(text: &str) -> String {
         key.chars().all(|c| c.is_ascii_uppercase() || c == ' ') && !key.is_empty()
     });
     match key {
-        Some((key, rest)) => format!("<strong>{}</strong>:{}", escape(key), escape(rest)),
-        None => escape(text),
+        Some((key, rest)) => format!("<strong>{}</strong>:{}", escape(key), with_code(rest)),
+        None => with_code(text),
     }
+}
+
+/// A text whose parts between backticks are code.
+fn with_code(text: &str) -> String {
+    let parts: Vec<&str> = text.split('`').collect();
+    if parts.len().is_multiple_of(2) {
+        return escape(text);
+    }
+    let part = |(k, part): (usize, &&str)| match k % 2 {
+        0 => escape(part),
+        _ => format!("<code>{}</code>", escape(part)),
+    };
+    parts.iter().enumerate().map(part).collect()
 }

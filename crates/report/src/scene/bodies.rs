@@ -32,7 +32,11 @@ impl Bodies {
         skip: &dyn Fn(u64, [f64; 3]) -> bool,
         arrays: &mut Arrays,
     ) -> Result<(), String> {
-        let kind = if dimension == 2 { ("Lines", 1) } else { ("Polygons", 2) };
+        let kind = if dimension == 2 {
+            ("Lines", 1)
+        } else {
+            ("Polygons", 2)
+        };
         let chains = read(run, state, kind, skip)?;
         if self.first.len() != chains.len() {
             self.first = chains;
@@ -48,7 +52,13 @@ impl Bodies {
         grains: &[[f64; 3]],
         arrays: &mut Arrays,
     ) -> Result<(), String> {
-        let moved = |now: &[Chain]| self.first.iter().zip(now).map(|(a, b)| shift(a, b)).collect::<Option<Vec<_>>>();
+        let moved = |now: &[Chain]| {
+            self.first
+                .iter()
+                .zip(now)
+                .map(|(a, b)| shift(a, b))
+                .collect::<Option<Vec<_>>>()
+        };
         let rigid = now.map_or(Some(vec![[0.0; 3]; self.first.len()]), moved);
         let (shown, shifts) = match (now, rigid) {
             (_, Some(shifts)) => (self.first.as_slice(), shifts),
@@ -93,7 +103,11 @@ fn side(chain: &Chain, grains: &[[f64; 3]]) -> f64 {
         };
         chain.points.windows(2).filter(|pair| crosses(pair)).count() % 2 == 1
     };
-    let around = grains.iter().step_by((grains.len() / 64).max(1)).filter(|at| holds(at)).count();
+    let around = grains
+        .iter()
+        .step_by((grains.len() / 64).max(1))
+        .filter(|at| holds(at))
+        .count();
     if around > 2 { 2.0 } else { 1.0 }
 }
 
@@ -104,8 +118,14 @@ fn shift(from: &Chain, to: &Chain) -> Option<[f64; 3]> {
         return None;
     }
     let way: [f64; 3] = std::array::from_fn(|k| to.points[0][k] - first[k]);
-    let size = from.points.iter().flat_map(|p| (0..3).map(|k| (p[k] - first[k]).abs())).fold(0.0, f64::max);
-    let same = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).all(|k| (b[k] - a[k] - way[k]).abs() <= SAME * size);
+    let size = from
+        .points
+        .iter()
+        .flat_map(|p| (0..3).map(|k| (p[k] - first[k]).abs()))
+        .fold(0.0, f64::max);
+    let same = |(a, b): (&[f64; 3], &[f64; 3])| {
+        (0..3).all(|k| (b[k] - a[k] - way[k]).abs() <= SAME * size)
+    };
     from.points.iter().zip(&to.points).all(same).then_some(way)
 }
 
@@ -120,13 +140,22 @@ fn read(
         return Ok(Vec::new());
     }
     let reader = &run.reader;
-    let points = reader.values(&format!("views/{VIEW}/Points"), states::points(run, VIEW, state)?, 3)?;
+    let points = reader.values(
+        &format!("views/{VIEW}/Points"),
+        states::points(run, VIEW, state)?,
+        3,
+    )?;
     // Each state has one more offset than cells.
-    let offsets = reader.whole(&format!("views/{VIEW}/{kind}/Offsets"), (first + state, count + 1))?;
+    let offsets = reader.whole(
+        &format!("views/{VIEW}/{kind}/Offsets"),
+        (first + state, count + 1),
+    )?;
     let bodies = reader.values(&format!("views/{VIEW}/CellData/body"), (first, count), 1)?;
     let mut out = Vec::new();
     for (bounds, body) in offsets.windows(2).zip(bodies) {
-        let range = usize::try_from(3 * bounds[0]).ok().zip(usize::try_from(3 * bounds[1]).ok());
+        let range = usize::try_from(3 * bounds[0])
+            .ok()
+            .zip(usize::try_from(3 * bounds[1]).ok());
         // Corners stand one cell after another, as they are written.
         let chain = range.and_then(|(a, b)| points.get(a..b));
         let chain = chain.ok_or_else(|| format!("`views/{VIEW}` holds outlines without points"))?;

@@ -26,10 +26,15 @@ impl Contacts {
 
     /// The fields for the page.
     pub fn fields(&self, ranges: &Ranges, detail: Detail) -> Value {
-        let kept = self.0.iter().filter(|f| detail.contacts() && detail.keeps(&f[0]));
+        let kept = self
+            .0
+            .iter()
+            .filter(|f| detail.contacts() && detail.keeps(&f[0]));
         let field = |[name, unit, doc]: &[String; 3]| {
             let range = ranges.of("contacts", name)?;
-            Some(json!({"name": name, "unit": unit, "doc": doc, "all": range.all, "most": range.most}))
+            Some(
+                json!({"name": name, "unit": unit, "doc": doc, "all": range.all, "most": range.most}),
+            )
         };
         kept.filter_map(field).collect()
     }
@@ -47,7 +52,11 @@ impl Contacts {
         if !detail.contacts() {
             return Ok(());
         }
-        let points = run.reader.values(&format!("{ROOT}/Points"), states::points(run, "contacts", state)?, 3)?;
+        let points = run.reader.values(
+            &format!("{ROOT}/Points"),
+            states::points(run, "contacts", state)?,
+            3,
+        )?;
         let (mut from, mut to) = (Vec::new(), Vec::new());
         for pair in points.chunks_exact(6) {
             from.extend_from_slice(&pair[..3]);
@@ -57,9 +66,15 @@ impl Contacts {
         push_points(arrays, "contact.b", &to, dimension);
         let rows = states::cells(run, "contacts", ("Lines", 1), state)?;
         for [name, ..] in self.0.iter().filter(|f| detail.keeps(&f[0])) {
-            let values = run.reader.values(&format!("{ROOT}/CellData/{name}"), rows, 1)?;
+            let values = run
+                .reader
+                .values(&format!("{ROOT}/CellData/{name}"), rows, 1)?;
             note("contacts", name, &values);
-            let kind = if name.starts_with("body_") { Kind::U32 } else { detail.kind() };
+            let kind = if name.starts_with("body_") {
+                Kind::U32
+            } else {
+                detail.kind()
+            };
             arrays.push(format!("contact:{name}"), kind, &values);
         }
         Ok(())

@@ -67,7 +67,10 @@ impl Detail {
             _ => "positions are rounded to 1/65,000 of their range, fields to 1/254".to_owned(),
         }];
         match self.level {
-            2 => out.push(format!("of the fields of contacts only {} are here", USUAL.join(", "))),
+            2 => out.push(format!(
+                "of the fields of contacts only {} are here",
+                USUAL.join(", ")
+            )),
             3 => out.push("contacts are left out".to_owned()),
             _ => {}
         }

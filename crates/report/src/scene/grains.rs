@@ -6,8 +6,8 @@ use super::range::Ranges;
 use super::{Note, push_points, states};
 use crate::arrays::{Arrays, Kind};
 use crate::folder::RunFolder;
-use fretwork_store::results::shapes::ShapedPiece;
 use fretwork_store::results::shapes::Shaped;
+use fretwork_store::results::shapes::ShapedPiece;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 
@@ -66,7 +66,11 @@ impl Grains {
         for (k, piece) in shaped.pieces.iter().enumerate() {
             parts.entry(piece.body).or_default().push(k);
         }
-        let turns: &[&str] = if dimension == 2 { &OF_GEOMETRY[..1] } else { &OF_GEOMETRY[1..5] };
+        let turns: &[&str] = if dimension == 2 {
+            &OF_GEOMETRY[..1]
+        } else {
+            &OF_GEOMETRY[1..5]
+        };
         let has = |name: &&&str| reader.has(&format!("{ROOT}/{name}"));
         Ok(Self {
             dimension,
@@ -91,11 +95,16 @@ impl Grains {
     }
 
     /// The fields for the page.
-    pub fn fields(&self, ranges: &Ranges, _: Detail) -> Value {
-        let shown = self.fields.iter().filter(|f| !OF_GEOMETRY.contains(&f.name.as_str()));
+    pub fn fields(&self, ranges: &Ranges) -> Value {
+        let shown = self
+            .fields
+            .iter()
+            .filter(|f| !OF_GEOMETRY.contains(&f.name.as_str()));
         let field = |f: &Field| {
             let range = ranges.of("grains", &f.name)?;
-            Some(json!({"name": f.name, "unit": f.unit, "doc": f.doc, "all": range.all, "most": range.most}))
+            Some(
+                json!({"name": f.name, "unit": f.unit, "doc": f.doc, "all": range.all, "most": range.most}),
+            )
         };
         let speed = ranges.of("grains", SPEED).zip(self.velocity().next()).map(|(range, of)| {
             let parts: Vec<&str> = self.velocity().map(|f| f.name.as_str()).collect();
@@ -155,14 +164,21 @@ impl Grains {
 
     /// Names of the components of the velocity.
     fn velocity(&self) -> impl Iterator<Item = &Field> {
-        self.fields.iter().filter(|f| f.name.starts_with("velocity_"))
+        self.fields
+            .iter()
+            .filter(|f| f.name.starts_with("velocity_"))
     }
 
     fn speeds(&self, run: &RunFolder, rows: states::Rows) -> Result<Vec<f64>, String> {
         let mut squares = vec![0.0; rows.1];
         for field in self.velocity() {
-            let values = run.reader.values(&format!("{ROOT}/{}", field.name), rows, 1)?;
-            squares.iter_mut().zip(values).for_each(|(sum, v)| *sum += v * v);
+            let values = run
+                .reader
+                .values(&format!("{ROOT}/{}", field.name), rows, 1)?;
+            squares
+                .iter_mut()
+                .zip(values)
+                .for_each(|(sum, v)| *sum += v * v);
         }
         Ok(squares.into_iter().map(f64::sqrt).collect())
     }
@@ -193,7 +209,11 @@ impl Grains {
         }
         let (mut points, mut starts) = (Vec::new(), vec![0.0]);
         for piece in &self.pieces {
-            let corners = if self.dimension == 2 { flat(piece) } else { solid(piece) };
+            let corners = if self.dimension == 2 {
+                flat(piece)
+            } else {
+                solid(piece)
+            };
             points.extend(corners.into_iter().flatten());
             starts.push((points.len() / 3) as f64);
         }

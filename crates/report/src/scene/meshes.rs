@@ -44,7 +44,8 @@ impl Meshes {
         let mut out = Self::default();
         for group in GROUPS {
             for name in run.reader.groups_in(&format!("views/{group}")) {
-                out.meshes.extend(mesh(run, &format!("views/{group}/{name}"))?);
+                out.meshes
+                    .extend(mesh(run, &format!("views/{group}/{name}"))?);
             }
         }
         for mesh in &out.meshes {
@@ -104,15 +105,31 @@ impl Meshes {
             let elements: Vec<f64> = mesh.elements.iter().map(|p| *p as f64).collect();
             arrays.push(format!("{name}.element"), Kind::U32, &elements);
             for field in &mesh.fields {
-                let place_of = if field.of_cells { "CellData" } else { "PointData" };
+                let place_of = if field.of_cells {
+                    "CellData"
+                } else {
+                    "PointData"
+                };
                 let count = mesh.counts[usize::from(field.of_cells)];
                 let path = format!("{}/{place_of}/{}", mesh.path, field.name);
-                let values = run.reader.values(&path, (state * count, count), field.width)?;
-                let rows = if field.of_cells { &mesh.cells } else { &mesh.used };
+                let values = run
+                    .reader
+                    .values(&path, (state * count, count), field.width)?;
+                let rows = if field.of_cells {
+                    &mesh.cells
+                } else {
+                    &mesh.used
+                };
                 if field.name == "displacement" {
                     let moved = pick(&values, field.width, rows);
                     push_points(arrays, &format!("{name}.move"), &moved, dimension);
-                    for (from, way) in mesh.points.as_chunks::<3>().0.iter().zip(values.as_chunks::<3>().0) {
+                    for (from, way) in mesh
+                        .points
+                        .as_chunks::<3>()
+                        .0
+                        .iter()
+                        .zip(values.as_chunks::<3>().0)
+                    {
                         places.insert(place(std::array::from_fn(|a| from[a] + way[a])));
                     }
                 }
@@ -150,7 +167,11 @@ impl Field {
         let named = |k: usize, of: &str| (format!("{} {of}", self.name), Part::At(k));
         match self.width {
             1 => vec![(self.name.clone(), Part::At(0))],
-            6 => ["xx", "yy", "zz", "xy", "yz", "xz"].into_iter().enumerate().map(|(k, n)| named(k, n)).collect(),
+            6 => ["xx", "yy", "zz", "xy", "yz", "xz"]
+                .into_iter()
+                .enumerate()
+                .map(|(k, n)| named(k, n))
+                .collect(),
             _ => vec![(format!("{} (size)", self.name), Part::Size)],
         }
     }
@@ -166,7 +187,10 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
         return Ok(None);
     }
     let points = all("Points", 3)?;
-    let cells: Vec<usize> = all("Connectivity", 1)?.into_iter().map(|p| p as usize).collect();
+    let cells: Vec<usize> = all("Connectivity", 1)?
+        .into_iter()
+        .map(|p| p as usize)
+        .collect();
     let offsets = all("Offsets", 1)?;
     let count = offsets.len().saturating_sub(1);
     let corners = if count == 0 { 3 } else { cells.len() / count };
@@ -195,7 +219,10 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
     let mut used = elements.clone();
     used.sort_unstable();
     used.dedup();
-    let elements = elements.into_iter().filter_map(|p| used.binary_search(&p).ok()).collect();
+    let elements = elements
+        .into_iter()
+        .filter_map(|p| used.binary_search(&p).ok())
+        .collect();
     Ok(Some(Mesh {
         used,
         path: path.to_owned(),

@@ -71,21 +71,29 @@ impl Scene {
         };
         let last = times.len() - 1;
         let (detail, size) = reading.choose_detail(last, bytes)?;
-        let fits = bytes.map_or(times.len(), |b| (b / size.max(1)).max(1));
-        let chosen = spread(times.len(), fits);
-        let mut ranges = Ranges::default();
-        let first = reading.state(chosen[0], detail, Some(&mut ranges))?;
-        let mut frames = vec![first.packed()];
-        for k in chosen.iter().skip(1) {
-            let state = reading.state(*k, detail, Some(&mut ranges))?;
-            frames.push(state.without_those_of(&first).packed());
+        let mut fits = bytes.map_or(times.len(), |b| (b / size.max(1)).max(1));
+        let (mut ranges, mut chosen, mut frames);
+        loop {
+            ranges = Ranges::default();
+            chosen = spread(times.len(), fits);
+            frames = reading.frames(&chosen, detail, &mut ranges)?;
+            let taken: usize = frames.iter().map(String::len).sum();
+            // States differ in size: those that are too many are left out.
+            match bytes.filter(|b| taken > *b && fits > 1) {
+                Some(bytes) => fits = (chosen.len() * bytes / taken).clamp(1, chosen.len() - 1),
+                None => break,
+            }
         }
         let shown: Vec<f64> = chosen.iter().map(|k| times[*k]).collect();
         let mut said = detail.sentences();
         if chosen.len() < times.len() {
             said.insert(
                 0,
-                format!("{} of the {} recorded states are shown", chosen.len(), times.len()),
+                format!(
+                    "{} of the {} recorded states are shown",
+                    chosen.len(),
+                    times.len()
+                ),
             );
         }
         let head = json!({
@@ -94,7 +102,7 @@ impl Scene {
             "times": shown,
             "states": chosen,
             "recorded": times.len(),
-            "grains": {"fields": reading.grains.fields(&ranges, detail)},
+            "grains": {"fields": reading.grains.fields(&ranges)},
             "contacts": {"fields": reading.contacts.fields(&ranges, detail)},
             "meshes": reading.meshes.head(&ranges),
             "bodies": body_names(run),
@@ -104,7 +112,23 @@ impl Scene {
 }
 
 impl Reading<'_> {
-    /// The finest detail of which enough states fit, and the packed size of a state.
+    /// The states as they stand in the page.
+    fn frames(
+        &mut self,
+        chosen: &[usize],
+        detail: Detail,
+        ranges: &mut Ranges,
+    ) -> Result<Vec<String>, String> {
+        let first = self.state(chosen[0], detail, Some(ranges))?;
+        let mut frames = vec![first.packed()];
+        for k in &chosen[1..] {
+            let state = self.state(*k, detail, Some(ranges))?;
+            frames.push(state.without_those_of(&first).packed());
+        }
+        Ok(frames)
+    }
+
+    /// The finest detail of which enough states fit, and the packed size of a state beside the first one.
     fn choose_detail(
         &mut self,
         last: usize,
@@ -112,7 +136,18 @@ impl Reading<'_> {
     ) -> Result<(Detail, usize), String> {
         let mut detail = Detail::default();
         loop {
-            let size = self.state(last, detail, None)?.packed().len();
+            let first = self.state(0, detail, None)?;
+            let middle = self
+                .state(last / 2, detail, None)?
+                .without_those_of(&first)
+                .packed()
+                .len();
+            let end = self
+                .state(last, detail, None)?
+                .without_those_of(&first)
+                .packed()
+                .len();
+            let size = (middle + end) / 2;
             let Some(bytes) = bytes else {
                 return Ok((detail, size));
             };
@@ -138,17 +173,28 @@ impl Reading<'_> {
             }
         };
         let run = self.run;
-        self.grains.read(run, state, detail, &mut arrays, &mut note)?;
-        self.contacts.read(run, state, detail, self.dimension, &mut arrays, &mut note)?;
-        let surfaces = self.meshes.read(run, state, self.dimension, &mut arrays, &mut note)?;
+        self.grains
+            .read(run, state, detail, &mut arrays, &mut note)?;
+        self.contacts
+            .read(run, state, detail, self.dimension, &mut arrays, &mut note)?;
+        let surfaces = self
+            .meshes
+            .read(run, state, self.dimension, &mut arrays, &mut note)?;
         let of_grains = self.grains.shaped();
         let skip = |id: u64, at: [f64; 3]| of_grains.contains(&id) || surfaces.contains(&place(at));
-        self.bodies.read(run, state, self.dimension, self.grains.places(), &skip, &mut arrays)?;
+        self.bodies.read(
+            run,
+            state,
+            self.dimension,
+            self.grains.places(),
+            &skip,
+            &mut arrays,
+        )?;
         Ok(arrays)
     }
 }
 
-/// Adds an array of a field and notes its values.
+/// Takes note of the values of a field, by group and name.
 pub(super) type Note<'a> = dyn FnMut(&str, &str, &[f64]) + 'a;
 
 /// A place to a billionth of a metre, to find it again.
@@ -171,7 +217,9 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 }
 
 fn parsed(run: &RunFolder) -> Option<Case> {
-    Source::from_text("case", run.case_text.as_str()).parse().ok()
+    Source::from_text("case", run.case_text.as_str())
+        .parse()
+        .ok()
 }
 
 /// Length of the period along each axis; null where there is none.

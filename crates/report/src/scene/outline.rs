@@ -24,7 +24,11 @@ pub(super) fn flat(piece: &ShapedPiece) -> Vec<[f64; 3]> {
         let steps = (turn / FINE).ceil().max(1.0) as usize;
         for step in 0..=steps {
             let (sin, cos) = (from + turn * step as f64 / steps as f64).sin_cos();
-            out.push([here[0] + piece.rounding * cos, here[1] + piece.rounding * sin, 0.0]);
+            out.push([
+                here[0] + piece.rounding * cos,
+                here[1] + piece.rounding * sin,
+                0.0,
+            ]);
         }
     }
     out
@@ -37,8 +41,15 @@ pub(super) fn solid(piece: &ShapedPiece) -> Vec<[f64; 3]> {
     }
     let mut out = Vec::new();
     for face in &piece.faces {
-        let corners: Vec<[f64; 3]> = face.iter().filter_map(|k| piece.corners.get(*k as usize).copied()).collect();
-        let shift = if piece.rounding > 0.0 { normal(&corners).map(|x| x * piece.rounding) } else { [0.0; 3] };
+        let corners: Vec<[f64; 3]> = face
+            .iter()
+            .filter_map(|k| piece.corners.get(*k as usize).copied())
+            .collect();
+        let shift = if piece.rounding > 0.0 {
+            normal(&corners).map(|x| x * piece.rounding)
+        } else {
+            [0.0; 3]
+        };
         let moved = |c: [f64; 3]| [c[0] + shift[0], c[1] + shift[1], c[2] + shift[2]];
         for k in 2..corners.len() {
             out.extend([corners[0], corners[k - 1], corners[k]].map(moved));
@@ -66,8 +77,14 @@ fn capsule(piece: &ShapedPiece) -> Vec<[f64; 3]> {
     };
     let axis: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let along = if length > 0.0 { axis.map(|x| x / length) } else { [0.0, 0.0, 1.0] };
-    let thin = (0..3).min_by(|i, j| along[*i].abs().total_cmp(&along[*j].abs())).unwrap_or(0);
+    let along = if length > 0.0 {
+        axis.map(|x| x / length)
+    } else {
+        [0.0, 0.0, 1.0]
+    };
+    let thin = (0..3)
+        .min_by(|i, j| along[*i].abs().total_cmp(&along[*j].abs()))
+        .unwrap_or(0);
     let mut other = [0.0; 3];
     other[thin] = 1.0;
     let across = unit(cross(along, other));
@@ -125,10 +142,17 @@ mod tests {
 
     #[test]
     fn a_rounded_square_has_the_area_of_its_offset() {
-        let square = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+        let square = vec![
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ];
         let area = |points: &[[f64; 3]]| {
             let pairs = points.iter().zip(points.iter().cycle().skip(1));
-            pairs.map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum::<f64>()
+            pairs
+                .map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0]))
+                .sum::<f64>()
         };
         assert_eq!(area(&flat(&piece(square.clone(), vec![], 0.0))), 4.0);
         let rounded = area(&flat(&piece(square, vec![], 0.5)));

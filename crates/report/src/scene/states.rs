@@ -13,7 +13,12 @@ pub(super) fn times(run: &RunFolder) -> Result<Vec<f64>, String> {
     }
     let mut count = usize::MAX;
     for view in ["grains", "contacts", "bodies"] {
-        for column in ["Steps/Values", "NumberOfPoints", "Steps/PointOffsets", "Steps/CellOffsets"] {
+        for column in [
+            "Steps/Values",
+            "NumberOfPoints",
+            "Steps/PointOffsets",
+            "Steps/CellOffsets",
+        ] {
             // The columns of a run that was killed may differ in length by the last state.
             count = count.min(reader.rows(&format!("views/{view}/{column}"))?);
         }

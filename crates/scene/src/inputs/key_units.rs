@@ -72,8 +72,17 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
         _ => {}
     }
     let drive = drive(named, dimension);
-    if matches!(last, "amplitude" | "offset" | "value" | "Constant" | "Displacement" | "Velocity" | "Force" | "Pressure")
-        || (matches!(last, "from" | "to") && has("Ramp"))
+    if matches!(
+        last,
+        "amplitude"
+            | "offset"
+            | "value"
+            | "Constant"
+            | "Displacement"
+            | "Velocity"
+            | "Force"
+            | "Pressure"
+    ) || (matches!(last, "from" | "to") && has("Ramp"))
     {
         return drive;
     }
