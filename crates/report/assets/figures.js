@@ -116,10 +116,11 @@
       const docs = chosen.map((n) => runs.map((run) => column(run, n)).find(Boolean)).filter(Boolean);
       doc.textContent = docs.map((c) => `${c.name}${c.unit ? ` [${c.unit}]` : ""}: ${c.doc}`).join(". ");
       if (!spec) return;
-      if (x === "time") { chart = FW.chart(host, { title: chosen.join(", "), link: true, ...spec }); return; }
+      const quantity = runs.length > 1 && chosen.length === 1 ? first : "";
+      if (x === "time") { chart = FW.chart(host, { title: chosen.join(", "), link: true, quantity, ...spec }); return; }
       const ys = runs.flatMap((run) => chosen.map((n) => [run, column(run, x), column(run, n)])).filter(([, a, b]) => a && b)
         .map(([run, a, b]) => ({ label: runs.length > 1 ? `${run.name}: ${b.name}` : b.name, unit: b.unit, x: a.values, values: b.values }));
-      chart = FW.chart(host, { title: chosen.join(", "), loose: true, x: spec.x, ys: ys.filter((y) => y.unit === ys[0].unit) });
+      chart = FW.chart(host, { title: chosen.join(", "), loose: true, x: spec.x, ys: ys.filter((y) => y.unit === ys[0].unit), quantity });
     };
     const options = names.map((n) => [n, n]);
     host.append(element("div", { class: "tools" },

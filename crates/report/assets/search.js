@@ -1,4 +1,4 @@
-// Search in tables, and a switch that shows some rows only.
+// Search in tables, a switch that shows some rows only, and what is unfolded on paper.
 {
   const filters = new Map();
   const apply = (id) => {
@@ -15,4 +15,9 @@
   for (const box of document.querySelectorAll("input[data-hides]")) {
     box.addEventListener("change", () => set(box.dataset.hides, { only: box.checked ? box.dataset.class : "" }));
   }
+  const folded = [];
+  addEventListener("beforeprint", () => {
+    for (const part of document.querySelectorAll("#laws details:not([open])")) { part.open = true; folded.push(part); }
+  });
+  addEventListener("afterprint", () => { for (const part of folded.splice(0)) part.open = false; });
 }

@@ -1,7 +1,7 @@
 //! Several runs side by side on one page.
 
 use crate::folder::RunFolder;
-use crate::page::{Page, difference_table, escape, footer, section, value};
+use crate::page::{Page, difference_table, escape, footer, item, section, value};
 use crate::results::{self, ResultRow};
 use crate::series::Series;
 use crate::{ReportError, figures, write};
@@ -104,8 +104,8 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
         let warnings = run.summary["warnings"].as_array();
         let warnings = warnings.into_iter().flatten().filter_map(Value::as_str);
         let all: Vec<String> = warnings
-            .map(escape)
-            .chain(gaps.iter().map(|g| escape(g)))
+            .map(item)
+            .chain(gaps.iter().map(|g| item(g)))
             .collect();
         rows += &format!(
             "<tr><th scope=\"row\">{}</th><td>{}</td><td><span class=\"badge {}\">{}</span></td><td class=\"meaning\">{}</td></tr>\n",

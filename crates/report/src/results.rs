@@ -115,6 +115,8 @@ fn friction(s: &Value) -> Vec<ResultRow> {
         .as_f64()
         .map(number)
         .or_else(|| own("friction_coefficient"));
+    // Without an interval both are the same number.
+    let last = own("friction_coefficient").filter(|last| Some(last) != mean.as_ref());
     let regime = s["fretting"]["regime"].as_str().map(str::to_owned);
     [
         row(
@@ -125,7 +127,7 @@ fn friction(s: &Value) -> Vec<ResultRow> {
         ),
         row(
             "friction coefficient, last",
-            own("friction_coefficient"),
+            last,
             String::new(),
             "the same over the last complete cycle, or over the second half of the time without cycles",
         ),

@@ -7,7 +7,7 @@ pub(crate) mod report;
 mod results;
 mod verdict;
 
-pub(crate) use verdict::Verdict;
+pub(crate) use verdict::{Verdict, item};
 
 pub(crate) use inputs::difference_table;
 pub(crate) use results::value;

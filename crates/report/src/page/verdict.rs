@@ -104,7 +104,7 @@ pub(crate) fn html(run: &RunFolder, gaps: &[String]) -> String {
 }
 
 /// A warning with its keyword, `NOT CONVERGED: ...`, in bold.
-fn item(text: &str) -> String {
+pub(crate) fn item(text: &str) -> String {
     let key = text.split_once(':').filter(|(key, _)| {
         key.chars().all(|c| c.is_ascii_uppercase() || c == ' ') && !key.is_empty()
     });
