@@ -193,7 +193,7 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
         .collect();
     let offsets = all("Offsets", 1)?;
     let count = offsets.len().saturating_sub(1);
-    let corners = if count == 0 { 3 } else { cells.len() / count };
+    let corners = cells.len().checked_div(count).unwrap_or(3);
     if cells.iter().any(|p| 3 * p >= points.len()) || corners == 0 {
         return Err(format!("`{path}` holds elements without points"));
     }
