@@ -56,13 +56,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 8] = [
     (
         "report",
         &["observe", "scene", "store"],
-        &[
-            "clap",
-            "plotters",
-            "ab_glyph",
-            "tiny-skia",
-            "fretwork-shipped",
-        ],
+        &["clap", "plotters", "ab_glyph", "tiny-skia"],
     ),
 ];
 

@@ -1,5 +1,6 @@
 //! Where the numbers come from, and how to cite them.
 
+use super::results::clock;
 use super::{escape, hash};
 use crate::folder::RunFolder;
 use crate::laws::{LawInfo, Loaded};
@@ -53,7 +54,12 @@ pub(crate) fn provenance(run: &RunFolder) -> String {
     }
     let rows: String = rows
         .iter()
-        .map(|(k, v)| format!("<tr><th scope=\"row\">{k}</th><td>{v}</td></tr>\n"))
+        .map(|(k, v)| {
+            format!(
+                "<tr{}><th scope=\"row\">{k}</th><td>{v}</td></tr>\n",
+                clock(matches!(*k, "Threads" | "Wall time"))
+            )
+        })
         .collect();
     format!("<div class=\"scroll\"><table class=\"facts\"><tbody>\n{rows}</tbody></table></div>\n")
 }

@@ -100,9 +100,6 @@ fn head(run: &RunFolder, gaps: &[String]) -> String {
         run.summary["time"]
             .as_f64()
             .map(|t| format!("to t = {}", quantity(t, "s"))),
-        run.summary["wall_seconds"]
-            .as_f64()
-            .map(|t| format!("in {}", quantity(t, "s"))),
         Some(format!("{}D", run.dimension())),
         Some(format!("fretwork {}", run.version)),
     ]

@@ -4,6 +4,7 @@ use super::escape;
 use crate::folder::RunFolder;
 use crate::results::{self, Group, ResultRow};
 use crate::series::Series;
+use fretwork_store::summary::FROM_THE_CLOCK;
 use serde_json::Value;
 
 /// Rows of a group that are shown before the rest is folded.
@@ -99,6 +100,11 @@ pub(crate) fn value(text: &str) -> String {
     format!("<span class=\"{class}\">{}</span>", escape(text))
 }
 
+/// Class of a row that differs between two runs of the same case, in a line of its own.
+pub(crate) fn clock(differs: bool) -> &'static str {
+    if differs { " class=\"clock\"" } else { "" }
+}
+
 /// All numbers of the summary, by their paths.
 fn everything(summary: &Value) -> String {
     let mut rows = Vec::new();
@@ -107,7 +113,12 @@ fn everything(summary: &Value) -> String {
         .iter()
         .map(|(path, value)| {
             format!(
-                "<tr><td><code>{}</code></td><td>{}</td></tr>\n",
+                "<tr{}><td><code>{}</code></td><td>{}</td></tr>\n",
+                clock(
+                    FROM_THE_CLOCK
+                        .iter()
+                        .any(|p| p[1..].replace('/', ".") == *path)
+                ),
                 escape(path),
                 escape(value)
             )
