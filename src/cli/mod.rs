@@ -1,14 +1,16 @@
-//! The command line: `run`, `check`, `law`, `solve`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `law`, `solve`, `trade`.
 //!
 //! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
 
 mod again;
 mod check;
+mod compare;
 mod ending;
 mod law;
 mod number;
 mod output;
 mod progress;
+mod report;
 mod run;
 mod solve;
 mod trade;
@@ -46,6 +48,16 @@ enum Command {
         after_help = "Example:\n  fretwork run cases/wheel_rail_fretting.ron --out results/a --set interfaces.third_body.damage=mohr-coulomb-brittle"
     )]
     Run(run::RunArgs),
+    /// Make one HTML page of a run: results, warnings, figures, the scene over time, all inputs
+    #[command(
+        after_help = "Exit code: 0 done, 1 the page cannot be written, 2 the folder holds no run.\n\nExample:\n  fretwork report results/wheel_rail_fretting --size 20"
+    )]
+    Report(report::ReportArgs),
+    /// Make one HTML page of several runs side by side: inputs that differ, results, figures
+    #[command(
+        after_help = "Exit code: 0 done, 1 the page cannot be written, 2 a folder holds no run.\n\nExample:\n  fretwork compare results/a results/b --out a_b.html"
+    )]
+    Compare(compare::CompareArgs),
     /// Print what a case uses and what it will cost, without running it or writing files
     Check(check::CheckArgs),
     /// Interface laws: list, show, make, drive and certify them
@@ -259,6 +271,8 @@ pub fn call(words: &[OsString]) -> u8 {
 fn run(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(args) => run::run(&args),
+        Command::Report(args) => report::report(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),

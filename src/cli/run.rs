@@ -36,6 +36,9 @@ pub struct RunArgs {
     /// Print all details at the end: first and last cycle, measures, phases, solver, laws
     #[arg(long, short)]
     verbose: bool,
+    /// Make no report.html at the end
+    #[arg(long)]
+    no_report: bool,
     /// Show no progress; print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -71,8 +74,14 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let done = pool.install(|| match scene {
         Scene::Dim2(built) => run_case(&loaded, *built, &options, args),
         Scene::Dim3(built) => run_case(&loaded, *built, &options, args),
-    })?;
-    let Some(summary) = done else {
+    });
+    let Some(summary) = done.inspect_err(|e| {
+        // The run began, and what it recorded until it failed is on disk.
+        if matches!(e, Failure::Failed(_) | Failure::Run(RunError::Step(_))) {
+            report(&options.out, args);
+        }
+    })?
+    else {
         return Ok(());
     };
     if args.json {
@@ -89,11 +98,19 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
             options.out.display()
         ));
     }
+    report(&options.out, args);
     if let Some(why) = summary.stopped.as_ref().filter(|_| summary.interrupted) {
         let command = again::command(&["--resume"]);
         return Err(Failure::Failed(format!("{why}; to go on:\n  {command}")));
     }
     strict(args, summary.reasons.first().map(String::as_str))
+}
+
+/// Makes the report, unless it is not wanted.
+fn report(out: &Path, args: &RunArgs) {
+    if !args.no_report {
+        super::report::of_run(out, args.json);
+    }
 }
 
 /// Fails if `--strict` is given and there is a reason not to trust the run.

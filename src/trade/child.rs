@@ -271,7 +271,10 @@ impl Launcher {
 
     fn command(&self, sets: &[String], number: u64, place: &Path) -> std::io::Result<Command> {
         let mut command = program::command()?;
-        command.arg("run").arg(&self.case).arg("--json");
+        command
+            .arg("run")
+            .arg(&self.case)
+            .args(["--json", "--no-report"]);
         command.arg("--out").arg(place).args(["--threads", "1"]);
         let quiet = [
             "output.frames=0",

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
-const LAYERS: [(&str, &[&str], &[&str]); 7] = [
+const LAYERS: [(&str, &[&str], &[&str]); 8] = [
     (
         "core",
         &[],
@@ -52,6 +52,11 @@ const LAYERS: [(&str, &[&str], &[&str]); 7] = [
         "plot",
         &["core", "observe", "scene"],
         &["clap", "rust-hdf5"],
+    ),
+    (
+        "report",
+        &["observe", "scene", "store"],
+        &["clap", "plotters", "ab_glyph", "tiny-skia"],
     ),
 ];
 

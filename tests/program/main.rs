@@ -20,6 +20,7 @@ mod law_drive;
 mod law_new;
 mod layers;
 mod plugin_loading;
+mod report;
 mod results;
 mod resume;
 mod same_bits;

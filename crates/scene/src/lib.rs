@@ -16,6 +16,7 @@ pub mod circuit;
 mod deep;
 pub mod gmsh;
 mod holders;
+pub mod inputs;
 pub mod interfaces;
 pub mod jump;
 mod magnitudes;

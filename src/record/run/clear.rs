@@ -7,8 +7,9 @@ use crate::geometry::space::Space;
 use fretwork_observe::Observers;
 use std::path::Path;
 
-/// Names of the figures at the end of a run. Figures of measures and scars are named by a case, and are kept.
-const FIGURES: [&str; 8] = [
+/// Names of the figures at the end of a run, and its report. Figures of measures and scars are named by a case, and are kept.
+const FIGURES: [&str; 9] = [
+    fretwork_report::FILE,
     "damage_ratio.png",
     "fretting_loops.png",
     "friction_coefficient.png",

@@ -39,6 +39,7 @@ pub use nearest::nearest;
 pub use terminal::{clean, clean_json, clean_lines, commands_a_terminal};
 pub use tree::{Entry, Group, Kind, MAX_DEPTH, Node, Shape, SyntaxError, Tree, split_path};
 
+pub(crate) use schema::fields_at;
 use source_map::SourceMap;
 
 /// An input text and its origin.

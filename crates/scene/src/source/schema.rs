@@ -50,6 +50,18 @@ pub(super) fn levels<T: DeserializeOwned>(
     found
 }
 
+/// Names of the fields of the struct at a path of `T`; none if there is no struct.
+pub(crate) fn fields_at<T: DeserializeOwned>(
+    text: &str,
+    root: Option<&Node>,
+    path: &[String],
+) -> Vec<&'static str> {
+    match levels::<T>(text, root, path).pop() {
+        Some(Level::Struct(fields)) => fields,
+        _ => Vec::new(),
+    }
+}
+
 struct Probe<'a> {
     text: &'a str,
     node: Option<&'a Node>,

@@ -64,7 +64,7 @@ fn of_material(
 
 impl Reader {
     /// Names of the groups in a group.
-    fn groups_in(&self, group: &str) -> BTreeSet<String> {
+    pub fn groups_in(&self, group: &str) -> BTreeSet<String> {
         let inside = self.names().filter_map(|n| {
             let rest = n.strip_prefix(group)?.strip_prefix('/')?;
             Some(rest.split('/').next()?.to_owned())

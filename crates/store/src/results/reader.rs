@@ -1,7 +1,7 @@
 //! Reader of datasets of `results.h5`, also of a truncated or growing file.
 
 use crate::fclib::guard;
-use hdf5::{H5File, H5Type};
+use hdf5::{DatatypeMessage, H5File, H5Type};
 use std::path::Path;
 
 /// A file of results, open for reading: its datasets by their paths, see [`crate::results`].
@@ -69,7 +69,7 @@ impl Reader {
     }
 
     /// Names of all datasets, with their groups.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub fn names(&self) -> impl Iterator<Item = &str> {
         self.names.iter().map(String::as_str)
     }
 
@@ -80,6 +80,64 @@ impl Reader {
                 .is_some_and(|rest| rest.starts_with('/'))
         };
         self.names.iter().any(inside)
+    }
+
+    /// Names of the datasets directly in a group, in the order of the file.
+    pub fn datasets_in<'a>(&'a self, group: &'a str) -> impl Iterator<Item = &'a str> {
+        self.names().filter_map(move |name| {
+            let rest = name.strip_prefix(group)?.strip_prefix('/')?;
+            (!rest.contains('/')).then_some(rest)
+        })
+    }
+
+    /// Unit (empty for a pure number) and description of a dataset, as far as it has them.
+    pub fn described(&self, name: &str) -> (String, String) {
+        let text = |attribute: &str| {
+            let read = guard(|| self.file.dataset(name)?.attr(attribute)?.read_string());
+            read.unwrap_or_default()
+        };
+        let unit = text("unit");
+        (if unit == "1" { String::new() } else { unit }, text("doc"))
+    }
+
+    /// The texts of a dataset; none if there is no such dataset.
+    pub fn texts(&self, name: &str) -> Vec<String> {
+        if !self.has(name) {
+            return Vec::new();
+        }
+        guard(|| self.file.dataset(name)?.read_strings_lossy()).unwrap_or_default()
+    }
+
+    /// A text attribute of the file.
+    pub fn attribute(&self, name: &str) -> Option<String> {
+        guard(|| self.file.attr_string(name)).ok()
+    }
+
+    /// Numbers of a row of a dataset.
+    ///
+    /// # Errors
+    /// The dataset does not exist.
+    pub fn width(&self, name: &str) -> Result<usize, String> {
+        let shape = guard(|| Ok(self.file.dataset(name)?.shape()))?;
+        Ok(shape.get(1).copied().unwrap_or(1))
+    }
+
+    /// Reads rows of numbers or of integers, as [`Self::numbers`].
+    ///
+    /// # Errors
+    /// The rows are missing.
+    pub fn values(
+        &self,
+        name: &str,
+        rows: (usize, usize),
+        width: usize,
+    ) -> Result<Vec<f64>, String> {
+        let kind = guard(|| self.file.dataset(name)?.datatype())?;
+        if matches!(kind, DatatypeMessage::FixedPoint { .. }) {
+            let values: Vec<i64> = self.slice(name, rows, width)?;
+            return Ok(values.into_iter().map(|v| v as f64).collect());
+        }
+        self.slice(name, rows, width)
     }
 
     /// Number of rows of a dataset.

@@ -130,7 +130,7 @@ impl Shaped {
     ///
     /// # Errors
     /// A description of what is wrong with them.
-    pub(super) fn read(reader: &Reader) -> Result<Option<Self>, String> {
+    pub fn read(reader: &Reader) -> Result<Option<Self>, String> {
         if !reader.has("shapes/bodies/id") {
             return Ok(None);
         }

@@ -1,0 +1,169 @@
+//! The report of one run.
+
+use super::{Page, cite, escape, footer, inputs, laws, results, section, verdict};
+use crate::folder::RunFolder;
+use crate::materials::Files;
+use crate::scene::Scene;
+use crate::series::Series;
+use crate::{Options, figures, tables};
+use crate::{laws as law_data, results::quantity};
+use serde_json::{Value, json};
+
+/// Rows of the statistics in a page of the usual size.
+const ROWS: usize = 4000;
+/// Rows in a page without a limit.
+const ALL_ROWS: usize = 200_000;
+/// Share of a page that the statistics may take.
+const SHARE: usize = 3;
+
+/// The page.
+pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
+    let mut gaps = run.gaps.clone();
+    let mut most = if options.bytes.is_some() {
+        ROWS
+    } else {
+        ALL_ROWS
+    };
+    let mut series = Series::read(run, most, &mut gaps);
+    let mut packed = series.packed();
+    while let Some(bytes) = options
+        .bytes
+        .filter(|b| packed.len() > b / SHARE && most > 200)
+    {
+        most = (most * (bytes / SHARE) / packed.len()).max(200);
+        series = Series::read(run, most, &mut gaps);
+        packed = series.packed();
+    }
+    let files = Files::read(run);
+    let tables = tables::read(run);
+    let mut page = Page {
+        title: format!("{} - Fretwork", run.title),
+        data: json!({
+            "series": series.head(),
+            "figures": figures::of(run, &series, &tables),
+        }),
+        viewer: true,
+        ..Page::default()
+    };
+    let after = rest(run, &files, options);
+    page.body.clone_from(&after);
+    let taken = page.bytes_of_frame() + packed.len() + 20_000;
+    let room = options.bytes.map(|b| b.saturating_sub(taken).max(100_000));
+    let scene = Scene::read(run, room, &mut gaps);
+    page.viewer = scene.is_some();
+    page.body = head(run, &gaps);
+    page.body += &section("results", "Results", &results::html(run, &series));
+    if let Some(scene) = &scene {
+        page.body += &section("scene", "Scene", &viewer(scene));
+        page.data["scene"] = scene.head.clone();
+    } else {
+        page.body += &section(
+            "scene",
+            "Scene",
+            "<p>No states were recorded: <code>output.views</code> of the case is 0, or the run ended before the first.</p>\n",
+        );
+    }
+    page.body += &section(
+        "figures",
+        "Figures",
+        &figure_frames(&page.data["figures"], &series),
+    );
+    page.body += &after;
+    page.blobs.push(("series".to_owned(), packed));
+    let frames = scene.into_iter().flat_map(|s| s.frames).enumerate();
+    page.blobs
+        .extend(frames.map(|(k, text)| (format!("frame-{k}"), text)));
+    page.html()
+}
+
+/// Title, verdict and links.
+fn head(run: &RunFolder, gaps: &[String]) -> String {
+    let doc = fretwork_scene::source::Source::from_text("case", run.case_text.as_str());
+    let doc = doc
+        .parse::<fretwork_scene::Case>()
+        .map(|c| c.doc)
+        .unwrap_or_default();
+    let mut out =
+        String::from("<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n");
+    out += &format!("<h1>{}</h1>\n", escape(&run.title));
+    if !doc.is_empty() {
+        out += &format!("<p class=\"doc\">{}</p>\n", escape(&doc));
+    }
+    let facts: Vec<String> = [
+        run.summary["bodies"]
+            .as_u64()
+            .map(|n| format!("{n} bodies")),
+        run.summary["contacts"]
+            .as_u64()
+            .map(|n| format!("{n} contacts")),
+        run.summary["steps"].as_u64().map(|n| format!("{n} steps")),
+        run.summary["time"]
+            .as_f64()
+            .map(|t| format!("to t = {}", quantity(t, "s"))),
+        Some(format!("{}D", run.dimension())),
+        Some(format!("fretwork {}", run.version)),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    out += &format!(
+        "<p class=\"facts-line\">{}</p>\n</header>\n",
+        escape(&facts.join(" · "))
+    );
+    out += "<nav aria-label=\"Sections\">";
+    for (id, name) in [
+        ("results", "Results"),
+        ("scene", "Scene"),
+        ("figures", "Figures"),
+        ("laws", "Materials and laws"),
+        ("inputs", "Inputs"),
+        ("provenance", "Provenance"),
+        ("cite", "Cite"),
+    ] {
+        out += &format!("<a href=\"#{id}\">{name}</a>");
+    }
+    out + "</nav>\n<main>\n" + &verdict::html(run, gaps)
+}
+
+/// What stands after the figures.
+fn rest(run: &RunFolder, files: &Files, options: &Options<'_>) -> String {
+    let loaded = law_data::loaded(run);
+    let interfaces = law_data::interfaces(run, files, options.law);
+    let used = laws::libraries(&loaded) + &laws::interfaces(&interfaces) + &laws::materials(files);
+    let mut out = section("laws", "Materials and laws", &used);
+    out += &section("inputs", "Inputs", &inputs::html(run));
+    out += &section("provenance", "Provenance", &cite::provenance(run));
+    out += &section(
+        "cite",
+        "How to cite",
+        &cite::cite(run, &loaded, options.law),
+    );
+    out + "</main>\n" + &footer("fretwork report")
+}
+
+/// The place of the viewer; its controls are made by the script.
+fn viewer(scene: &Scene) -> String {
+    format!(
+        "<noscript><p>The viewer and the figures need JavaScript; all numbers are in the tables.</p></noscript>\n\
+         <div id=\"viewer\"></div>\n<p class=\"sampled\">In this page {}. All is in results.h5, and in the page of \
+         <code>fretwork report DIR --full</code>.</p>\n",
+        escape(&scene.said.join("; "))
+    )
+}
+
+fn figure_frames(figures: &Value, series: &Series) -> String {
+    let sampled = match series.every {
+        0 | 1 => String::new(),
+        n => format!(
+            " One of {n} rows of the statistics is in this page, {} in all.",
+            series.rows
+        ),
+    };
+    let mut out = format!(
+        "<p class=\"lead\">Drag to zoom, double-click to see all; figures over time are linked.{sampled}</p>\n<div class=\"figures\">\n"
+    );
+    for k in 0..figures.as_array().map_or(0, Vec::len) {
+        out += &format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n");
+    }
+    out + "</div>\n"
+}

@@ -1,0 +1,127 @@
+//! Units of the keys of a case, by the names on their path.
+
+/// Keys with a unit of their own wherever they stand.
+const ANYWHERE: [(&str, &str); 29] = [
+    ("step", "s"),
+    ("end", "s"),
+    ("start", "s"),
+    ("until", "s"),
+    ("vanishes", "s"),
+    ("healing", "s"),
+    ("held", "s"),
+    ("at_most", "s"),
+    ("period", "s"),
+    ("gravity", "m/s^2"),
+    ("frequency", "Hz"),
+    ("phase", "rad"),
+    ("position", "m"),
+    ("alert", "m"),
+    ("skin", "m"),
+    ("bonds_within", "m"),
+    ("rms", "m"),
+    ("longest", "m"),
+    ("shortest", "m"),
+    ("radius", "m"),
+    ("gap", "m"),
+    ("low", "m"),
+    ("high", "m"),
+    ("rounding", "m"),
+    ("spacing", "m"),
+    ("window", "m"),
+    ("layers", "m"),
+    ("young", "Pa"),
+    ("turned", "rad"),
+];
+
+/// Keys of shapes and samples.
+const OF_SHAPES: [(&str, &str); 12] = [
+    ("height", "m"),
+    ("size", "m"),
+    ("at", "m"),
+    ("hole", "m"),
+    ("balls", "m"),
+    ("from", "m"),
+    ("to", "m"),
+    ("thickness", "m"),
+    ("block", "m"),
+    ("centre", "m"),
+    ("span", "rad"),
+    ("heights", "m"),
+];
+
+/// The SI unit of the key at a path of names, with the names of variants between them; empty for pure numbers, texts, and
+/// parameters of laws, which have the units of their law.
+pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
+    let has = |name: &str| named.iter().any(|n| n == name);
+    let Some(last) = named.last().map(String::as_str) else {
+        return "";
+    };
+    if has("parameters") || has("jump") || has("accuracy") || has("uncertainty") {
+        return "";
+    }
+    // A variant that holds its value directly, `bonds: At(0.024)`, is itself last.
+    match (last, dimension) {
+        ("mass", 2) => return "kg/m",
+        ("mass", _) => return "kg",
+        ("inertia", 2) => return "kg m",
+        ("inertia", _) => return "kg m^2",
+        ("x" | "y" | "z", _) if has("periodic") => return "m",
+        ("At", _) if has("bonds") => return "s",
+        ("Seconds", _) if has("checkpoint") => return "s",
+        ("Time" | "After", _) if has("until") => return "s",
+        _ => {}
+    }
+    let drive = drive(named, dimension);
+    if matches!(
+        last,
+        "amplitude"
+            | "offset"
+            | "value"
+            | "Constant"
+            | "Displacement"
+            | "Velocity"
+            | "Force"
+            | "Pressure"
+    ) || (matches!(last, "from" | "to") && has("Ramp"))
+    {
+        return drive;
+    }
+    let shapes = ["shapes", "grains", "wears", "scars"];
+    let find = |table: &[(&str, &'static str)]| {
+        let found = table.iter().find(|(name, _)| *name == last);
+        found.map(|(_, unit)| *unit)
+    };
+    if shapes.iter().any(|s| has(s))
+        && let Some(unit) = find(&OF_SHAPES)
+    {
+        return unit;
+    }
+    find(&ANYWHERE).unwrap_or_default()
+}
+
+/// The unit of a function of time that drives a degree of freedom, or gravity.
+fn drive(named: &[String], dimension: u32) -> &'static str {
+    let last_of = |names: &[&str]| named.iter().rposition(|n| names.contains(&n.as_str()));
+    if let Some(k) = last_of(&["Turned", "Scaled", "Axes"]) {
+        return match named[k].as_str() {
+            "Turned" => "rad",
+            "Axes" => "m/s^2",
+            _ => "",
+        };
+    }
+    let Some(k) = last_of(&["Displacement", "Velocity", "Force", "Pressure"]) else {
+        return "";
+    };
+    let turns = last_of(&["rx", "ry", "rz"]).is_some();
+    match (named[k].as_str(), turns, dimension) {
+        ("Displacement", false, _) => "m",
+        ("Displacement", true, _) => "rad",
+        ("Velocity", false, _) => "m/s",
+        ("Velocity", true, _) => "rad/s",
+        ("Force", false, 2) => "N/m",
+        ("Force", false, _) => "N",
+        ("Force", true, 2) => "N m/m",
+        ("Force", true, _) => "N m",
+        _ => "Pa",
+    }
+}

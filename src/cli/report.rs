@@ -1,0 +1,85 @@
+//! `fretwork report`, and the report at the end of a run.
+
+use super::Failure;
+use super::output::{inform, report as complain};
+use crate::laws::{Kind, SearchPath};
+use crate::shipped::built_in;
+use clap::Args;
+use fretwork_report::{DEFAULT_BYTES, LawInfo, LawParameter, Options, ReportError};
+use std::path::{Path, PathBuf};
+
+#[derive(Args, Debug)]
+pub struct ReportArgs {
+    /// Folder of a run, finished or not
+    dir: PathBuf,
+    /// Put all recorded states and rows into the page, however large it gets
+    #[arg(long, conflicts_with = "size")]
+    full: bool,
+    /// Largest size of the page (MB); states, fields and rows are left out to stay below it, which the page says
+    #[arg(long, value_name = "MB", default_value_t = 5.0)]
+    size: f64,
+}
+
+impl From<ReportError> for Failure {
+    fn from(e: ReportError) -> Self {
+        if e.is_input() {
+            Self::Usage(e.to_string())
+        } else {
+            Self::Failed(e.to_string())
+        }
+    }
+}
+
+pub fn report(args: &ReportArgs) -> Result<(), Failure> {
+    if !(args.size.is_finite() && (0.5..=2000.0).contains(&args.size)) {
+        return Err(Failure::Usage(format!(
+            "--size {}: give a size from 0.5 to 2000 MB, or --full",
+            args.size
+        )));
+    }
+    let bytes = (!args.full).then_some((args.size * 1e6) as usize);
+    let law =
+        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
+    let (path, size) = fretwork_report::report(&args.dir, &Options { bytes, law: &law })?;
+    inform(&format!(
+        "{} ({:.1} MB): open it in a browser",
+        path.display(),
+        size as f64 / 1e6
+    ));
+    Ok(())
+}
+
+/// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.
+pub fn of_run(folder: &Path, quiet: bool) {
+    let law =
+        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
+    let options = Options {
+        bytes: Some(DEFAULT_BYTES),
+        law: &law,
+    };
+    match fretwork_report::report(folder, &options) {
+        Ok((path, _)) if !quiet => inform(&format!("  report in {}", path.display())),
+        Ok(_) => {}
+        Err(e) => complain(&format!("warning: there is no report: {e}")),
+    }
+}
+
+/// A law of the program itself: a report never opens the library of anybody else.
+fn law(path: &SearchPath, kind: &str, name: &str) -> Option<LawInfo> {
+    let kind = Kind::from_word(kind)?;
+    if !built_in().names().any(|own| own == (kind, name)) {
+        return None;
+    }
+    let plugin = path.find(kind, name).ok().filter(|p| path.is_own(p))?;
+    let parameter = |f: &crate::laws::Field| LawParameter {
+        name: f.name.clone(),
+        unit: f.unit.clone(),
+        default: f.default,
+        doc: f.doc.clone(),
+    };
+    Some(LawInfo {
+        doc: plugin.doc.clone(),
+        reference: plugin.reference.clone(),
+        parameters: plugin.parameters.iter().map(parameter).collect(),
+    })
+}
