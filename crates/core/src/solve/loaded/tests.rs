@@ -71,8 +71,8 @@ fn compare(terms: &[Vec<(u32, f64)>], by_nodes: bool) {
         let off = |a: usize| (system.velocity(points[a]) - velocity(&impulses, a)).norm();
         assert!(stale.clone().map(off).fold(0.0, f64::max) > 0.1);
         system.settle();
-        for a in 0..count {
-            let off = system.velocity(points[a]) - velocity(&impulses, a);
+        for (a, point) in points.iter().enumerate() {
+            let off = system.velocity(*point) - velocity(&impulses, a);
             assert!(off.norm() < 1e-11, "{round} {a}: {off}");
         }
     }
