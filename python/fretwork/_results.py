@@ -120,7 +120,8 @@ class Results:
 
     @property
     def grains(self) -> xr.Dataset:
-        """Balls and other parts of grains and first bodies over time: ``(time, grain)``, with the fields of ``results.h5``."""
+        """Balls and other parts of grains and first bodies over time: ``(time, grain)``, vectors ``(time, grain, axis)``, with the
+        fields of ``results.h5``."""
         xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
         with self.open() as file:
             view = file["views/grains"]
@@ -131,7 +132,7 @@ class Results:
             rows = shape[0] * shape[1]
             dims = ("time", "grain")
             fields: dict[str, Any] = {
-                name: (dims, np.asarray(data[:rows]).reshape(shape), _attributes(data))
+                name: ((*dims, "axis")[: 1 + data.ndim], np.asarray(data[:rows]).reshape(*shape, *data.shape[1:]), _attributes(data))
                 for name, data in view["PointData"].items()
             }
             points = view["Points"]
@@ -154,7 +155,7 @@ class Results:
             times, counts = view["Steps/Values"][:], view["Lines/NumberOfCells"][:]
             rows = int(counts.sum())
             fields: dict[str, Any] = {
-                name: ("contact", np.asarray(data[:rows]), _attributes(data))
+                name: (("contact", "axis")[: data.ndim], np.asarray(data[:rows]), _attributes(data))
                 for name, data in view["CellData"].items()
             }
             ends = np.asarray(view["Points"][: 2 * rows]).reshape(rows, 2, 3)

@@ -8,7 +8,7 @@ use crate::search::search_path;
 use crate::stepper::{Moment, Stepper};
 use crate::workers::Workers;
 use fretwork::contact::Contact;
-use fretwork::fields::GrainPart;
+use fretwork::fields::{Field, GrainPart, Value};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::Scene;
 use fretwork::step;
@@ -387,10 +387,7 @@ impl Simulation {
         fn of<S: Space>(s: &step::Simulation<S>, name: &str) -> Option<Array> {
             let field = s.fields.contacts.get(name)?;
             let contacts = s.state.network.contacts.iter();
-            Some(values(
-                contacts.map(|c: &Contact<S>| field.get(s, c)),
-                field.is_whole(),
-            ))
+            Some(of_field(s, field, contacts))
         }
         in_dimension!(self.lock()?, |s| of(s, name))
     }
@@ -408,11 +405,7 @@ impl Simulation {
     fn grain_field(&self, name: &str) -> PyResult<Option<Array>> {
         fn of<S: Space>(s: &step::Simulation<S>, name: &str) -> Option<Array> {
             let field = s.fields.grains.get(name)?;
-            let parts = GrainPart::all(s);
-            Some(values(
-                parts.map(|part| field.get(s, &part)),
-                field.is_whole(),
-            ))
+            Some(of_field(s, field, GrainPart::all(s)))
         }
         in_dimension!(self.lock()?, |s| of(s, name))
     }
@@ -425,6 +418,19 @@ impl Simulation {
         }
         in_dimension!(self.lock()?, |s| of(s))
     }
+}
+
+/// A field of all things that carry it: a row of three numbers each for a vector, a number each for others.
+fn of_field<S: Space, T>(
+    s: &step::Simulation<S>,
+    field: &Field<S, T>,
+    all: impl Iterator<Item = impl std::borrow::Borrow<T>>,
+) -> Array {
+    if let Value::Vector(get) = &field.value {
+        let numbers = all.flat_map(|one| get(s, one.borrow()));
+        return Array::own(numbers.collect::<Vec<f64>>(), field.width());
+    }
+    values(all.map(|one| field.get(s, one.borrow())), field.is_whole())
 }
 
 fn values(numbers: impl Iterator<Item = f64>, whole: bool) -> Array {
