@@ -2,6 +2,21 @@
 //!
 //! Both are those of the executable, unless a process that loads this code as a library, such as a Python interpreter, declares
 //! others before it uses them.
+//!
+//! ```standalone_crate
+//! use fretwork_core::program::{self, Program};
+//!
+//! assert_eq!(program::file()?, std::env::current_exe()?);
+//! let command = ["python3", "-m", "fretwork"].map(Into::into).to_vec();
+//! program::declare(Program { file: "_fretwork.so".into(), command });
+//! // The first declaration counts.
+//! program::declare(Program { file: "other.so".into(), command: Vec::new() });
+//! assert_eq!(program::file()?.to_str(), Some("_fretwork.so"));
+//! let command = program::command()?;
+//! assert_eq!(command.get_program(), "python3");
+//! assert_eq!(command.get_args().collect::<Vec<_>>(), ["-m", "fretwork"]);
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 use std::ffi::OsString;
 use std::path::PathBuf;
