@@ -7,7 +7,6 @@ use crate::errors;
 use crate::search::search_path;
 use crate::stepper::{Moment, Stepper};
 use crate::workers::Workers;
-use fretwork::contact::Contact;
 use fretwork::fields::{Field, GrainPart, Value};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::Scene;
