@@ -259,12 +259,7 @@ mod tests {
                 "",
                 From::Given,
             ),
-            (
-                "bodies.slider.dofs.x.amplitude",
-                "0.00001",
-                "m",
-                From::Given,
-            ),
+            ("bodies.slider.dofs.x.amplitude", "1e-5", "m", From::Given),
             ("bodies.slider.dofs.x.frequency", "20.0", "Hz", From::Given),
             ("bodies.slider.dofs.x.offset", "0.0", "m", From::Default),
             ("interfaces.dry.contact", "\"coulomb\"", "", From::Given),
@@ -274,7 +269,7 @@ mod tests {
                 "",
                 From::Given,
             ),
-            ("periodic.x", "", "m", From::NotSet),
+            ("periodic", "", "", From::NotSet),
             ("output.views", "20", "", From::Default),
         ] {
             let input = find(&inputs, path);
