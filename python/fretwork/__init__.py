@@ -19,6 +19,7 @@ from ._errors import Error, InputError, MissingPackageError, RunError
 from ._fretwork import __version__
 from ._observers import Column, Observer, Stop
 from ._progress import Progress
+from ._report import compare, report
 from ._results import Results
 from ._sections import Section
 from ._simulation import Simulation, StepReport
@@ -44,5 +45,7 @@ __all__ = [
     "StepReport",
     "Stop",
     "__version__",
+    "compare",
     "law",
+    "report",
 ]

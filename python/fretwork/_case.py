@@ -7,12 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, Union
+from warnings import warn
 
 from . import _fretwork
 from ._check import Check
+from ._errors import Error, RunError
 from ._fretwork import CaseData, SimulationData
 from ._observers import Answer, Observer, adapt
 from ._progress import Progress, display
+from ._report import report as make_report
 from ._results import Results
 from ._sections import Section, part, shown
 from ._simulation import Simulation
@@ -26,6 +29,14 @@ _NAME = "case.ron (built in Python)"
 
 def _sets(given: Sets) -> list[str]:
     return assignments(given) if isinstance(given, Mapping) else list(given)
+
+
+def _make_report(folder: AnyPath) -> None:
+    """The report of a run that has just ended. That there is none does not change how the run ended."""
+    try:
+        make_report(folder)
+    except Error as error:
+        warn(f"there is no report: {error}", stacklevel=3)
 
 
 class Case:
@@ -205,6 +216,7 @@ class Case:
         threads: int = 1,
         progress: bool | Callable[[Progress], object] = True,
         resume: bool = False,
+        report: bool = True,
         observers: Sequence[Observer | Callable[[Simulation], Answer]] = (),
         plugin_path: Sequence[AnyPath] = (),
         trust_plugins: bool = False,
@@ -217,6 +229,8 @@ class Case:
 
         Ctrl-C ends the run after its step, with all files written, and raises ``KeyboardInterrupt``; ``resume=True`` goes on
         from there, or from the last checkpoint of a run that was killed. A finished run is not repeated.
+
+        ``report=False`` leaves out ``report.html``; :func:`report` makes it later.
 
         ``observers`` are called after each step: functions of the simulation, or objects of a class of :class:`Observer`.
 
@@ -239,8 +253,14 @@ class Case:
                 show if progress else None,
                 [adapt(observer) for observer in observers],
             )
+        except RunError:
+            if report:
+                _make_report(folder)
+            raise
         finally:
             shows.close()
+        if report:
+            _make_report(folder)
         return Results(folder)
 
     def simulation(

@@ -12,6 +12,7 @@ mod infinity;
 mod law;
 mod observer;
 mod paths;
+mod report;
 mod run;
 mod search;
 mod simulation;
@@ -28,6 +29,8 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulation::Simulation>()?;
     module.add_function(wrap_pyfunction!(run::run, module)?)?;
     module.add_function(wrap_pyfunction!(run::default_folder, module)?)?;
+    module.add_function(wrap_pyfunction!(report::report, module)?)?;
+    module.add_function(wrap_pyfunction!(report::compare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;
     law::add(module)

@@ -43,6 +43,11 @@ mod tests {
         assert_eq!(quote("a case.ron"), "'a case.ron'");
         assert_eq!(quote("x=[\"it's\"]"), "'x=[\"it'\\''s\"]'");
         assert_eq!(quote(""), "''");
-        assert!(command(&["--resume"]).ends_with(" --resume"));
+        keep(&["fretwork", "run", "a case.ron", "--json"].map(OsString::from));
+        assert_eq!(
+            command(&["--resume"]),
+            "fretwork run 'a case.ron' --json --resume"
+        );
+        assert_eq!(command(&["--json"]), "fretwork run 'a case.ron' --json");
     }
 }

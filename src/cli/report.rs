@@ -38,9 +38,7 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
         )));
     }
     let bytes = (!args.full).then_some((args.size * 1e6) as usize);
-    let law =
-        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
-    let (path, size) = fretwork_report::report(&args.dir, &Options { bytes, law: &law })?;
+    let (path, size) = make(&args.dir, bytes)?;
     inform(&format!(
         "{} ({:.1} MB): open it in a browser",
         path.display(),
@@ -49,15 +47,19 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.
-pub fn of_run(folder: &Path, quiet: bool) {
+/// Makes the report of a folder, of at most so many bytes; gives its path and size (bytes).
+///
+/// # Errors
+/// A folder without a run, and files that cannot be read or written.
+pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
     let law =
         |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
-    let options = Options {
-        bytes: Some(DEFAULT_BYTES),
-        law: &law,
-    };
-    match fretwork_report::report(folder, &options) {
+    fretwork_report::report(folder, &Options { bytes, law: &law })
+}
+
+/// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.
+pub fn of_run(folder: &Path, quiet: bool) {
+    match make(folder, Some(DEFAULT_BYTES)) {
         Ok((path, _)) if !quiet => inform(&format!("  report in {}", path.display())),
         Ok(_) => {}
         Err(e) => complain(&format!("warning: there is no report: {e}")),
