@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
+from time import time
 from typing import Any, Union
 from warnings import warn
 
 from . import _fretwork
 from ._check import Check
-from ._errors import Error, RunError
+from ._errors import Error
 from ._fretwork import CaseData, SimulationData
 from ._observers import Answer, Observer, adapt
 from ._progress import Progress, display
@@ -37,6 +38,14 @@ def _make_report(folder: AnyPath) -> None:
         make_report(folder)
     except Error as error:
         warn(f"there is no report: {error}", stacklevel=3)
+
+
+def _has_results_since(folder: AnyPath, began: float) -> bool:
+    """Whether a run has written results since a time, so that those in the folder are not of an older one."""
+    try:
+        return (Path(folder) / "results.h5").stat().st_mtime >= began - 1.0
+    except OSError:
+        return False
 
 
 class Case:
@@ -230,7 +239,7 @@ class Case:
         Ctrl-C ends the run after its step, with all files written, and raises ``KeyboardInterrupt``; ``resume=True`` goes on
         from there, or from the last checkpoint of a run that was killed. A finished run is not repeated.
 
-        ``report=False`` leaves out ``report.html``; :func:`report` makes it later.
+        ``report=False`` leaves out ``report.html``, and so does Ctrl-C; :func:`report` makes it later.
 
         ``observers`` are called after each step: functions of the simulation, or objects of a class of :class:`Observer`.
 
@@ -238,6 +247,7 @@ class Case:
         """
         folder = _fretwork.default_folder(self.file) if out is None else out
         shows = display(progress)
+        began = time()
 
         def show(*line: Any) -> None:
             shows.show(Progress(*line))
@@ -253,8 +263,8 @@ class Case:
                 show if progress else None,
                 [adapt(observer) for observer in observers],
             )
-        except RunError:
-            if report:
+        except Exception:
+            if report and _has_results_since(folder, began):
                 _make_report(folder)
             raise
         finally:

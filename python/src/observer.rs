@@ -144,10 +144,11 @@ impl<S: Steps> Observer<S> for PythonObserver {
             let told = self.object.bind(py).call_method0("save")?;
             told.extract::<Vec<u8>>()
         });
-        let carried = carried.unwrap_or_else(|error| {
+        // Without it there is no checkpoint; the one before stays.
+        let carried = carried.map_err(|error| {
             self.wishes.add(Wish::Raised(error));
-            Vec::new()
-        });
+            CodeError::other("states of observers")
+        })?;
         encode(&(&self.latest, carried))
     }
 

@@ -54,7 +54,14 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
 pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
     let law =
         |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
-    fretwork_report::report(folder, &Options { bytes, law: &law })
+    let make = || fretwork_report::report(folder, &Options { bytes, law: &law });
+    // A defect of the page is not one of the run.
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).unwrap_or_else(|_| {
+        Err(ReportError::Unwritable {
+            path: folder.join(fretwork_report::FILE),
+            reason: "the program failed by an error of its own; please report it".to_owned(),
+        })
+    })
 }
 
 /// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.

@@ -97,6 +97,10 @@ fn write(path: &Path, html: &str) -> Result<(), ReportError> {
         reason: e.to_string(),
     };
     let part = path.with_extension("html.part");
-    std::fs::write(&part, html).map_err(unwritable)?;
-    std::fs::rename(&part, path).map_err(unwritable)
+    let written = std::fs::write(&part, html).and_then(|()| std::fs::rename(&part, path));
+    written.map_err(|e| {
+        // A page that is not whole is of no use.
+        let _ = std::fs::remove_file(&part);
+        unwritable(e)
+    })
 }

@@ -62,12 +62,14 @@ impl<S: Observed> Recorder<'_, S> {
     /// Moves the results file to its final name, with a first checkpoint in it, and opens the table.
     pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         self.write_frame(kind, state)?;
-        // Remove the marker of a finished earlier run: from now on this folder holds an unfinished one.
-        match std::fs::remove_file(self.out.join(LAST)) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(unwritable(&self.out.join(LAST), &e));
+        // Remove the marker of a finished earlier run, and its page: from now on this folder holds an unfinished one.
+        for path in [LAST, fretwork_report::FILE].map(|name| self.out.join(name)) {
+            match std::fs::remove_file(&path) {
+                Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
+                    return Err(unwritable(&path, &e));
+                }
+                _ => {}
             }
-            _ => {}
         }
         let results = self.out.join("results.h5");
         let replaces = kind == Kind::Begun && results.exists();

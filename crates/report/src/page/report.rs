@@ -35,7 +35,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
         packed = series.packed();
     }
     let files = Files::read(run);
-    let tables = tables::read(run);
+    let tables = tables::read(run, options.bytes.map(|b| b / SHARE), &mut gaps);
     let mut page = Page {
         title: format!("{} - Fretwork", run.title),
         data: json!({
@@ -60,7 +60,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
         page.body += &section(
             "scene",
             "Scene",
-            "<p>No states were recorded: <code>output.views</code> of the case is 0, or the run ended before the first.</p>\n",
+            "<p>There are no states to show: <code>output.views</code> of the case is 0, the run ended before the first, or they cannot be read, which a note at the top says.</p>\n",
         );
     }
     page.body += &section(

@@ -21,7 +21,12 @@ impl Contacts {
             let (unit, doc) = run.reader.described(&format!("{group}/{name}"));
             [name.to_owned(), unit, doc]
         };
-        Self(run.reader.datasets_in(&group).map(field).collect())
+        // Numbers: the components of vectors are fields of their own.
+        let numbers = run
+            .reader
+            .datasets_in(&group)
+            .filter(|name| run.reader.width(&format!("{group}/{name}")) == Ok(1));
+        Self(numbers.map(field).collect())
     }
 
     /// The fields for the page.

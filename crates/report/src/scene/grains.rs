@@ -53,7 +53,11 @@ impl Grains {
     pub fn find(run: &RunFolder, meshed: HashSet<u64>) -> Result<Self, String> {
         let reader = &run.reader;
         let dimension = run.dimension();
-        let fields = reader.datasets_in(ROOT).map(|name| {
+        // Numbers: the components of vectors are fields of their own.
+        let numbers = reader
+            .datasets_in(ROOT)
+            .filter(|name| reader.width(&format!("{ROOT}/{name}")) == Ok(1));
+        let fields = numbers.map(|name| {
             let (unit, doc) = reader.described(&format!("{ROOT}/{name}"));
             Field {
                 name: name.to_owned(),
