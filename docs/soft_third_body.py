@@ -18,6 +18,8 @@ import statistics
 import subprocess
 
 E = 568e6
+# Seed of the case.
+FIRST_SEED = 3
 PROGRAM = os.environ.get("FRETWORK", "target/release/fretwork")
 # Student's t of 97.5 % for 1, 2, ... degrees of freedom.
 STUDENT = (12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262)
@@ -66,7 +68,7 @@ print("kappa   C/P  seed  friction         interior shear  slip at the plates  s
 for pressure in (2.5e5, 2.5e4):
     for ratio in (0.0, 1.0, 2.0, 4.0, 8.0):
         frictions, shears = [], []
-        for seed in range(1, options.seeds + 1):
+        for seed in range(FIRST_SEED, FIRST_SEED + options.seeds):
             s = run(pressure, ratio, seed)
             layer = s["measures"]
             scatter = s["uncertainty"]["friction_coefficient"]["scatter"]
