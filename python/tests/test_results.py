@@ -29,6 +29,7 @@ def test_fields_over_time_have_units(results):
     grains = results.grains
     assert grains.position.dims == ("time", "grain", "axis")
     assert grains.velocity_x.attrs == {"units": "m/s", "long_name": "velocity"}
+    assert grains.velocity.dims == ("time", "grain", "axis") and (grains.velocity.sel(axis="x") == grains.velocity_x).all()
     assert grains.time.attrs["units"] == "s" and grains.sizes["grain"] == 550
     assert grains.time.values.tolist() == results.times
     contacts = results.contacts

@@ -66,7 +66,16 @@ def test_columns_have_names_units_and_explanations(shear):
     with pytest.raises(KeyError, match="there are id, position"):
         sim.grains["radius"]
     with pytest.raises(AttributeError, match="force_normal"):
-        sim.contacts.force
+        _ = sim.contacts.force_norml
+
+
+def test_vectors_are_columns_of_three(shear):
+    sim = shear.simulation()
+    sim.step(5)
+    parts, contacts = sim.parts, sim.contacts
+    assert parts.velocity.shape == (len(parts), 3) and contacts.normal.shape == (len(contacts), 3)
+    assert (parts.velocity[:, 0] == parts.velocity_x).all() and (parts.velocity[:, 2] == 0.0).all()
+    np.testing.assert_allclose(np.linalg.norm(contacts.normal, axis=1), 1.0, rtol=1e-14)
     assert len(sim.parts) == 550 and len(sim.grains) == 500 and len(sim.contacts) > 0
 
 
