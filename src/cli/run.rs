@@ -150,6 +150,10 @@ fn run_case<S: Observed>(
                 stop = Some(state);
             }
             Found::Finished => {
+                // Whoever ended the process while it made the report left the results whole.
+                if !options.out.join(fretwork_report::FILE).exists() {
+                    report(&options.out, args);
+                }
                 let path = options.out.join("summary.json");
                 let text = std::fs::read_to_string(&path).unwrap_or_default();
                 if args.json && !text.is_empty() {

@@ -241,3 +241,19 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     job(&SETS).done(&other.0, &["--threads", "2"]);
     same(&one.0, &other.0);
 }
+
+/// A process that is ended while it makes the report leaves a whole run: the next command makes the page.
+#[test]
+fn a_finished_run_without_its_report_gets_it() {
+    let (out, whole) = (Folder::new("no-page"), Folder::new("no-page-whole"));
+    job(&SETS).done(&whole.0, &[]);
+    job(&SETS).done(&out.0, &["--no-report"]);
+    assert!(!out.0.join("report.html").exists());
+    std::fs::write(out.0.join("report.html.part"), "half a page").unwrap();
+    let told = job(&SETS).done(&out.0, &["--resume"]);
+    assert!(
+        told.contains("nothing to do") && told.contains("report in"),
+        "{told}"
+    );
+    same(&whole.0, &out.0);
+}
