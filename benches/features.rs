@@ -71,7 +71,7 @@ fn run<S: Dimensional>(scene: &str, case: &str) {
         let s = &t.simulation;
         let n = s.state.network.contacts.len() as f64;
         let [step, detect, laws, sweep] = t.least.map(|x| 1e9 * x / n);
-        let [plain, full, _] = Problem::<S>::BYTES_A_CONTACT;
+        let [plain, full, ..] = Problem::<S>::BYTES_A_CONTACT;
         let bonds: usize = s.state.network.memory.iter().map(|m| m.bonds.len()).sum();
         let kept: usize = s
             .state

@@ -10,6 +10,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Least work that pays for waking other threads (ns): a few times what that takes.
 const LEAST_WORK: u64 = 60_000;
 
+/// Least items of a task in [`fill`].
+const LEAST_ITEMS: usize = 256;
+
 static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
 
 /// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured one. Results do not depend on it:
@@ -51,6 +54,57 @@ pub fn map_ranges<R: Send>(
         chunks.into_par_iter().map(|k| of(range(k))).collect()
     } else {
         chunks.map(|k| of(range(k))).collect()
+    }
+}
+
+/// Returns what `of` gives for each chunk of `size` items, which it may change and gets with the index of the first; in the order of
+/// the chunks.
+pub fn map_chunks_mut<T: Send, R: Send>(
+    divide: bool,
+    items: &mut [T],
+    size: usize,
+    of: impl Fn(usize, &mut [T]) -> R + Sync,
+) -> Vec<R> {
+    if divide && items.len() > size {
+        let chunks = items.par_chunks_mut(size).enumerate();
+        chunks.map(|(k, chunk)| of(k * size, chunk)).collect()
+    } else {
+        let chunks = items.chunks_mut(size).enumerate();
+        chunks.map(|(k, chunk)| of(k * size, chunk)).collect()
+    }
+}
+
+/// As [`map_chunks_mut`], of two lists of the same length.
+pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
+    divide: bool,
+    size: usize,
+    (a, b): (&mut [A], &mut [B]),
+    of: impl Fn(usize, &mut [A], &mut [B]) -> R + Sync,
+) -> Vec<R> {
+    debug_assert_eq!(a.len(), b.len());
+    if divide && a.len() > size {
+        let chunks = a.par_chunks_mut(size).zip(b.par_chunks_mut(size));
+        let chunks = chunks.enumerate();
+        chunks.map(|(k, (a, b))| of(k * size, a, b)).collect()
+    } else {
+        let chunks = a.chunks_mut(size).zip(b.chunks_mut(size)).enumerate();
+        chunks.map(|(k, (a, b))| of(k * size, a, b)).collect()
+    }
+}
+
+/// Replaces the items of a list by what `of` gives for each index below `count`.
+pub fn fill<T: Send>(
+    divide: bool,
+    list: &mut Vec<T>,
+    count: usize,
+    of: impl Fn(usize) -> T + Sync + Send,
+) {
+    if divide {
+        let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
+        items.map(of).collect_into_vec(list);
+    } else {
+        list.clear();
+        list.extend((0..count).map(of));
     }
 }
 

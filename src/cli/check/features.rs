@@ -304,7 +304,7 @@ fn asks<S: Space>(s: &Simulation<S>, which: fn(&LawRequirements) -> Requirement)
 pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
     let (state, line) = (Bodies::<S>::BYTES, Problem::<S>::BYTES_A_BODY);
     let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();
-    let [plain, full, general] = Problem::<S>::BYTES_A_CONTACT;
+    let [plain, full, levers, bonded_levers] = Problem::<S>::BYTES_A_CONTACT;
     let bonded = s.laws.iter().any(|law| law.cohesion().is_some());
     let central = s.state.network.contacts.iter().all(|c| c.central);
     let mut rows = vec![if bonded {
@@ -313,10 +313,10 @@ pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
         format!("{plain} bytes in the sweep")
     }];
     if !central {
-        rows.push(format!("{general} where it has levers"));
+        let levers = if bonded { bonded_levers } else { levers };
+        rows.push(format!("{levers} where it has levers"));
     }
-    let [plain, full, _] = Problem::<S>::BYTES_TO_SORT;
-    let beside = Simulation::<S>::BYTES_A_CONTACT + if bonded { full } else { plain };
+    let beside = Simulation::<S>::BYTES_A_CONTACT + Problem::<S>::BYTES_TO_SORT;
     [
         format!(
             "{} bytes: {kept} of state, {line} in the solver",

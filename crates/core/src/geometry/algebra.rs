@@ -148,6 +148,8 @@ pub trait MatrixLike:
     fn scaled(&self, s: f64) -> Self;
     /// Returns the entry in row `i`, column `j`.
     fn entry(&self, i: usize, j: usize) -> f64;
+    /// Returns the matrix with the entry in row `i`, column `j` given by `entry(i, j)`.
+    fn from_entries(entry: impl Fn(usize, usize) -> f64) -> Self;
 }
 
 macro_rules! matrix_like {
@@ -185,6 +187,10 @@ macro_rules! matrix_like {
             #[inline(always)]
             fn entry(&self, i: usize, j: usize) -> f64 {
                 self[(i, j)]
+            }
+            #[inline(always)]
+            fn from_entries(entry: impl Fn(usize, usize) -> f64) -> Self {
+                Self::from_fn(entry)
             }
         }
     };

@@ -90,21 +90,26 @@ impl LawEvaluator {
                 continue;
             }
             let before = network.memory[index].clone_openings();
-            let bond_step = self.open_bonds(index, law, history, network, step)?;
+            self.place_moments(index, network, step);
+            let tried = self.in_batches(|batch| {
+                let bond_step = batch.open_bonds(index, law, history, network, step)?;
+                for (k, at) in batch.members.iter().enumerate() {
+                    let Some(slot) = network.contacts[*at].memory() else {
+                        continue;
+                    };
+                    let bond = &network.memory[index].bonds[slot];
+                    // Damage does not decrease within a step either, so that the iteration is monotonic and
+                    // ends.
+                    let change = (bond_step.damage[k] - bond.step_damage).max(0.0);
+                    worst = worst.max(change);
+                    let next = bond.step_damage + change;
+                    batch.trials.push((index, slot, next));
+                }
+                batch.bond_step = bond_step;
+                Ok(())
+            });
             network.memory[index].restore_openings(before);
-            for (k, at) in self.members.iter().enumerate() {
-                let Some(slot) = network.contacts[*at].memory() else {
-                    continue;
-                };
-                let bond = &network.memory[index].bonds[slot];
-                // Damage does not decrease within a step either, so that the iteration is monotonic and
-                // ends.
-                let change = (bond_step.damage[k] - bond.step_damage).max(0.0);
-                worst = worst.max(change);
-                let next = bond.step_damage + change;
-                self.trials.push((index, slot, next));
-            }
-            self.bond_step = bond_step;
+            tried?;
         }
         Ok(worst)
     }
@@ -145,6 +150,23 @@ impl LawEvaluator {
     pub fn adopt_trial_damage<S: Space>(&mut self, network: &mut Network<S>) {
         for (index, slot, damage) in self.trials.drain(..) {
             network.memory[index].bonds[slot].step_damage = damage;
+        }
+    }
+
+    /// Finds the moments of each contact, for [`Self::open_bonds`].
+    pub(super) fn place_moments<S: Space>(
+        &mut self,
+        index: usize,
+        network: &Network<S>,
+        step: &SolvedStep<'_, S>,
+    ) {
+        self.moment_places.clear();
+        if !network.memory[index].rotates {
+            return;
+        }
+        self.moment_places.resize(network.contacts.len(), u32::MAX);
+        for (k, moment_step) in step.moments.iter().enumerate() {
+            self.moment_places[moment_step.moment.contact as usize] = k as u32;
         }
     }
 
@@ -279,15 +301,11 @@ impl LawEvaluator {
         works: &mut [f64],
         lost: &mut [f64],
     ) {
-        // `step.moments` and `members` both follow the order of the contacts, members by interface.
-        let mut place = vec![usize::MAX; contacts.len()];
-        for (k, moment_step) in step.moments.iter().enumerate() {
-            place[moment_step.moment.contact as usize] = k;
-        }
         for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
-            let (Some(moment_step), Some(slot)) =
-                (step.moments.get(place[*at]), contacts[*at].memory())
-            else {
+            let (Some(moment_step), Some(slot)) = (
+                step.moments.get(self.moment_places[*at] as usize),
+                contacts[*at].memory(),
+            ) else {
                 continue;
             };
             memory.rotations[slot] += moment_step.spin * step.info.h;

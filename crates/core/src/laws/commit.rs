@@ -11,6 +11,12 @@ use super::spring::SpringStep;
 use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads::{map_chunks_mut, map_chunks_of_two, pays};
+
+/// Contacts of a task; sums are formed per chunk and added in order.
+const CHUNK: usize = 1024;
+/// About what it takes to store the impulse of a contact (ns).
+const COMMIT: f64 = 15.0;
 
 impl LawEvaluator {
     /// Completes the step.
@@ -25,23 +31,20 @@ impl LawEvaluator {
         step: &SolvedStep<'_, S>,
     ) -> Result<Totals, LawError> {
         let mut totals = Totals::default();
-        if let Some(dissipation) = &mut network.dissipation {
-            dissipation.clear();
-            dissipation.resize(network.contacts.len(), ContactDissipation::default());
-        }
         if let Some(losses) = &mut network.losses {
             losses.clear();
         }
-        commit_contacts(network, step, &mut totals);
+        commit_contacts(network, step, self.parallel, &mut totals);
         commit_moments(network, step.moments, &mut totals);
         for (index, law) in laws.iter().enumerate() {
             if law.opens() {
                 self.select(network, |c| {
                     c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
                 });
-                if !self.members.is_empty() {
-                    self.commit_bonds(index, law, history, network, step, &mut totals)?;
-                }
+                self.place_moments(index, network, step);
+                self.in_batches(|batch| {
+                    batch.commit_bonds(index, law, history, network, step, &mut totals)
+                })?;
             }
             for loaded in law.loaded().filter(|l| !law.acts_on_bonds(l)) {
                 let spec = loaded.plugin.kind.spec();
@@ -50,18 +53,17 @@ impl LawEvaluator {
                 };
                 let all = spec.domain == Domain::All;
                 self.select(network, |c| c.law as usize == index && (all || !c.beyond));
-                if self.members.is_empty() {
-                    continue;
-                }
-                commit(&mut SlotCommit {
-                    interface: law,
-                    law: loaded,
-                    network,
-                    step,
-                    totals: &mut totals,
-                    evaluator: self,
-                    history,
-                    index,
+                self.in_batches(|batch| {
+                    commit(&mut SlotCommit {
+                        interface: law,
+                        law: loaded,
+                        network,
+                        step,
+                        totals: &mut totals,
+                        evaluator: batch,
+                        history,
+                        index,
+                    })
                 })?;
             }
         }
@@ -87,28 +89,66 @@ impl LawEvaluator {
 fn commit_contacts<S: Space>(
     network: &mut Network<S>,
     step: &SolvedStep<'_, S>,
+    parallel: bool,
     totals: &mut Totals,
 ) {
-    let contacts = network.contacts.iter_mut().zip(step.contacts);
-    for (k, (contact, contact_step)) in contacts.enumerate() {
-        let dissipated = match step.spring(k) {
-            None => commit_contact(contact, contact_step, step.info.h),
-            Some(spring) => {
-                let (dissipated, stored) =
-                    commit_spring(contact, contact_step, spring, step.info.h);
-                totals.springs += stored;
-                totals.viscous += dissipated.viscous;
-                dissipated
+    let Network {
+        contacts,
+        dissipation,
+        ..
+    } = network;
+    let divide = pays(parallel, contacts.len(), COMMIT);
+    let parts = match dissipation {
+        None => map_chunks_mut(divide, contacts, CHUNK, |first, contacts| {
+            let mut totals = Totals::default();
+            for (contact, k) in contacts.iter_mut().zip(first..) {
+                book_contact(contact, k, step, &mut totals);
             }
-        };
-        totals.friction += dissipated.friction;
-        totals.correction += dissipated.correction;
-        totals.adhesion += dissipated.adhesion;
-        totals.impact += dissipated.impact;
-        if let Some(dissipation) = &mut network.dissipation {
-            dissipation[k] = dissipated;
+            totals
+        }),
+        Some(dissipation) => {
+            dissipation.clear();
+            dissipation.resize(contacts.len(), ContactDissipation::default());
+            map_chunks_of_two(
+                divide,
+                CHUNK,
+                (contacts, dissipation),
+                |first, contacts, dissipation| {
+                    let mut totals = Totals::default();
+                    let both = contacts.iter_mut().zip(dissipation);
+                    for ((contact, dissipated), k) in both.zip(first..) {
+                        *dissipated = book_contact(contact, k, step, &mut totals);
+                    }
+                    totals
+                },
+            )
         }
-    }
+    };
+    parts.iter().for_each(|part| totals.add(part));
+}
+
+/// Stores the impulse of a contact, adds its energies to the totals, and returns what it dissipated.
+fn book_contact<S: Space>(
+    contact: &mut Contact<S>,
+    k: usize,
+    step: &SolvedStep<'_, S>,
+    totals: &mut Totals,
+) -> ContactDissipation {
+    let contact_step = &step.contacts[k];
+    let dissipated = match step.spring(k) {
+        None => commit_contact(contact, contact_step, step.info.h),
+        Some(spring) => {
+            let (dissipated, stored) = commit_spring(contact, contact_step, spring, step.info.h);
+            totals.springs += stored;
+            totals.viscous += dissipated.viscous;
+            dissipated
+        }
+    };
+    totals.friction += dissipated.friction;
+    totals.correction += dissipated.correction;
+    totals.adhesion += dissipated.adhesion;
+    totals.impact += dissipated.impact;
+    dissipated
 }
 
 /// Stores the impulse and the spring of a compliant contact; returns what it dissipated, and the rest of the work done on

@@ -22,9 +22,16 @@ pub struct LawEvaluator {
     /// Contacts of the last solve that close within the step and were kept from closing although their law
     /// has restitution.
     pub(crate) held_back: Vec<usize>,
+    /// Place of the moments of each contact in the step, while bonds that resist rotation are committed.
+    pub(super) moment_places: Vec<u32>,
     /// Which checks are made on law calls.
     pub(super) checks: CallChecks,
+    /// Whether passes over contacts may be divided among threads.
+    pub parallel: bool,
 }
+
+/// Contacts of a batch: few enough that its columns stay in a cache.
+const BATCH: usize = 256;
 
 /// Checks made on the outputs of law calls.
 #[derive(Debug, Default)]
@@ -60,6 +67,32 @@ impl LawEvaluator {
         let contacts = network.contacts.iter().enumerate();
         self.members
             .extend(contacts.filter(|(_, c)| keep(c)).map(|(k, _)| k));
+    }
+
+    /// Does something for the members in batches, one after the other; those of a batch are the members meanwhile.
+    pub(super) fn in_batches(
+        &mut self,
+        mut each: impl FnMut(&mut Self) -> Result<(), LawError>,
+    ) -> Result<(), LawError> {
+        if self.members.len() <= BATCH {
+            return if self.members.is_empty() {
+                Ok(())
+            } else {
+                each(self)
+            };
+        }
+        let all = std::mem::take(&mut self.members);
+        let mut done = Ok(());
+        for batch in all.chunks(BATCH) {
+            self.members.clear();
+            self.members.extend_from_slice(batch);
+            done = each(self);
+            if done.is_err() {
+                break;
+            }
+        }
+        self.members = all;
+        done
     }
 
     /// Calls a function of a law with the columns, and checks what it wrote.

@@ -13,6 +13,12 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentForm;
 use crate::solve::form::{ContactForm, Elastic};
+use crate::threads::{map_chunks_mut, pays};
+
+/// Contacts of a task.
+const CHUNK: usize = 1024;
+/// About what it takes to apply friction to a contact (ns).
+const APPLY: f64 = 10.0;
 
 /// Friction and restitution of one contact.
 #[derive(Clone, Copy, Default)]
@@ -88,12 +94,24 @@ impl LawEvaluator {
             if self.members.is_empty() {
                 continue;
             }
-            let first_moment = step.moments.len();
-            self.prepare_contact(law, history, &mut step)?;
-            if let Some(cohesion) = law.cohesion().filter(|_| cohesive > 0) {
-                self.members.truncate(cohesive);
-                self.prepare_cohesion(law, cohesion, history, &mut step, first_moment)?;
+            if law.constant_contact() && (cohesive == 0 || law.cohesion().is_none()) {
+                self.prepare_contact(law, history, &mut step)?;
+                continue;
             }
+            let rest = self.members.split_off(cohesive);
+            let with_cohesion = law.cohesion();
+            self.in_batches(|batch| {
+                let first_moment = step.moments.len();
+                batch.prepare_contact(law, history, &mut step)?;
+                match with_cohesion {
+                    Some(cohesion) => {
+                        batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)
+                    }
+                    None => Ok(()),
+                }
+            })?;
+            self.members = rest;
+            self.in_batches(|batch| batch.prepare_contact(law, history, &mut step))?;
         }
         // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
         for (form, _) in step
@@ -148,6 +166,14 @@ impl LawEvaluator {
         self.columns.size_outputs();
         self.run(law.contact(), history, info, 0.0, Call::Prepare)
             .map_err(|e| self.locate(law, network, e))?;
+        let (network, before) = (step.network, step.before);
+        if constant && !law.compliant() && !law.rotates() {
+            let friction = Friction::of(&self.columns.out, 0);
+            if friction.rolling == 0.0 && friction.spinning == 0.0 {
+                self.apply_constant(law, &friction, step);
+                return Ok(());
+            }
+        }
         for (k, at) in self.members.iter().enumerate() {
             let mut friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
             let area = contact_area(law, network, &network.contacts[*at]);
@@ -163,7 +189,7 @@ impl LawEvaluator {
                 &friction,
                 &network.contacts[*at],
                 network.open_gap(&network.contacts[*at]),
-                &step.before.relative[*at],
+                &before.relative[*at],
                 area,
                 info,
             );
@@ -185,6 +211,34 @@ impl LawEvaluator {
             }
         }
         Ok(())
+    }
+
+    /// Applies friction and restitution that are the same for all contacts of an interface.
+    fn apply_constant<S: Space>(
+        &mut self,
+        law: &Interface,
+        friction: &Friction,
+        step: &mut Preparation<S>,
+    ) {
+        let (network, before, info) = (step.network, step.before, step.info);
+        let index = network.contacts[self.members[0]].law;
+        let divide = pays(self.parallel, network.contacts.len(), APPLY);
+        let held_back = map_chunks_mut(divide, step.forms, CHUNK, |first, forms| {
+            let mut held_back = Vec::new();
+            for (form, at) in forms.iter_mut().zip(first..) {
+                let contact = &network.contacts[at];
+                if contact.law != index {
+                    continue;
+                }
+                let area = contact_area(law, network, contact);
+                let (gap, before) = (network.open_gap(contact), &before.relative[at]);
+                if apply_friction(form, friction, contact, gap, before, area, info) {
+                    held_back.push(at);
+                }
+            }
+            held_back
+        });
+        self.held_back.extend(held_back.into_iter().flatten());
     }
 
     /// Applies the cohesion law of an interface to the members, and to the moments from `first_moment` on.

@@ -152,3 +152,19 @@ pub struct Totals {
     /// Volume worn in contacts between grains.
     pub worn_third: f64,
 }
+
+impl Totals {
+    /// Adds those of other contacts.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.friction += other.friction;
+        self.impact += other.impact;
+        self.adhesion += other.adhesion;
+        self.viscous += other.viscous;
+        self.springs += other.springs;
+        self.correction += other.correction;
+        self.fracture += other.fracture;
+        self.broken += other.broken;
+        self.worn_first += other.worn_first;
+        self.worn_third += other.worn_third;
+    }
+}

@@ -120,6 +120,16 @@ pub struct Scale {
     pub work: f64,
 }
 
+impl Scale {
+    /// Adds the contributions of other contacts.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.free += other.free;
+        self.energy += other.energy;
+        self.noise += other.noise;
+        self.work += other.work;
+    }
+}
+
 /// What a solution gets wrong, in parts, whichever norm decides when it is good enough.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorParts {

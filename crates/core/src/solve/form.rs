@@ -1,12 +1,12 @@
 //! The input of a solver: bodies as velocity records, contacts in the standard form.
 
-use super::colour::Order;
 use super::loaded::Loaded;
 use super::nodal::NodalSystem;
 use super::row::{
-    FullRow, GeneralRow, MomentForm, MomentRow, MomentSolution, PlainRow, Row, SolverBody,
-    SystemRow,
+    Bonded, FullRow, LeverRow, Loose, MomentForm, MomentRow, MomentSolution, OnBlock, PlainRow,
+    Row, SolverBody, SystemRow,
 };
+use super::rows::Rows;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// One contact in the standard local form. Impulses are in N s, velocities in m/s.
@@ -165,12 +165,38 @@ impl<S: Space> Mobility<S> {
     }
 }
 
+/// The kinds of rows of contacts between rigid bodies.
+#[derive(Clone, Copy)]
+enum Kind {
+    Plain,
+    Full,
+    Lever,
+    BondedLever,
+}
+
+/// The kind of row that a contact needs.
+fn kind<S: Space>(contact: &ContactForm<S>) -> Kind {
+    if !contact.central {
+        return match contact.elastic {
+            None => Kind::Lever,
+            Some(_) => Kind::BondedLever,
+        };
+    }
+    let plain = contact.elastic.is_none()
+        && contact.tension == 0.0
+        && contact.cohesion == 0.0
+        && contact.compliance == [0.0; 2]
+        && contact.shift_t == S::Tangent::zero();
+    if plain { Kind::Plain } else { Kind::Full }
+}
+
 /// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     Plain(u32),
     Full(u32),
-    General(u32),
+    Lever(u32),
+    BondedLever(u32),
     System(u32),
 }
 
@@ -219,11 +245,13 @@ pub struct Problem<S: Space> {
     pub(super) lengths: Vec<f64>,
     pub(super) masses: Vec<Mobility<S>>,
     /// Contacts of two balls (or a ball and an immovable body), without bond: the fast path.
-    pub(super) plain: Vec<PlainRow<S>>,
+    pub(super) plain: Rows<PlainRow<S>>,
     /// Contacts as in `plain`, but with springs, bonds, cohesion or tangential restitution.
-    pub(super) full: Vec<FullRow<S>>,
-    /// Contacts with lever arms, or of bodies that are free along some axes only.
-    pub(super) general: Vec<GeneralRow<S>>,
+    pub(super) full: Rows<FullRow<S>>,
+    /// Contacts with lever arms, or of bodies that are free along some axes only, without bond.
+    pub(super) levers: Rows<LeverRow<S, Loose<S>>>,
+    /// The same with bonds.
+    pub(super) bonded_levers: Rows<LeverRow<S, Bonded<S>>>,
     /// Contacts with dynamical systems; they run after those above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
     /// The dynamical systems, as far as contacts see them.
@@ -233,11 +261,6 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
-    /// The order in which `plain` and `full` are visited.
-    pub(super) orders: [Order; 2],
-    /// Buffers for sorting `plain` and `full`.
-    pub(super) spare_plain: Vec<PlainRow<S>>,
-    pub(super) spare_full: Vec<FullRow<S>>,
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -247,17 +270,15 @@ impl<S: Space> Default for Problem<S> {
             free: Vec::new(),
             lengths: Vec::new(),
             masses: Vec::new(),
-            plain: Vec::new(),
-            full: Vec::new(),
-            general: Vec::new(),
+            plain: Rows::default(),
+            full: Rows::default(),
+            levers: Rows::default(),
+            bonded_levers: Rows::default(),
             of_systems: Vec::new(),
             systems: Vec::new(),
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            orders: Default::default(),
-            spare_plain: Vec::new(),
-            spare_full: Vec::new(),
         }
     }
 }
@@ -269,22 +290,17 @@ impl<S: Space> Problem<S> {
         + size_of::<f64>()
         + size_of::<Mobility<S>>();
 
-    /// Bytes per row of a contact: of two balls, of two balls with a bond, and with lever arms.
-    pub const BYTES_A_CONTACT: [usize; 3] = [
+    /// Bytes per row of a contact: of two balls, of two balls with a bond, with lever arms, with lever arms and a bond.
+    pub const BYTES_A_CONTACT: [usize; 4] = [
         size_of::<PlainRow<S>>(),
         size_of::<FullRow<S>>(),
-        size_of::<GeneralRow<S>>(),
+        size_of::<LeverRow<S, Loose<S>>>(),
+        size_of::<LeverRow<S, Bonded<S>>>(),
     ];
 
-    /// Bytes per contact for the order of the iteration and the copy of its row used in sorting, for the
-    /// same kinds; contacts with lever arms are not sorted.
-    pub const BYTES_TO_SORT: [usize; 3] = [
-        size_of::<PlainRow<S>>() + Self::BYTES_A_PLACE,
-        size_of::<FullRow<S>>() + Self::BYTES_A_PLACE,
-        size_of::<Place>(),
-    ];
-    /// Bytes for a contact's index as pushed and in the order: bodies, sequence and place.
-    const BYTES_A_PLACE: usize = size_of::<Place>() + size_of::<[u32; 2]>() + 2 * size_of::<u32>();
+    /// Bytes per contact for the order of the iteration: its index as pushed and in that order, bodies, sequence and place.
+    pub const BYTES_TO_SORT: usize =
+        size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
 
     /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {
@@ -294,7 +310,8 @@ impl<S: Space> Problem<S> {
         self.masses.clear();
         self.plain.clear();
         self.full.clear();
-        self.general.clear();
+        self.levers.clear();
+        self.bonded_levers.clear();
         self.of_systems.clear();
         self.clear_systems();
         self.moments.clear();
@@ -311,7 +328,7 @@ impl<S: Space> Problem<S> {
         inverse_inertia: S::Tensor,
         length: f64,
     ) {
-        let isotropic = inverse_mass[0];
+        let quickest = (1..S::D).fold(inverse_mass[0], |most, k| most.max(inverse_mass[k]));
         let mobility = Mobility::<S> {
             mass: inverse_mass,
             inertia: inverse_inertia,
@@ -319,7 +336,7 @@ impl<S: Space> Problem<S> {
         self.solver_bodies.push(SolverBody {
             v,
             s: w * length,
-            im: isotropic,
+            im: quickest,
             is: mobility.quickest() * length * length,
         });
         self.free.push((v, w));
@@ -329,29 +346,90 @@ impl<S: Space> Problem<S> {
 
     /// Adds a contact.
     pub fn push(&mut self, contact: &ContactForm<S>) {
-        let plain = contact.elastic.is_none()
-            && contact.tension == 0.0
-            && contact.cohesion == 0.0
-            && contact.compliance == [0.0; 2]
-            && contact.shift_t == S::Tangent::zero();
-        if contact.central {
-            let (i, j) = (contact.bodies[0] as usize, contact.bodies[1] as usize);
-            let (a, b) = (&self.solver_bodies[i], &self.solver_bodies[j]);
-            let w_n = a.im + b.im;
-            let w_t = w_n + a.is + b.is;
-            if plain {
-                self.places.push(Place::Plain(self.plain.len() as u32));
-                self.plain.push(PlainRow::new(contact, w_n, w_t));
-            } else {
-                self.places.push(Place::Full(self.full.len() as u32));
-                self.full.push(FullRow::new(contact, w_n, w_t));
+        let place = match kind(contact) {
+            Kind::Plain => Place::Plain(self.plain.push(self.plain_row(contact))),
+            Kind::Full => Place::Full(self.full.push(self.full_row(contact))),
+            Kind::Lever => Place::Lever(self.levers.push(self.lever_row(contact))),
+            Kind::BondedLever => {
+                Place::BondedLever(self.bonded_levers.push(self.lever_row(contact)))
             }
-        } else {
-            self.places.push(Place::General(self.general.len() as u32));
-            let block = self.block(contact);
-            let row = GeneralRow::new(contact, block, |b| (self.masses[b], self.lengths[b]));
-            self.general.push(row);
+        };
+        self.places.push(place);
+    }
+
+    /// Adds all contacts to a problem that has none, in the order of the iteration.
+    pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
+        let mut of_kind: [Vec<u32>; 4] = Default::default();
+        for (k, contact) in contacts.iter().enumerate() {
+            let list = &mut of_kind[kind(contact) as usize];
+            self.places.push(match kind(contact) {
+                Kind::Plain => Place::Plain(list.len() as u32),
+                Kind::Full => Place::Full(list.len() as u32),
+                Kind::Lever => Place::Lever(list.len() as u32),
+                Kind::BondedLever => Place::BondedLever(list.len() as u32),
+            });
+            list.push(k as u32);
         }
+        let movable = self.movable();
+        let [plain, full, levers, bonded_levers] = &of_kind;
+        // Taken out of the problem while its bodies are read.
+        let mut rows = std::mem::take(&mut self.plain);
+        rows.set(plain, contacts, &movable, parallel, |c| self.plain_row(c));
+        self.plain = rows;
+        let mut rows = std::mem::take(&mut self.full);
+        rows.set(full, contacts, &movable, parallel, |c| self.full_row(c));
+        self.full = rows;
+        let mut rows = std::mem::take(&mut self.levers);
+        rows.set(levers, contacts, &movable, parallel, |c| self.lever_row(c));
+        self.levers = rows;
+        let mut rows = std::mem::take(&mut self.bonded_levers);
+        rows.set(bonded_levers, contacts, &movable, parallel, |c| {
+            self.lever_row(c)
+        });
+        self.bonded_levers = rows;
+        self.place_in_order();
+    }
+
+    /// Whether a body moves, of each.
+    pub(super) fn movable(&self) -> Vec<bool> {
+        let moves = |l: &SolverBody<S>| l.im > 0.0 || l.is > 0.0;
+        self.solver_bodies.iter().map(moves).collect()
+    }
+
+    /// Takes the places of contacts from their order as pushed to that of the iteration.
+    pub(super) fn place_in_order(&mut self) {
+        let (plain, full) = (self.plain.places(), self.full.places());
+        let (levers, bonded_levers) = (self.levers.places(), self.bonded_levers.places());
+        for place in &mut self.places {
+            *place = match *place {
+                Place::Plain(r) => Place::Plain(plain[r as usize]),
+                Place::Full(r) => Place::Full(full[r as usize]),
+                Place::Lever(r) => Place::Lever(levers[r as usize]),
+                Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
+                in_order => in_order,
+            };
+        }
+    }
+
+    /// W along and across the normal of a contact of two balls (1/kg).
+    fn of_balls(&self, contact: &ContactForm<S>) -> [f64; 2] {
+        let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
+        let w_n = a.im + b.im;
+        [w_n, w_n + a.is + b.is]
+    }
+
+    fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
+        let [w_n, w_t] = self.of_balls(contact);
+        PlainRow::new(contact, w_n, w_t)
+    }
+
+    fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
+        let [w_n, w_t] = self.of_balls(contact);
+        FullRow::new(contact, w_n, w_t)
+    }
+
+    fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {
+        LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
     }
 
     /// Adds the moments of a contact that was already pushed, given with its bodies and normal.
@@ -388,21 +466,12 @@ impl<S: Space> Problem<S> {
     /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
         match place {
-            Place::Plain(r) => self.plain[r as usize].normal(),
-            Place::Full(r) => self.full[r as usize].normal(),
-            Place::General(r) => self.general[r as usize].normal(),
-            Place::System(r) => self.of_systems[r as usize].contact().normal(),
+            Place::Plain(r) => self.plain.row(r).normal(),
+            Place::Full(r) => self.full.row(r).normal(),
+            Place::Lever(r) => self.levers.row(r).normal(),
+            Place::BondedLever(r) => self.bonded_levers.row(r).normal(),
+            Place::System(r) => self.of_systems[r as usize].normal(),
         }
-    }
-
-    /// Returns the diagonal block of W in world axes (1/kg).
-    fn block(&self, contact: &ContactForm<S>) -> S::Matrix {
-        let mut w = S::Matrix::diagonal(&S::Vector::zero());
-        for (body, arm) in contact.bodies.iter().zip(&contact.arms) {
-            let Mobility { mass, inertia } = &self.masses[*body as usize];
-            w = w + S::Matrix::diagonal(mass) + S::rotation_block(arm, inertia);
-        }
-        w
     }
 
     /// Returns the number of contacts.
@@ -413,9 +482,10 @@ impl<S: Space> Problem<S> {
     /// Returns the solution of the `k`-th contact pushed.
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
         match self.places[k] {
-            Place::Plain(r) => self.solved(&self.plain[r as usize]),
-            Place::Full(r) => self.solved(&self.full[r as usize]),
-            Place::General(r) => self.solved(&self.general[r as usize]),
+            Place::Plain(r) => self.solved(self.plain.row(r)),
+            Place::Full(r) => self.solved(self.full.row(r)),
+            Place::Lever(r) => self.solved(self.levers.row(r)),
+            Place::BondedLever(r) => self.solved(self.bonded_levers.row(r)),
             Place::System(r) => {
                 self.of_systems[r as usize].solution(&self.solver_bodies, &self.systems)
             }

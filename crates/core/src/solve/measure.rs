@@ -2,28 +2,34 @@
 
 use super::error::{Scale, Sums};
 use super::form::Problem;
-use super::row::{Free, Measure, Row, SolverBodies, visit};
+use super::row::SolverBodies;
 use crate::geometry::space::Space;
-use rayon::prelude::*;
+use crate::threads::{map_ranges, pays};
 
-/// Contacts per task. Sums are formed per chunk and added in order.
-const CHUNK: usize = 512;
+/// Bodies per task. Sums are formed per chunk and added in order.
+const CHUNK: usize = 2048;
+/// About what the work of a body takes (ns).
+const WORK: f64 = 5.0;
 
 /// Sums over the contacts; the worst contact is searched among the rows in the order of the iteration.
 pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
+    let Problem {
+        plain,
+        full,
+        levers,
+        bonded_levers,
+        ..
+    } = problem;
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    let mut sums = Sums::default();
-    let (a, b) = (problem.plain.len(), problem.full.len());
-    measure_rows(&mut problem.plain, &solver_bodies, 0, parallel, &mut sums);
-    measure_rows(&mut problem.full, &solver_bodies, a, parallel, &mut sums);
-    measure_rows(
-        &mut problem.general,
-        &solver_bodies,
-        a + b,
-        parallel,
-        &mut sums,
-    );
-    let first = a + b + problem.general.len();
+    let (mut sums, mut first) = (Sums::default(), 0);
+    plain.measure(&solver_bodies, first, parallel, &mut sums);
+    first += plain.len();
+    full.measure(&solver_bodies, first, parallel, &mut sums);
+    first += full.len();
+    levers.measure(&solver_bodies, first, parallel, &mut sums);
+    first += levers.len();
+    bonded_levers.measure(&solver_bodies, first, parallel, &mut sums);
+    first += bonded_levers.len();
     for (k, row) in problem.of_systems.iter().enumerate() {
         sums.add(
             &row.residual(&problem.solver_bodies, &problem.systems),
@@ -39,39 +45,18 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
     sums
 }
 
-fn measure_rows<S: Space, R: Row<S>>(
-    rows: &mut [R],
-    solver_bodies: &SolverBodies<S>,
-    offset: usize,
-    parallel: bool,
-    sums: &mut Sums,
-) {
-    let chunk = |(c, rows): (usize, &mut [R])| {
-        let mut part = Measure::default();
-        visit(rows, &[0, rows.len() as u32], solver_bodies, &mut part);
-        part.sums(offset + c * CHUNK)
-    };
-    if parallel {
-        let parts = rows.par_chunks_mut(CHUNK).enumerate().map(chunk);
-        let parts: Vec<Sums> = parts.collect();
-        parts.iter().for_each(|part| sums.merge(part));
-    } else {
-        let parts = rows.chunks_mut(CHUNK).enumerate().map(chunk);
-        parts.for_each(|part| sums.merge(&part));
-    }
-}
-
 /// Computes the reference values of the error.
-pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
-    let mut work = 0.0;
-    let bodies = problem
-        .solver_bodies
-        .iter()
-        .zip(&problem.free)
-        .zip(problem.masses.iter().zip(&problem.lengths));
-    for ((body, (v, w)), (mobility, length)) in bodies {
-        work += mobility.energy(&(body.v - *v), &(body.s * (1.0 / length) - *w));
-    }
+pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale, parallel: bool) -> Scale {
+    let count = problem.solver_bodies.len();
+    let parts = map_ranges(pays(parallel, count, WORK), count, CHUNK, |bodies| {
+        let of = |b: usize| {
+            let (body, (v, w)) = (&problem.solver_bodies[b], &problem.free[b]);
+            let spin = body.s * (1.0 / problem.lengths[b]);
+            problem.masses[b].energy(&(body.v - *v), &(spin - *w))
+        };
+        bodies.map(of).sum::<f64>()
+    });
+    let mut work: f64 = parts.iter().sum();
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
     }
@@ -79,30 +64,18 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale) -> Scale {
 }
 
 /// Computes the reference values that depend on the free velocities; leaves these in the body records.
-pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>) -> Scale {
+pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Scale {
     problem.set_free();
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    let mut free = [Free::default(), Free::default(), Free::default()];
-    squared(&mut problem.plain, &solver_bodies, &mut free[0]);
-    squared(&mut problem.full, &solver_bodies, &mut free[1]);
-    squared(&mut problem.general, &solver_bodies, &mut free[2]);
     let mut out = Scale::default();
-    for part in free.map(|f| f.scale()) {
-        out.free += part.free;
-        out.energy += part.energy;
-        out.noise += part.noise;
-    }
+    out.add(&problem.plain.free(&solver_bodies, parallel));
+    out.add(&problem.full.free(&solver_bodies, parallel));
+    out.add(&problem.levers.free(&solver_bodies, parallel));
+    out.add(&problem.bonded_levers.free(&solver_bodies, parallel));
     for row in &problem.of_systems {
-        let part = row.scale(&problem.solver_bodies, &problem.systems);
-        out.free += part.free;
-        out.energy += part.energy;
-        out.noise += part.noise;
+        out.add(&row.scale(&problem.solver_bodies, &problem.systems));
     }
     out
-}
-
-fn squared<S: Space, R: Row<S>>(rows: &mut [R], solver_bodies: &SolverBodies<S>, free: &mut Free) {
-    visit(rows, &[0, rows.len() as u32], solver_bodies, free);
 }
 
 impl<S: Space> Problem<S> {

@@ -21,6 +21,7 @@ pub mod nlgs;
 pub mod nodal;
 pub mod requirements;
 pub mod row;
+mod rows;
 pub mod schedule;
 pub mod side;
 pub mod standard;

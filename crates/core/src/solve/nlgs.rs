@@ -2,14 +2,12 @@
 
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
-use super::colour::Order;
 use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
 use super::nodal::NodalSystem;
-use super::row::{Load, Row, SolverBodies, SolverBody, Update, Visit, visit};
-use super::schedule::Schedule;
+use super::row::{Row, SolverBodies, SolverBody};
 use crate::geometry::space::Space;
 
 /// Solver options.
@@ -81,10 +79,10 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
 
 /// Computes velocities from the current impulses and evaluates the error.
 pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
-    let free = free_velocity(problem);
+    let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
-    let scale = scale(problem, free);
+    let scale = scale(problem, free, options.parallel);
     let error = sums.error(options.norm, &scale);
     Report {
         error,
@@ -104,7 +102,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         };
     }
     sort(problem);
-    let free = free_velocity(problem);
+    let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let every = options.test_every.max(1);
     let mut report = Report::default();
@@ -136,12 +134,15 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             problem.settle_systems();
         }
         let mut sums = measure(problem, options.parallel);
-        if ended || sums.error(options.norm, &scale(problem, free)) <= options.tolerance {
+        if ended
+            || sums.error(options.norm, &scale(problem, free, options.parallel))
+                <= options.tolerance
+        {
             if !fresh {
                 problem.reload(options.parallel);
                 sums = measure(problem, options.parallel);
             }
-            let scale = scale(problem, free);
+            let scale = scale(problem, free, options.parallel);
             report.error = sums.error(options.norm, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
@@ -255,10 +256,9 @@ impl<S: Space> Problem<S> {
         out.clear();
         self.plain.iter().for_each(|row| row.store(out));
         self.full.iter().for_each(|row| row.store(out));
-        self.general.iter().for_each(|row| row.store(out));
-        for row in &self.of_systems {
-            row.contact().store(out);
-        }
+        self.levers.iter().for_each(|row| row.store(out));
+        self.bonded_levers.iter().for_each(|row| row.store(out));
+        self.of_systems.iter().for_each(|row| row.store(out));
         self.moments.iter().for_each(|row| row.store(out));
     }
 
@@ -267,10 +267,11 @@ impl<S: Space> Problem<S> {
         let from = &mut from;
         self.plain.iter_mut().for_each(|row| row.restore(from));
         self.full.iter_mut().for_each(|row| row.restore(from));
-        self.general.iter_mut().for_each(|row| row.restore(from));
-        for row in &mut self.of_systems {
-            row.contact_mut().restore(from);
-        }
+        self.levers.iter_mut().for_each(|row| row.restore(from));
+        self.bonded_levers
+            .iter_mut()
+            .for_each(|row| row.restore(from));
+        self.of_systems.iter_mut().for_each(|row| row.restore(from));
         self.moments.iter_mut().for_each(|row| row.restore(from));
         self.reload(false);
     }
@@ -279,25 +280,19 @@ impl<S: Space> Problem<S> {
     /// (`None`, where both bodies are immovable) is solved for the current velocities.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
+            let solver_bodies = &mut self.solver_bodies;
             match self.places[k] {
-                Place::Plain(r) => take(
-                    &mut self.plain[r as usize],
-                    impulse,
-                    &mut self.solver_bodies,
-                ),
-                Place::Full(r) => {
-                    take(&mut self.full[r as usize], impulse, &mut self.solver_bodies)
+                Place::Plain(r) => take(self.plain.row_mut(r), impulse, solver_bodies),
+                Place::Full(r) => take(self.full.row_mut(r), impulse, solver_bodies),
+                Place::Lever(r) => take(self.levers.row_mut(r), impulse, solver_bodies),
+                Place::BondedLever(r) => {
+                    take(self.bonded_levers.row_mut(r), impulse, solver_bodies);
                 }
-                Place::General(r) => take(
-                    &mut self.general[r as usize],
-                    impulse,
-                    &mut self.solver_bodies,
-                ),
                 Place::System(r) => {
                     let row = &mut self.of_systems[r as usize];
                     match impulse {
-                        Some(impulse) => row.contact_mut().set(impulse),
-                        None => row.update(&mut self.solver_bodies, &mut self.systems, 1.0),
+                        Some(impulse) => row.set(impulse),
+                        None => row.update(solver_bodies, &mut self.systems, 1.0),
                     }
                 }
             }
@@ -320,25 +315,11 @@ impl<S: Space> Problem<S> {
     /// Computes v = v_free + M^-1 H p.
     pub(super) fn reload(&mut self, parallel: bool) {
         self.set_free();
-        let [plain, full] = &self.orders;
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
-        pass(
-            &mut self.plain,
-            plain.schedule(),
-            &solver_bodies,
-            parallel,
-            || Load,
-        );
-        pass(
-            &mut self.full,
-            full.schedule(),
-            &solver_bodies,
-            parallel,
-            || Load,
-        );
-        for row in &self.general {
-            solver_bodies.alone(row.bodies(), |a, b| row.load(a, b));
-        }
+        self.plain.load(&solver_bodies, parallel);
+        self.full.load(&solver_bodies, parallel);
+        self.levers.load(&solver_bodies, parallel);
+        self.bonded_levers.load(&solver_bodies, parallel);
         for row in &self.of_systems {
             row.load(&mut self.solver_bodies, &mut self.systems);
         }
@@ -352,88 +333,52 @@ impl<S: Space> Problem<S> {
 
     /// Returns the index, as pushed, of the contact at a position in the iteration.
     fn pushed(&self, at: usize) -> Option<usize> {
-        let (a, b, c) = (self.plain.len(), self.full.len(), self.general.len());
-        let place = if at < a {
-            Place::Plain(at as u32)
-        } else if at < a + b {
-            Place::Full((at - a) as u32)
-        } else if at < a + b + c {
-            Place::General((at - a - b) as u32)
-        } else {
-            Place::System((at - a - b - c) as u32)
-        };
+        let mut at = at as u32;
+        let mut place = None;
+        let kinds: [(usize, fn(u32) -> Place); 4] = [
+            (self.plain.len(), Place::Plain),
+            (self.full.len(), Place::Full),
+            (self.levers.len(), Place::Lever),
+            (self.bonded_levers.len(), Place::BondedLever),
+        ];
+        for (count, kind) in kinds {
+            if place.is_none() && at < count as u32 {
+                place = Some(kind(at));
+            }
+            at = at.wrapping_sub(count as u32);
+        }
+        let place = place.unwrap_or(Place::System(at));
         self.places.iter().position(|p| *p == place)
     }
 }
 
-/// Sorts the rows of each kind by colour.
+/// Sorts the rows of each kind by colour, where they were not pushed in that order.
 fn sort<S: Space>(problem: &mut Problem<S>) {
-    let Problem {
-        plain,
-        full,
-        places,
-        orders,
-        solver_bodies,
-        spare_plain,
-        spare_full,
-        ..
-    } = problem;
-    let movable: Vec<bool> = solver_bodies
-        .iter()
-        .map(|l| l.im > 0.0 || l.is > 0.0)
-        .collect();
-    let [of_plain, of_full] = orders;
-    let moved_plain = permute(plain, spare_plain, &movable, of_plain);
-    let moved_full = permute(full, spare_full, &movable, of_full);
-    for place in places.iter_mut() {
-        *place = match *place {
-            Place::Plain(r) => Place::Plain(moved_plain[r as usize]),
-            Place::Full(r) => Place::Full(moved_full[r as usize]),
-            in_order => in_order,
-        };
+    let sorted = problem.plain.sorted()
+        && problem.full.sorted()
+        && problem.levers.sorted()
+        && problem.bonded_levers.sorted();
+    if !sorted {
+        let movable = problem.movable();
+        problem.plain.sort(&movable);
+        problem.full.sort(&movable);
+        problem.levers.sort(&movable);
+        problem.bonded_levers.sort(&movable);
+        problem.place_in_order();
     }
     for row in &mut problem.moments {
         row.place = problem.places[row.form.contact as usize];
     }
 }
 
-/// Returns the new position of each row.
-fn permute<'a, S: Space, R: Row<S>>(
-    rows: &mut Vec<R>,
-    spare: &mut Vec<R>,
-    movable: &[bool],
-    order: &'a mut Order,
-) -> &'a [u32] {
-    order.update(rows.iter().map(Row::bodies), movable);
-    spare.clear();
-    let sorted = order.sequence().iter();
-    spare.extend(sorted.map(|k| rows[*k as usize].clone()));
-    std::mem::swap(rows, spare);
-    order.places()
-}
-
 fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    let [plain, full] = &problem.orders;
-    let update = || Update(relaxation);
-    pass(
-        &mut problem.plain,
-        plain.schedule(),
-        &solver_bodies,
-        parallel,
-        update,
-    );
-    pass(
-        &mut problem.full,
-        full.schedule(),
-        &solver_bodies,
-        parallel,
-        update,
-    );
-    // First bodies have many contacts in common; these are visited in order.
-    for row in &mut problem.general {
-        solver_bodies.alone(row.bodies(), |a, b| row.update(a, b, relaxation));
-    }
+    problem.plain.sweep(&solver_bodies, relaxation, parallel);
+    problem.full.sweep(&solver_bodies, relaxation, parallel);
+    problem.levers.sweep(&solver_bodies, relaxation, parallel);
+    problem
+        .bonded_levers
+        .sweep(&solver_bodies, relaxation, parallel);
     for row in &mut problem.of_systems {
         row.update(&mut problem.solver_bodies, &mut problem.systems, relaxation);
     }
@@ -442,38 +387,5 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
         let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
         let (row, systems) = (&mut problem.moments[k], &mut problem.systems);
         solver_bodies.alone(row.bodies, |a, b| row.update(pn, a, b, systems, relaxation));
-    }
-}
-
-/// Applies a visitor to all rows of a kind, block by block.
-fn pass<S: Space, R: Row<S>, V: Visit>(
-    rows: &mut [R],
-    schedule: &Schedule,
-    solver_bodies: &SolverBodies<S>,
-    parallel: bool,
-    what: impl Fn() -> V + Sync,
-) {
-    let rows = Rows(rows.as_mut_ptr());
-    schedule.run(parallel, |block| {
-        // SAFETY: blocks are disjoint, and each is run once.
-        let part = unsafe { rows.slice(schedule.block(block)) };
-        visit(part, schedule.groups(block), solver_bodies, &mut what());
-    });
-}
-
-/// Rows accessed by several threads, each in its own blocks.
-struct Rows<R>(*mut R);
-
-// SAFETY: each block is run by one thread.
-unsafe impl<R: Send> Sync for Rows<R> {}
-
-impl<R> Rows<R> {
-    /// # Safety
-    /// The places are those of rows that no one else uses meanwhile.
-    #[inline(always)]
-    #[expect(clippy::mut_from_ref)]
-    unsafe fn slice(&self, places: std::ops::Range<usize>) -> &mut [R] {
-        // SAFETY: as above.
-        unsafe { std::slice::from_raw_parts_mut(self.0.add(places.start), places.len()) }
     }
 }

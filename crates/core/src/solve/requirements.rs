@@ -63,7 +63,7 @@ impl<S: Space> Problem<S> {
     pub(super) fn coupled_by_systems(&self) -> f64 {
         let mut contacts = vec![0.0; self.systems.len()];
         for row in &self.of_systems {
-            let blocks = if row.contact().is_bonded() { 2.0 } else { 1.0 };
+            let blocks = if row.is_bonded() { 2.0 } else { 1.0 };
             let systems = row.terms().iter().map(|t| t.system as usize);
             let mut last = None;
             for system in systems {

@@ -1,19 +1,24 @@
 //! Contact states of a step: the relative velocities before it, and the solver's results in the form in
 //! which the laws commit them.
 
-use super::Simulation;
 use super::motion::StepStart;
+use super::problem::shift_of_gap;
+use super::{Scheme, Simulation};
+use crate::bodies::Bodies;
 use crate::contact::Contact;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, SpringStep, Velocities};
 use crate::solve::{self, MomentForm};
+use crate::threads::{fill, pays};
 
 /// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
 /// new ones for many contacts costs more than filling them.
 #[derive(Debug)]
 pub(super) struct Solved<S: Space> {
     pub before: Velocities<S>,
+    /// Relative velocities at the end of the step (m/s).
+    pub after: Vec<S::Vector>,
     pub contact_steps: Vec<ContactStep<S>>,
     /// Those of compliant contacts; empty without a compliant law.
     pub springs: Vec<Option<SpringStep<S>>>,
@@ -39,6 +44,7 @@ impl<S: Space> Default for Solved<S> {
     fn default() -> Self {
         Self {
             before: Velocities::default(),
+            after: Vec::new(),
             contact_steps: Vec::new(),
             springs: Vec::new(),
             moment_steps: Vec::new(),
@@ -51,27 +57,59 @@ impl<S: Space> Default for Solved<S> {
 /// of that.
 const CLOSING_OVERLAP: f64 = 1e-3;
 
+/// About what a pass over contacts takes for each (ns).
+const EACH: f64 = 15.0;
+
+/// The mass of a contact along its normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
+fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
+    let n = &contact.normal;
+    let mobility = |side: usize| {
+        let b = contact.bodies[side] as usize;
+        let turning = S::rotation_block(&contact.arms[side], &bodies.inverse_tensor(b));
+        n.dot(&n.scaled_by(&bodies.inverse_mass[b])) + n.dot(&turning.apply(n))
+    };
+    let w = mobility(0) + mobility(1);
+    if w > 0.0 { 1.0 / w } else { 0.0 }
+}
+
+/// The velocity of the candidate of a contact relative to its antagonist, at the current velocities of rigid bodies.
+#[inline]
+fn relative_velocity<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> S::Vector {
+    let [i, j] = contact.bodies.map(|b| b as usize);
+    bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
+        - bodies.velocity[j]
+        - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
+}
+
 impl<S: Space> Simulation<S> {
-    /// Returns the velocity of the candidate of the `k`-th contact relative to its antagonist, at the current velocities.
-    fn relative_velocity(&self, k: usize, contact: &Contact<S>) -> S::Vector {
-        if let Some(relative) = self.relative_velocity_of_sides(k) {
-            return relative;
+    /// Whether a pass over the contacts is divided among threads.
+    pub(super) fn divides_contacts(&self) -> bool {
+        pays(
+            self.options.solver.parallel,
+            self.state.network.contacts.len(),
+            EACH,
+        )
+    }
+
+    /// The velocities of the candidates relative to their antagonists, at the current velocities.
+    fn fill_relative_velocities(&self, list: &mut Vec<S::Vector>) {
+        let (bodies, contacts) = (&self.state.bodies, &self.state.network.contacts);
+        if self.state.systems.is_empty() {
+            let of = |k: usize| relative_velocity(bodies, &contacts[k]);
+            fill(self.divides_contacts(), list, contacts.len(), of);
+            return;
         }
-        let [i, j] = contact.bodies.map(|b| b as usize);
-        let bodies = &self.state.bodies;
-        bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
-            - bodies.velocity[j]
-            - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
+        list.clear();
+        list.extend(contacts.iter().enumerate().map(|(k, contact)| {
+            let of_sides = self.relative_velocity_of_sides(k);
+            of_sides.unwrap_or_else(|| relative_velocity(bodies, contact))
+        }));
     }
 
     /// Computes the relative velocities and spins at the start of the step.
     pub(super) fn relative_velocities(&mut self) {
         let mut before = std::mem::take(&mut self.workspace.solved.before);
-        let contacts = &self.state.network.contacts;
-        before.relative.clear();
-        let contacts = contacts.iter().enumerate();
-        let relative = contacts.map(|(k, c)| self.relative_velocity(k, c));
-        before.relative.extend(relative);
+        self.fill_relative_velocities(&mut before.relative);
         before.turning.clear();
         if self.laws.iter().any(Interface::rotates) {
             let contacts = self.state.network.contacts.iter();
@@ -83,67 +121,62 @@ impl<S: Space> Simulation<S> {
         before.effective_mass.clear();
         if self.laws.iter().any(Interface::compliant) {
             let h = self.options.scheme.h;
-            let contacts = self.state.network.contacts.iter().zip(&before.relative);
-            for (contact, u) in contacts {
+            let (network, bodies) = (&self.state.network, &self.state.bodies);
+            let (divide, count) = (self.divides_contacts(), network.contacts.len());
+            let relative = &before.relative;
+            fill(divide, &mut before.overlap, count, |k| {
                 // Not below the overlap at hand: a body that moves apart by more than that in a step would find no spring, and
                 // stiff contacts no equilibrium.
-                let gap = self.state.network.spring_gap(contact);
-                let end = gap + h * contact.normal.dot(u);
+                let contact = &network.contacts[k];
+                let gap = network.spring_gap(contact);
+                let end = gap + h * contact.normal.dot(&relative[k]);
                 let least = if contact.closing {
                     CLOSING_OVERLAP * contact.radius
                 } else {
                     0.0
                 };
-                before.overlap.push((-end).max(-gap).max(least));
-                let mass = self.effective_mass(contact);
-                before.effective_mass.push(mass);
-            }
+                (-end).max(-gap).max(least)
+            });
+            fill(divide, &mut before.effective_mass, count, |k| {
+                effective_mass(bodies, &network.contacts[k])
+            });
         }
         self.workspace.solved.before = before;
     }
 
-    /// The mass of a contact along its normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
-    fn effective_mass(&self, contact: &Contact<S>) -> f64 {
-        let (bodies, n) = (&self.state.bodies, &contact.normal);
-        let mobility = |side: usize| {
-            let b = contact.bodies[side] as usize;
-            let turning = S::rotation_block(&contact.arms[side], &bodies.inverse_tensor(b));
-            n.dot(&n.scaled_by(&bodies.inverse_mass[b])) + n.dot(&turning.apply(n))
-        };
-        let w = mobility(0) + mobility(1);
-        if w > 0.0 { 1.0 / w } else { 0.0 }
-    }
-
-    /// Collects what compliant contacts did.
+    /// Collects what compliant contacts did, which need their velocities at the end of the step.
     fn collect_spring_steps(&mut self) {
-        let mut springs = std::mem::take(&mut self.workspace.solved.springs);
-        springs.clear();
-        let steps = self.workspace.solved.contact_steps.iter();
-        let all = self.workspace.springs.iter().zip(steps).enumerate();
-        springs.extend(all.map(|(k, (spring, contact_step))| {
-            let contact = &self.state.network.contacts[k];
-            let end = self.relative_velocity(k, contact);
-            Some(spring.as_ref()?.complete(
-                &self.workspace.forms[k],
+        let mut steps = std::mem::take(&mut self.workspace.solved.springs);
+        let (springs, forms) = (&self.workspace.springs, &self.workspace.forms);
+        let (solved, h) = (&self.workspace.solved, self.options.scheme.h);
+        let contacts = &self.state.network.contacts;
+        fill(self.divides_contacts(), &mut steps, springs.len(), |k| {
+            let contact_step = &solved.contact_steps[k];
+            Some(springs[k].as_ref()?.complete(
+                &forms[k],
                 &contact_step.solution,
-                [&end, &contact_step.average],
-                &contact.spring,
-                self.options.scheme.h,
+                [&solved.after[k], &contact_step.average],
+                &contacts[k].spring,
+                h,
             ))
-        }));
-        self.workspace.solved.springs = springs;
+        });
+        self.workspace.solved.springs = steps;
     }
 
     /// Collects the results of all contacts.
     pub(super) fn collect_contact_steps(&mut self) {
+        let mut after = std::mem::take(&mut self.workspace.solved.after);
+        self.fill_relative_velocities(&mut after);
         let mut contact_steps = std::mem::take(&mut self.workspace.solved.contact_steps);
-        contact_steps.clear();
-        let theta = self.options.scheme.theta;
-        let before = &self.workspace.solved.before.relative;
-        let contacts = self.state.network.contacts.iter().zip(before).enumerate();
-        contact_steps.extend(contacts.map(|(k, (contact, before))| {
-            let (form, solution) = (&self.workspace.forms[k], self.workspace.problem.solution(k));
-            let average = *before * (1.0 - theta) + self.relative_velocity(k, contact) * theta;
+        let (before, after_all) = (&self.workspace.solved.before.relative, &after);
+        let (forms, problem) = (&self.workspace.forms, &self.workspace.problem);
+        let (network, correction) = (&self.state.network, self.options.correction);
+        let Scheme { h, theta } = self.options.scheme;
+        let count = network.contacts.len();
+        fill(self.divides_contacts(), &mut contact_steps, count, |k| {
+            let (contact, before) = (&network.contacts[k], &before[k]);
+            let (form, solution) = (&forms[k], problem.solution(k));
+            let average = *before * (1.0 - theta) + after_all[k] * theta;
             let n = &contact.normal;
             let lost = form.elastic.map_or(0.0, |e| {
                 let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
@@ -156,7 +189,7 @@ impl<S: Space> Simulation<S> {
             let lifts = form.shift_n < 0.0
                 && form.compliance[0] == 0.0
                 && n.dot(before) >= form.shift_n
-                && form.shift_n == self.shift_of_gap(contact, self.options.scheme.h);
+                && form.shift_n == shift_of_gap(network, contact, correction, h);
             let lift = if lifts {
                 -theta * form.shift_n * solution.unilateral_n.max(0.0)
             } else {
@@ -173,8 +206,9 @@ impl<S: Space> Simulation<S> {
                 corrected: lift,
                 solution,
             }
-        }));
+        });
         self.workspace.solved.contact_steps = contact_steps;
+        self.workspace.solved.after = after;
         self.collect_spring_steps();
     }
 

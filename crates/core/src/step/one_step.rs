@@ -19,6 +19,7 @@ impl<S: Space> Simulation<S> {
         self.check_worn_through()?;
         let mut report = StepReport::default();
         let info = self.step_info();
+        self.workspace.evaluator.parallel = self.options.solver.parallel;
         self.begin_step()?;
         let (start, free) = self.detect_contacts(&info, &mut report)?;
         self.solve(&start, &free, &info, &mut report)?;

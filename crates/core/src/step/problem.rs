@@ -3,12 +3,13 @@
 use super::coupling::{Coupling, Progress};
 use super::motion::StepStart;
 use super::{Simulation, StepError, StepReport};
-use crate::contact::Contact;
+use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::columns::StepInfo;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm};
+use crate::threads::fill;
 use std::time::Instant;
 
 impl<S: Space> Simulation<S> {
@@ -167,34 +168,26 @@ impl<S: Space> Simulation<S> {
     /// Computes the geometric part of the forms.
     pub(super) fn geometry_of_forms(&mut self, h: f64) {
         let mut forms = std::mem::take(&mut self.workspace.forms);
-        forms.clear();
-        let contacts = self.state.network.contacts.iter();
-        forms.extend(contacts.map(|contact| ContactForm {
-            bodies: contact.bodies,
-            normal: contact.normal,
-            arms: contact.arms,
-            central: contact.central,
-            shift_n: self.shift_of_gap(contact, h),
-            shift_t: S::Tangent::zero(),
-            friction: 0.0,
-            tension: 0.0,
-            cohesion: 0.0,
-            elastic: None,
-            compliance: [0.0; 2],
-            impulse: contact.impulse,
-        }));
+        let (network, correction) = (&self.state.network, self.options.correction);
+        let count = network.contacts.len();
+        fill(self.divides_contacts(), &mut forms, count, |k| {
+            let contact = &network.contacts[k];
+            ContactForm {
+                bodies: contact.bodies,
+                normal: contact.normal,
+                arms: contact.arms,
+                central: contact.central,
+                shift_n: shift_of_gap(network, contact, correction, h),
+                shift_t: S::Tangent::zero(),
+                friction: 0.0,
+                tension: 0.0,
+                cohesion: 0.0,
+                elastic: None,
+                compliance: [0.0; 2],
+                impulse: contact.impulse,
+            }
+        });
         self.workspace.forms = forms;
-    }
-
-    /// Returns the velocity at which a step may close a gap; for a penetration, the (negative) velocity at
-    /// which the correction removes its share (m/s).
-    pub(super) fn shift_of_gap(&self, contact: &Contact<S>, h: f64) -> f64 {
-        let gap = self.state.network.open_gap(contact);
-        if gap > 0.0 {
-            gap / h
-        } else {
-            self.options.correction * gap / h
-        }
     }
 
     /// Sets up the solver's problem from bodies and contacts.
@@ -211,9 +204,7 @@ impl<S: Space> Simulation<S> {
             );
         }
         if self.state.systems.is_empty() {
-            for form in &self.workspace.forms {
-                problem.push(form);
-            }
+            problem.push_all(&self.workspace.forms, self.options.solver.parallel);
         } else {
             self.pose_with_systems();
         }
@@ -234,5 +225,21 @@ impl<S: Space> Simulation<S> {
             self.state.bodies.spin[b] = w;
         }
         Ok(())
+    }
+}
+
+/// The velocity at which a step may close the gap of a contact; for a penetration, the (negative) velocity at which the correction
+/// removes its share (m/s).
+pub(super) fn shift_of_gap<S: Space>(
+    network: &Network<S>,
+    contact: &Contact<S>,
+    correction: f64,
+    h: f64,
+) -> f64 {
+    let gap = network.open_gap(contact);
+    if gap > 0.0 {
+        gap / h
+    } else {
+        correction * gap / h
     }
 }

@@ -92,6 +92,27 @@ impl<const D: usize> Local<D> {
         }
     }
 
+    /// From data computed before: W_cc, its inverse, the friction coefficient, and the multiplier of the last slip.
+    pub fn known(w: Block<D>, inverse: Block<D>, mu: f64, lambda: f64) -> Self {
+        Self {
+            w,
+            inverse,
+            mu,
+            slides: [0.0; 2],
+            lambda,
+        }
+    }
+
+    /// W_cc^-1, zero if it is singular: what holds a contact that sticks.
+    pub fn held(&self) -> Block<D> {
+        self.inverse
+    }
+
+    /// The multiplier of the last slip.
+    pub fn lambda(&self) -> f64 {
+        self.lambda
+    }
+
     /// Returns the impulse for the free velocity `f` of this contact.
     #[inline(always)]
     pub fn solve(&mut self, f: &[f64; D]) -> [f64; D] {

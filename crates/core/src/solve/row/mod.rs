@@ -4,18 +4,20 @@
 //! solved in closed form: first the normal part, then the tangential part within the cone.
 
 mod block;
+mod cone;
 mod full;
-mod general;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
+mod lever;
 mod moment;
 mod plain;
 mod solver_bodies;
 mod system;
 mod visit;
 
+pub(super) use block::{Bonded, Loose, OnBlock};
 pub(super) use full::FullRow;
-pub(super) use general::GeneralRow;
+pub(super) use lever::LeverRow;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use moment::{MomentRow, turning};
 pub(super) use plain::PlainRow;
@@ -24,7 +26,7 @@ pub(super) use system::{SystemRow, Term};
 pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
 use super::form::ContactSolution;
-use super::{cone, error};
+use super::{cone as cones, error};
 use crate::geometry::space::{Space, VectorLike, greatest};
 
 /// Velocity record of a body in the solver: 64 bytes in both dimensions.
@@ -35,9 +37,9 @@ pub struct SolverBody<S: Space> {
     pub v: S::Vector,
     /// Angular velocity times the body's length (m/s).
     pub s: S::Spin,
-    /// Inverse mass, where isotropic (1/kg).
+    /// Inverse mass, the largest of all axes (1/kg).
     pub im: f64,
-    /// Inverse inertia times the length squared (1/kg).
+    /// Inverse inertia times the length squared, the largest about any axis (1/kg).
     pub is: f64,
 }
 
@@ -146,7 +148,7 @@ fn natural_map<T: VectorLike>(
     c: f64,
 ) -> Residual {
     let slide = ut + st;
-    let (zn, zt) = cone::project(
+    let (zn, zt) = cones::project(
         pn - rho * (un + sn + mu * slide.norm()),
         pt - slide * rho,
         mu,

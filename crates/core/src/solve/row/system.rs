@@ -1,7 +1,7 @@
 //! A contact of which a side is a dynamical system: solved as a block, its impulse changes the velocities of all nodes of the
 //! system that are touched.
 
-use super::block::BlockContact;
+use super::block::{Bonded, OnBlock};
 use super::{Residual, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::error::Scale;
@@ -36,7 +36,9 @@ pub(in crate::solve) struct SystemRow<S: Space> {
     points: [Option<(u32, u32, f64)>; 2],
     /// The same by nodes.
     terms: Vec<Term>,
-    contact: BlockContact<S>,
+    /// W_cc in world axes (1/kg).
+    block: S::Matrix,
+    contact: Bonded<S>,
 }
 
 /// Body, arm (m), mobility and length (m) of a rigid side.
@@ -63,7 +65,8 @@ impl<S: Space> SystemRow<S> {
             rigid,
             points,
             terms,
-            contact: BlockContact::new(contact, block),
+            contact: Bonded::new(contact, &block),
+            block,
         }
     }
 
@@ -88,6 +91,19 @@ impl<S: Space> SystemRow<S> {
             u += systems[*system as usize].velocity(*point) * *sign;
         }
         u
+    }
+
+    /// Its relative velocity along and across its normal (m/s).
+    fn parts(
+        &self,
+        solver_bodies: &[SolverBody<S>],
+        systems: &[NodalSystem<S>],
+    ) -> (f64, S::Tangent) {
+        let (u, n) = (
+            self.relative(solver_bodies, systems),
+            self.contact.state().n,
+        );
+        (n.dot(&u), S::tangential(&n, &u))
     }
 
     /// Adds what an impulse does to the velocities of bodies, and gives `on_point` the system, the point and the impulse on it.
@@ -119,7 +135,10 @@ impl<S: Space> SystemRow<S> {
         relaxation: f64,
     ) {
         let u = self.relative(solver_bodies, systems);
-        let change = self.contact.update(u, relaxation);
+        let n = self.contact.state().n;
+        let (un, ut) = (n.dot(&u), S::tangential(&n, &u));
+        let (dn, dt) = self.contact.update(un, &ut, relaxation);
+        let change = n * dn + S::tangent_vector(&n, &dt);
         self.push(&change, solver_bodies, |system, point, p| {
             systems[system as usize].push(point, p);
         });
@@ -127,8 +146,8 @@ impl<S: Space> SystemRow<S> {
 
     /// Adds what the stored impulse does to the velocities; those of nodes are right once their systems are settled.
     pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
-        let impulse = self.contact.impulse();
-        self.push(impulse, solver_bodies, |system, point, p| {
+        let impulse = self.contact.state().impulse();
+        self.push(&impulse, solver_bodies, |system, point, p| {
             systems[system as usize].load(point, p);
         });
     }
@@ -137,7 +156,7 @@ impl<S: Space> SystemRow<S> {
     pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
         for term in &self.terms {
             impulses[term.system as usize][term.node as usize] +=
-                *self.contact.impulse() * term.weight;
+                self.contact.state().impulse() * term.weight;
         }
     }
 
@@ -153,17 +172,32 @@ impl<S: Space> SystemRow<S> {
 
     /// W_cc in world axes (1/kg).
     pub fn block(&self) -> &S::Matrix {
-        self.contact.block()
+        &self.block
     }
 
-    /// The law and the impulse, which need no bodies.
-    pub fn contact(&self) -> &BlockContact<S> {
-        &self.contact
+    /// Whether a bond may act on it.
+    pub fn is_bonded(&self) -> bool {
+        self.contact.is_bonded()
     }
 
-    /// See [`Self::contact`].
-    pub fn contact_mut(&mut self) -> &mut BlockContact<S> {
-        &mut self.contact
+    /// See [`super::Row::normal`].
+    pub fn normal(&self) -> f64 {
+        self.contact.state().pn
+    }
+
+    /// See [`super::Row::store`].
+    pub fn store(&self, out: &mut Vec<f64>) {
+        self.contact.state().store(out);
+    }
+
+    /// See [`super::Row::restore`].
+    pub fn restore(&mut self, from: &mut &[f64]) {
+        self.contact.state_mut().restore(from);
+    }
+
+    /// See [`super::Row::set`].
+    pub fn set(&mut self, impulse: &S::Vector) {
+        self.contact.state_mut().set(impulse);
     }
 
     pub fn residual(
@@ -171,8 +205,8 @@ impl<S: Space> SystemRow<S> {
         solver_bodies: &[SolverBody<S>],
         systems: &[NodalSystem<S>],
     ) -> Residual {
-        self.contact
-            .residual(&self.relative(solver_bodies, systems))
+        let (un, ut) = self.parts(solver_bodies, systems);
+        self.contact.residual(un, &ut)
     }
 
     pub fn solution(
@@ -180,8 +214,8 @@ impl<S: Space> SystemRow<S> {
         solver_bodies: &[SolverBody<S>],
         systems: &[NodalSystem<S>],
     ) -> ContactSolution<S> {
-        self.contact
-            .solution(&self.relative(solver_bodies, systems))
+        let (un, ut) = self.parts(solver_bodies, systems);
+        self.contact.solution(un, &ut)
     }
 
     /// Scales of the error from the free velocities, which are the current ones.
@@ -199,8 +233,8 @@ impl<S: Space> SystemRow<S> {
         let own: f64 = rigid.chain(points).sum();
         Scale {
             free: speed,
-            energy: self.contact.rho() * speed,
-            noise: super::visit::noise(own, self.contact.friction()),
+            energy: self.contact.limits().rho * speed,
+            noise: super::visit::noise(own, self.contact.limits().mu),
             work: 0.0,
         }
     }

@@ -2,7 +2,7 @@
 //! available, otherwise one by one, with bitwise identical results.
 
 #[cfg(target_arch = "x86_64")]
-use super::lanes::{self, Moving, Records, Tuple, Wide, push, relative};
+use super::lanes::{self, Moving, Records, Tuple, Wide};
 use super::{Row, SolverBodies, SolverBody};
 use crate::geometry::space::{Space, VectorLike, least};
 use crate::solve::error::{Scale, Sums};
@@ -115,8 +115,7 @@ impl Visit for Load {
         // SAFETY: as asked for.
         unsafe {
             let (mut i, mut j) = (Moving::load(a), Moving::load(b));
-            let row = W::load_header(rows);
-            push(&row.n, row.pn, row.pt, &mut i, &mut j);
+            W::loads(rows, &mut i, &mut j);
             i.store(a);
             j.store(b);
         }
@@ -268,11 +267,9 @@ impl Visit for Free {
         // SAFETY: as asked for.
         unsafe {
             let (a, b) = (Moving::<W::Space, U>::load(a), Moving::load(b));
-            let row = W::load_header(rows);
-            let (un, ut) = relative(&row.n, &a, &b);
-            let speed = un * un + ut.dot(ut);
-            speed.add_to(&mut self.free);
-            (row.rho * speed).add_to(&mut self.energy);
+            let row = W::speeds(rows, &a, &b);
+            row.speed.add_to(&mut self.free);
+            (row.rho * row.speed).add_to(&mut self.energy);
             let own = a.v.dot(a.v) + a.s.dot(a.s) + b.v.dot(b.v) + b.s.dot(b.s);
             let mu = row.mu.min(lanes::Lanes::all(MAX_FRICTION));
             let one = lanes::Lanes::all(1.0);

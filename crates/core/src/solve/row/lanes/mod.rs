@@ -2,17 +2,18 @@
 //! single contact, so that results are bitwise identical.
 
 mod frame;
+mod lever;
 #[cfg(test)]
 mod tests;
 mod vector;
 mod wide;
 
-pub use frame::{Moving, Tuple, push, relative};
+pub use frame::{Moving, Tuple};
 pub use vector::{Lanes, Records};
 pub use wide::Wide;
 
 use super::visit::Visit;
-use super::{FullRow, PlainRow, Row, SolverBodies, SolverBody};
+use super::{Bonded, FullRow, LeverRow, Loose, PlainRow, Row, SolverBodies, SolverBody};
 use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
@@ -40,7 +41,14 @@ pub fn visit<S: Space, R: Row<S>>(
             }
         )*};
     }
-    of!(PlainRow<Dim2>, FullRow<Dim2>, PlainRow<Dim3>, FullRow<Dim3>);
+    of!(
+        PlainRow<Dim2>,
+        FullRow<Dim2>,
+        LeverRow<Dim2, Loose<Dim2>>,
+        LeverRow<Dim2, Bonded<Dim2>>,
+        PlainRow<Dim3>,
+        FullRow<Dim3>
+    );
     false
 }
 

@@ -1,7 +1,11 @@
+use crate::geometry::space::MatrixLike;
 use crate::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use crate::solve::form::Mobility;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
-use crate::solve::row::{FullRow, PlainRow, Row, SolverBodies, SolverBody};
+use crate::solve::row::{
+    Bonded, FullRow, LeverRow, Loose, PlainRow, Row, SolverBodies, SolverBody,
+};
 
 /// Returns a pseudo-random number between -1 and 1.
 fn wave(k: usize, of: u32) -> f64 {
@@ -120,18 +124,21 @@ fn same<S: Space, R: Row<S>>(
     form: impl Fn(u32) -> ContactForm<S>,
     row: impl Fn(&ContactForm<S>, f64, f64) -> R,
 ) {
+    same_rows(|pair, solver_bodies| {
+        let [a, b] = [2 * pair, 2 * pair + 1].map(|k| &solver_bodies[k as usize]);
+        let w_n = a.im + b.im;
+        row(&form(pair), w_n, w_n + a.is + b.is)
+    });
+}
+
+fn same_rows<S: Space, R: Row<S>>(row: impl Fn(u32, &[SolverBody<S>]) -> R) {
     if !is_x86_feature_detected!("avx2") {
         return;
     }
     // Groups of all remainders, up to the end of the prefetch distance.
     let groups: Vec<u32> = vec![0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
     let solver_bodies = solver_bodies::<S>(290);
-    let row = |pair: u32| {
-        let [a, b] = [2 * pair, 2 * pair + 1].map(|k| &solver_bodies[k as usize]);
-        let w_n = a.im + b.im;
-        row(&form(pair), w_n, w_n + a.is + b.is)
-    };
-    let rows: Vec<R> = (0..145).map(row).collect();
+    let rows: Vec<R> = (0..145).map(|pair| row(pair, &solver_bodies)).collect();
     let mut one = State {
         rows: rows.clone(),
         solver_bodies: solver_bodies.clone(),
@@ -170,4 +177,39 @@ fn lanes_give_the_bits_of_single_contacts() {
     same(smooth::<Dim3>, PlainRow::new);
     same(bonded::<Dim2>, FullRow::new);
     same(bonded::<Dim3>, FullRow::new);
+    // Contacts with levers, of bodies of which some move along one axis alone.
+    let inertia = |solver_bodies: &[SolverBody<Dim2>], b: usize| {
+        let body = &solver_bodies[b];
+        let mut mass = [body.im; 2];
+        if b % 5 == 0 {
+            mass[b % 2] = 0.0;
+        }
+        let mobility = Mobility {
+            mass: VectorLike::from_slice(&mass),
+            inertia: MatrixLike::uniform(body.is / 0.49),
+        };
+        (mobility, 0.7)
+    };
+    let aside = |form: ContactForm<Dim2>, pair: u32| ContactForm {
+        central: false,
+        arms: [
+            form.arms[0] * 0.4,
+            form.arms[1] * (0.3 + 0.2 * wave(50, pair)),
+        ]
+        .map(|mut arm| {
+            arm[0] += 0.3 * wave(51, pair);
+            arm
+        }),
+        ..form
+    };
+    same_rows(|pair, all| {
+        let form = ContactForm {
+            elastic: None,
+            ..aside(bonded(pair), pair)
+        };
+        LeverRow::<Dim2, Loose<Dim2>>::new(&form, |b| inertia(all, b))
+    });
+    same_rows(|pair, all| {
+        LeverRow::<Dim2, Bonded<Dim2>>::new(&aside(bonded(pair), pair), |b| inertia(all, b))
+    });
 }

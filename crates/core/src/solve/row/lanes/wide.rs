@@ -15,11 +15,9 @@ pub struct Residuals<const U: usize> {
     pub slip: Lanes<U>,
 }
 
-/// Data of the rows for the error: normal, impulse, rho of the natural map, friction.
-pub struct RowHeader<F: Frame, const U: usize> {
-    pub n: F::V<U>,
-    pub pn: Lanes<U>,
-    pub pt: F::T<U>,
+/// Squared relative velocities, with rho of the natural map and friction.
+pub struct Speeds<const U: usize> {
+    pub speed: Lanes<U>,
     pub rho: Lanes<U>,
     pub mu: Lanes<U>,
 }
@@ -40,9 +38,22 @@ pub trait Wide: Row<Self::Space> {
         b: &mut Moving<Self::Space, U>,
         relaxation: Lanes<U>,
     );
+    /// Applies the stored impulses to the velocities.
+    ///
     /// # Safety
     /// The rows are there.
-    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<Self::Space, U>;
+    unsafe fn loads<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<Self::Space, U>,
+        b: &mut Moving<Self::Space, U>,
+    );
+    /// # Safety
+    /// The rows are there.
+    unsafe fn speeds<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<Self::Space, U>,
+        b: &Moving<Self::Space, U>,
+    ) -> Speeds<U>;
     /// # Safety
     /// The rows are there.
     unsafe fn residuals<const U: usize>(
@@ -97,7 +108,7 @@ impl<const U: usize> Reader<U> {
 /// # Safety
 /// The rows are valid and begin with n, p_n, p_t.
 #[inline(always)]
-unsafe fn store_impulses<R, F: Frame, const U: usize>(
+pub(super) unsafe fn store_impulses<R, F: Frame, const U: usize>(
     rows: &Records<R, U>,
     n: &F::V<U>,
     pn: Lanes<U>,
@@ -185,13 +196,27 @@ impl<F: Frame> Wide for PlainRow<F> {
     }
 
     #[inline(always)]
-    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<F, U> {
+    unsafe fn loads<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<F, U>,
+        b: &mut Moving<F, U>,
+    ) {
         // SAFETY: as asked for.
         let r = unsafe { Plain::<F, U>::new(rows) };
-        RowHeader {
-            n: r.n,
-            pn: r.pn,
-            pt: r.pt,
+        push(&r.n, r.pn, r.pt, a, b);
+    }
+
+    #[inline(always)]
+    unsafe fn speeds<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<F, U>,
+        b: &Moving<F, U>,
+    ) -> Speeds<U> {
+        // SAFETY: as asked for.
+        let r = unsafe { Plain::<F, U>::new(rows) };
+        let (un, ut) = relative(&r.n, a, b);
+        Speeds {
+            speed: un * un + ut.dot(ut),
             rho: r.iwn.min(r.iwt),
             mu: r.mu,
         }
@@ -351,13 +376,27 @@ impl<F: Frame> Wide for FullRow<F> {
     }
 
     #[inline(always)]
-    unsafe fn load_header<const U: usize>(rows: &Records<Self, U>) -> RowHeader<F, U> {
+    unsafe fn loads<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &mut Moving<F, U>,
+        b: &mut Moving<F, U>,
+    ) {
+        // SAFETY: as asked for.
+        let r = unsafe { Full::<F, U>::new(rows) };
+        push(&r.n, r.pn, r.pt, a, b);
+    }
+
+    #[inline(always)]
+    unsafe fn speeds<const U: usize>(
+        rows: &Records<Self, U>,
+        a: &Moving<F, U>,
+        b: &Moving<F, U>,
+    ) -> Speeds<U> {
         // SAFETY: as asked for.
         let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
-        RowHeader {
-            n: r.n,
-            pn: r.pn,
-            pt: r.pt,
+        let (un, ut) = relative(&r.n, a, b);
+        Speeds {
+            speed: un * un + ut.dot(ut),
             rho: bonds.rho,
             mu: r.mu,
         }
@@ -387,7 +426,7 @@ impl<F: Frame> Wide for FullRow<F> {
 
 /// As `natural_map` of one contact; zero where rho is 0.
 #[inline(always)]
-fn natural_map<T: Tuple<U>, const U: usize>(
+pub(super) fn natural_map<T: Tuple<U>, const U: usize>(
     (pn, pt): (Lanes<U>, T),
     (un, ut): (Lanes<U>, T),
     (sn, st): (Lanes<U>, T),
