@@ -172,6 +172,20 @@ pub struct Spring {
 ///
 /// The ratio of restitution 0 is infinite; that of 1e-6 is given instead.
 pub fn damping_ratio(restitution: f64) -> f64 {
+    thread_local! {
+        // A law asks for the same one in each batch.
+        static LAST: std::cell::Cell<(f64, f64)> = const { std::cell::Cell::new((1.0, 0.0)) };
+    }
+    let (asked, ratio) = LAST.get();
+    if asked == restitution {
+        return ratio;
+    }
+    let ratio = find_damping_ratio(restitution);
+    LAST.set((restitution, ratio));
+    ratio
+}
+
+fn find_damping_ratio(restitution: f64) -> f64 {
     let wanted = restitution.clamp(1e-6, 1.0);
     if wanted == 1.0 {
         return 0.0;

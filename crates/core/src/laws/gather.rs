@@ -78,17 +78,16 @@ impl LawEvaluator {
     fn gather_state<S: Space>(&mut self, law: &Interface, network: &Network<S>) {
         self.columns.n = self.members.len();
         for v in 0..law.variables() {
-            let column: Vec<f64> = self
-                .members
-                .iter()
-                .map(|at| {
-                    let contact = &network.contacts[*at];
-                    let memory = &network.memory[contact.law as usize];
-                    contact
-                        .memory()
-                        .map_or(0.0, |slot| memory.variables[v][slot])
-                })
-                .collect();
+            let column: Vec<f64> = match self.members.first() {
+                // Those of a batch belong to one interface.
+                Some(first) => {
+                    let law = network.contacts[*first].law as usize;
+                    let values = &network.memory[law].variables[v];
+                    let slots = self.members.iter().map(|at| network.contacts[*at].memory());
+                    slots.map(|s| s.map_or(0.0, |s| values[s])).collect()
+                }
+                None => Vec::new(),
+            };
             self.columns.state_next.push(column.clone());
             self.columns.state.push(column);
         }

@@ -3,8 +3,8 @@
 use super::loaded::Loaded;
 use super::nodal::NodalSystem;
 use super::row::{
-    Bonded, FullRow, LeverRow, Loose, MomentForm, MomentRow, MomentSolution, OnBlock, PlainRow,
-    Row, SolverBody, SystemRow,
+    Bonded, FullRow, LeverRow, Loose, MomentForm, MomentRow, MomentSolution, PlainRow, Row,
+    SolverBody, SystemRow,
 };
 use super::rows::Rows;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -165,31 +165,6 @@ impl<S: Space> Mobility<S> {
     }
 }
 
-/// The kinds of rows of contacts between rigid bodies.
-#[derive(Clone, Copy)]
-enum Kind {
-    Plain,
-    Full,
-    Lever,
-    BondedLever,
-}
-
-/// The kind of row that a contact needs.
-fn kind<S: Space>(contact: &ContactForm<S>) -> Kind {
-    if !contact.central {
-        return match contact.elastic {
-            None => Kind::Lever,
-            Some(_) => Kind::BondedLever,
-        };
-    }
-    let plain = contact.elastic.is_none()
-        && contact.tension == 0.0
-        && contact.cohesion == 0.0
-        && contact.compliance == [0.0; 2]
-        && contact.shift_t == S::Tangent::zero();
-    if plain { Kind::Plain } else { Kind::Full }
-}
-
 /// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
@@ -316,120 +291,6 @@ impl<S: Space> Problem<S> {
         self.clear_systems();
         self.moments.clear();
         self.places.clear();
-    }
-
-    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that scales
-    /// spins.
-    pub fn push_body(
-        &mut self,
-        v: S::Vector,
-        w: S::Spin,
-        inverse_mass: S::Vector,
-        inverse_inertia: S::Tensor,
-        length: f64,
-    ) {
-        let quickest = (1..S::D).fold(inverse_mass[0], |most, k| most.max(inverse_mass[k]));
-        let mobility = Mobility::<S> {
-            mass: inverse_mass,
-            inertia: inverse_inertia,
-        };
-        self.solver_bodies.push(SolverBody {
-            v,
-            s: w * length,
-            im: quickest,
-            is: mobility.quickest() * length * length,
-        });
-        self.free.push((v, w));
-        self.lengths.push(length);
-        self.masses.push(mobility);
-    }
-
-    /// Adds a contact.
-    pub fn push(&mut self, contact: &ContactForm<S>) {
-        let place = match kind(contact) {
-            Kind::Plain => Place::Plain(self.plain.push(self.plain_row(contact))),
-            Kind::Full => Place::Full(self.full.push(self.full_row(contact))),
-            Kind::Lever => Place::Lever(self.levers.push(self.lever_row(contact))),
-            Kind::BondedLever => {
-                Place::BondedLever(self.bonded_levers.push(self.lever_row(contact)))
-            }
-        };
-        self.places.push(place);
-    }
-
-    /// Adds all contacts to a problem that has none, in the order of the iteration.
-    pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
-        let mut of_kind: [Vec<u32>; 4] = Default::default();
-        for (k, contact) in contacts.iter().enumerate() {
-            let list = &mut of_kind[kind(contact) as usize];
-            self.places.push(match kind(contact) {
-                Kind::Plain => Place::Plain(list.len() as u32),
-                Kind::Full => Place::Full(list.len() as u32),
-                Kind::Lever => Place::Lever(list.len() as u32),
-                Kind::BondedLever => Place::BondedLever(list.len() as u32),
-            });
-            list.push(k as u32);
-        }
-        let movable = self.movable();
-        let [plain, full, levers, bonded_levers] = &of_kind;
-        // Taken out of the problem while its bodies are read.
-        let mut rows = std::mem::take(&mut self.plain);
-        rows.set(plain, contacts, &movable, parallel, |c| self.plain_row(c));
-        self.plain = rows;
-        let mut rows = std::mem::take(&mut self.full);
-        rows.set(full, contacts, &movable, parallel, |c| self.full_row(c));
-        self.full = rows;
-        let mut rows = std::mem::take(&mut self.levers);
-        rows.set(levers, contacts, &movable, parallel, |c| self.lever_row(c));
-        self.levers = rows;
-        let mut rows = std::mem::take(&mut self.bonded_levers);
-        rows.set(bonded_levers, contacts, &movable, parallel, |c| {
-            self.lever_row(c)
-        });
-        self.bonded_levers = rows;
-        self.place_in_order();
-    }
-
-    /// Whether a body moves, of each.
-    pub(super) fn movable(&self) -> Vec<bool> {
-        let moves = |l: &SolverBody<S>| l.im > 0.0 || l.is > 0.0;
-        self.solver_bodies.iter().map(moves).collect()
-    }
-
-    /// Takes the places of contacts from their order as pushed to that of the iteration.
-    pub(super) fn place_in_order(&mut self) {
-        let (plain, full) = (self.plain.places(), self.full.places());
-        let (levers, bonded_levers) = (self.levers.places(), self.bonded_levers.places());
-        for place in &mut self.places {
-            *place = match *place {
-                Place::Plain(r) => Place::Plain(plain[r as usize]),
-                Place::Full(r) => Place::Full(full[r as usize]),
-                Place::Lever(r) => Place::Lever(levers[r as usize]),
-                Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
-                in_order => in_order,
-            };
-        }
-    }
-
-    /// W along and across the normal of a contact of two balls (1/kg).
-    fn of_balls(&self, contact: &ContactForm<S>) -> [f64; 2] {
-        let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
-        let w_n = a.im + b.im;
-        [w_n, w_n + a.is + b.is]
-    }
-
-    fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
-        let [w_n, w_t] = self.of_balls(contact);
-        PlainRow::new(contact, w_n, w_t)
-    }
-
-    fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
-        let [w_n, w_t] = self.of_balls(contact);
-        FullRow::new(contact, w_n, w_t)
-    }
-
-    fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {
-        LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
     }
 
     /// Adds the moments of a contact that was already pushed, given with its bodies and normal.

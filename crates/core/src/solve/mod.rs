@@ -7,6 +7,7 @@
 //!
 //! Body velocities are updated in place, so that applying an impulse costs O(1) per contact.
 pub mod accelerate;
+mod build;
 pub mod choose;
 pub mod chosen;
 pub mod colour;

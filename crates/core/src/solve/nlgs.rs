@@ -333,21 +333,25 @@ impl<S: Space> Problem<S> {
 
     /// Returns the index, as pushed, of the contact at a position in the iteration.
     fn pushed(&self, at: usize) -> Option<usize> {
-        let mut at = at as u32;
-        let mut place = None;
-        let kinds: [(usize, fn(u32) -> Place); 4] = [
-            (self.plain.len(), Place::Plain),
-            (self.full.len(), Place::Full),
-            (self.levers.len(), Place::Lever),
-            (self.bonded_levers.len(), Place::BondedLever),
+        let counts = [
+            self.plain.len(),
+            self.full.len(),
+            self.levers.len(),
+            self.bonded_levers.len(),
         ];
-        for (count, kind) in kinds {
-            if place.is_none() && at < count as u32 {
-                place = Some(kind(at));
-            }
-            at = at.wrapping_sub(count as u32);
+        let (mut at, mut kind) = (at, 0);
+        while kind < counts.len() && at >= counts[kind] {
+            at -= counts[kind];
+            kind += 1;
         }
-        let place = place.unwrap_or(Place::System(at));
+        let of_kind = [
+            Place::Plain,
+            Place::Full,
+            Place::Lever,
+            Place::BondedLever,
+            Place::System,
+        ];
+        let place = of_kind[kind](at as u32);
         self.places.iter().position(|p| *p == place)
     }
 }

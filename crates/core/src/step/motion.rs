@@ -6,30 +6,58 @@
 use crate::bodies::Bodies;
 use crate::energy::BodyWork;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, pays};
+
+/// Bodies of a task.
+const CHUNK: usize = 1024;
+/// About what a pass over bodies takes for each (ns).
+const EACH: f64 = 10.0;
 
 /// Advances positions and orientations by `time` (s) without forces.
-pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64) {
-    for b in 0..bodies.len() {
-        let v = bodies.velocity[b];
-        let from = bodies.position[b];
-        bodies.position[b] += v * time;
-        for k in 0..S::D {
-            if bodies.position[b][k] == from[k] && v[k] != 0.0 {
-                // The displacement is below the floating-point spacing of the position. The losses of an
-                // oscillating motion cancel.
-                bodies.lost.resize(bodies.position.len(), S::Vector::zero());
-                bodies.lost[b][k] += v[k] * time;
+pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64, parallel: bool) {
+    let divide = pays(parallel, bodies.len(), EACH);
+    let Bodies {
+        position,
+        rotation,
+        velocity,
+        spin,
+        tensors,
+        inverse_inertia,
+        lost,
+        ..
+    } = bodies;
+    let velocity = &*velocity;
+    let moved = map_chunks_mut(divide, position, CHUNK, |first, position| {
+        let mut lost = Vec::new();
+        for (position, b) in position.iter_mut().zip(first..) {
+            let (v, from) = (velocity[b], *position);
+            *position += v * time;
+            for k in 0..S::D {
+                if position[k] == from[k] && v[k] != 0.0 {
+                    lost.push((b, k, v[k] * time));
+                }
             }
         }
-        let w = bodies.spin[b];
-        if w != S::Spin::zero() {
-            let rotation = bodies.rotation[b];
-            (bodies.rotation[b], bodies.spin[b]) = match bodies.tensor(b) {
-                Some(tensor) => tensor.free_rotation(&rotation, &w, time),
-                None => (S::turned(&rotation, &(w * time)), w),
+        lost
+    });
+    for (b, k, distance) in moved.into_iter().flatten() {
+        // The displacement is below the floating-point spacing of the position. The losses of an
+        // oscillating motion cancel.
+        lost.resize(position.len(), S::Vector::zero());
+        lost[b][k] += distance;
+    }
+    map_chunks_of_two(divide, CHUNK, (rotation, spin), |first, rotation, spin| {
+        for ((rotation, spin), b) in rotation.iter_mut().zip(spin).zip(first..) {
+            if *spin == S::Spin::zero() {
+                continue;
+            }
+            let tensor = tensors.get(b).and_then(Option::as_ref);
+            (*rotation, *spin) = match tensor.filter(|_| inverse_inertia[b] > 0.0) {
+                Some(tensor) => tensor.free_rotation(rotation, spin, time),
+                None => (S::turned(rotation, &(*spin * time)), *spin),
             };
         }
-    }
+    });
 }
 
 /// Computes v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are evaluated
@@ -40,9 +68,14 @@ pub fn free_velocities<S: Space>(
     time: f64,
     h: f64,
     theta: f64,
+    parallel: bool,
 ) -> Vec<(S::Vector, S::Spin)> {
-    let mut free: Vec<(S::Vector, S::Spin)> = (0..bodies.len())
-        .map(|b| {
+    let mut free = Vec::new();
+    fill(
+        pays(parallel, bodies.len(), EACH),
+        &mut free,
+        bodies.len(),
+        |b| {
             let mut v = bodies.velocity[b];
             for k in 0..S::D {
                 if bodies.inverse_mass[b][k] > 0.0 {
@@ -50,8 +83,8 @@ pub fn free_velocities<S: Space>(
                 }
             }
             (v, bodies.spin[b])
-        })
-        .collect();
+        },
+    );
     for driven in &bodies.driven {
         let b = driven.body as usize;
         let (v, w) = &mut free[b];

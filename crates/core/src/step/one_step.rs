@@ -77,10 +77,10 @@ impl<S: Space> Simulation<S> {
         let mut start = StepStart::new(&self.state.bodies);
         self.workspace.spring_energy = self.state.network.spring_energy();
         let clock = Instant::now();
-        motion::advance(&mut self.state.bodies, (1.0 - theta) * h);
+        let parallel = self.options.solver.parallel;
+        motion::advance(&mut self.state.bodies, (1.0 - theta) * h, parallel);
         self.begin_systems((1.0 - theta) * h);
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
-        let parallel = self.options.solver.parallel;
         detect(
             network,
             &self.shapes,
@@ -94,7 +94,7 @@ impl<S: Space> Simulation<S> {
         start.take_rotated_spins(&self.state.bodies);
         self.state.started = start.of_driven(&self.state.bodies);
         let (bodies, gravity) = (&self.state.bodies, &self.state.gravity);
-        let mut free = motion::free_velocities(bodies, gravity, time, h, theta);
+        let mut free = motion::free_velocities(bodies, gravity, time, h, theta, parallel);
         self.free_systems(&mut free);
         self.add_predicted_contacts(&free);
         self.reach_mean_places(false);
@@ -133,7 +133,8 @@ impl<S: Space> Simulation<S> {
     /// Moves the bodies from q_m to the end of the step.
     fn move_to_end(&mut self) {
         let Scheme { h, theta } = self.options.scheme;
-        motion::advance(&mut self.state.bodies, theta * h);
+        let parallel = self.options.solver.parallel;
+        motion::advance(&mut self.state.bodies, theta * h, parallel);
         self.carry_systems();
         self.end_motion();
     }

@@ -7,10 +7,16 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::columns::StepInfo;
+use crate::solve::form::Mobility;
 use crate::solve::local::solver::Method;
 use crate::solve::{self, ContactForm};
-use crate::threads::fill;
+use crate::threads::{fill, map_chunks_of_two, pays};
 use std::time::Instant;
+
+/// Bodies of a task.
+const CHUNK: usize = 1024;
+/// About what it takes to adopt the velocity of a body (ns).
+const ADOPT: f64 = 5.0;
 
 impl<S: Space> Simulation<S> {
     /// Prepares and solves the step: once with explicit coupling and with damage predicted at its middle, otherwise until the
@@ -194,15 +200,13 @@ impl<S: Space> Simulation<S> {
     fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
         let (bodies, problem) = (&self.state.bodies, &mut self.workspace.problem);
         problem.clear();
-        for (b, (v, w)) in free.iter().enumerate() {
-            problem.push_body(
-                *v,
-                *w,
-                bodies.inverse_mass[b],
-                bodies.inverse_tensor(b),
-                bodies.length[b],
-            );
-        }
+        problem.push_bodies(free, self.options.solver.parallel, |b| {
+            let mobility = Mobility {
+                mass: bodies.inverse_mass[b],
+                inertia: bodies.inverse_tensor(b),
+            };
+            (mobility, bodies.length[b])
+        });
         if self.state.systems.is_empty() {
             problem.push_all(&self.workspace.forms, self.options.solver.parallel);
         } else {
@@ -212,19 +216,27 @@ impl<S: Space> Simulation<S> {
     }
 
     fn adopt_velocities(&mut self) -> Result<(), StepError> {
-        for b in 0..self.state.bodies.len() {
-            let (v, w) = self.workspace.problem.velocity(b);
-            if !(v.is_finite() && w.is_finite()) {
-                return Err(StepError::NotFinite {
-                    step: self.state.steps + 1,
-                    time: self.state.time,
-                    body: self.state.bodies.id[b],
-                });
+        let (bodies, problem) = (&mut self.state.bodies, &self.workspace.problem);
+        let divide = pays(self.options.solver.parallel, bodies.len(), ADOPT);
+        let both = (&mut bodies.velocity[..], &mut bodies.spin[..]);
+        let wrong = map_chunks_of_two(divide, CHUNK, both, |first, velocity, spin| {
+            for ((velocity, spin), b) in velocity.iter_mut().zip(spin).zip(first..) {
+                let (v, w) = problem.velocity(b);
+                if !(v.is_finite() && w.is_finite()) {
+                    return Some(b);
+                }
+                (*velocity, *spin) = (v, w);
             }
-            self.state.bodies.velocity[b] = v;
-            self.state.bodies.spin[b] = w;
+            None
+        });
+        match wrong.into_iter().flatten().next() {
+            None => Ok(()),
+            Some(b) => Err(StepError::NotFinite {
+                step: self.state.steps + 1,
+                time: self.state.time,
+                body: bodies.id[b],
+            }),
         }
-        Ok(())
     }
 }
 

@@ -181,7 +181,7 @@ fn lanes_give_the_bits_of_single_contacts() {
     let inertia = |solver_bodies: &[SolverBody<Dim2>], b: usize| {
         let body = &solver_bodies[b];
         let mut mass = [body.im; 2];
-        if b % 5 == 0 {
+        if b.is_multiple_of(5) {
             mass[b % 2] = 0.0;
         }
         let mobility = Mobility {

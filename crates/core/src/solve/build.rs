@@ -1,0 +1,175 @@
+//! Building a contact problem: bodies, then contacts, each as a row of the kind that it needs.
+
+use super::form::{ContactForm, Mobility, Place, Problem};
+use super::row::{FullRow, LeverRow, OnBlock, PlainRow, SolverBody};
+use crate::geometry::space::{Space, VectorLike};
+use crate::threads::{fill, pays};
+
+/// About what it takes to add a body (ns).
+const BODY: f64 = 15.0;
+
+/// The record of a body at its free velocity.
+fn record<S: Space>(
+    free: &(S::Vector, S::Spin),
+    mobility: &Mobility<S>,
+    length: f64,
+) -> SolverBody<S> {
+    SolverBody {
+        v: free.0,
+        s: free.1 * length,
+        im: (1..S::D).fold(mobility.mass[0], |most, k| most.max(mobility.mass[k])),
+        is: mobility.quickest() * length * length,
+    }
+}
+
+/// The kinds of rows of contacts between rigid bodies.
+#[derive(Clone, Copy)]
+enum Kind {
+    Plain,
+    Full,
+    Lever,
+    BondedLever,
+}
+
+/// The kind of row that a contact needs.
+fn kind<S: Space>(contact: &ContactForm<S>) -> Kind {
+    if !contact.central {
+        return match contact.elastic {
+            None => Kind::Lever,
+            Some(_) => Kind::BondedLever,
+        };
+    }
+    let plain = contact.elastic.is_none()
+        && contact.tension == 0.0
+        && contact.cohesion == 0.0
+        && contact.compliance == [0.0; 2]
+        && contact.shift_t == S::Tangent::zero();
+    if plain { Kind::Plain } else { Kind::Full }
+}
+
+impl<S: Space> Problem<S> {
+    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that scales
+    /// spins.
+    pub fn push_body(
+        &mut self,
+        v: S::Vector,
+        w: S::Spin,
+        inverse_mass: S::Vector,
+        inverse_inertia: S::Tensor,
+        length: f64,
+    ) {
+        let mobility = Mobility::<S> {
+            mass: inverse_mass,
+            inertia: inverse_inertia,
+        };
+        self.solver_bodies.push(record(&(v, w), &mobility, length));
+        self.free.push((v, w));
+        self.lengths.push(length);
+        self.masses.push(mobility);
+    }
+
+    /// Adds all bodies to a problem that has none, by their free velocities, mobilities and lengths.
+    pub fn push_bodies(
+        &mut self,
+        free: &[(S::Vector, S::Spin)],
+        parallel: bool,
+        body: impl Fn(usize) -> (Mobility<S>, f64) + Sync + Send,
+    ) {
+        let (divide, count) = (pays(parallel, free.len(), BODY), free.len());
+        self.free.extend_from_slice(free);
+        fill(divide, &mut self.lengths, count, |b| body(b).1);
+        fill(divide, &mut self.masses, count, |b| body(b).0);
+        let (masses, lengths) = (&self.masses, &self.lengths);
+        fill(divide, &mut self.solver_bodies, count, |b| {
+            record(&free[b], &masses[b], lengths[b])
+        });
+    }
+
+    /// Adds a contact.
+    pub fn push(&mut self, contact: &ContactForm<S>) {
+        let place = match kind(contact) {
+            Kind::Plain => Place::Plain(self.plain.push(self.plain_row(contact))),
+            Kind::Full => Place::Full(self.full.push(self.full_row(contact))),
+            Kind::Lever => Place::Lever(self.levers.push(self.lever_row(contact))),
+            Kind::BondedLever => {
+                Place::BondedLever(self.bonded_levers.push(self.lever_row(contact)))
+            }
+        };
+        self.places.push(place);
+    }
+
+    /// Adds all contacts to a problem that has none, in the order of the iteration.
+    pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
+        let mut of_kind: [Vec<u32>; 4] = Default::default();
+        for (k, contact) in contacts.iter().enumerate() {
+            let list = &mut of_kind[kind(contact) as usize];
+            self.places.push(match kind(contact) {
+                Kind::Plain => Place::Plain(list.len() as u32),
+                Kind::Full => Place::Full(list.len() as u32),
+                Kind::Lever => Place::Lever(list.len() as u32),
+                Kind::BondedLever => Place::BondedLever(list.len() as u32),
+            });
+            list.push(k as u32);
+        }
+        let movable = self.movable();
+        let [plain, full, levers, bonded_levers] = &of_kind;
+        // Taken out of the problem while its bodies are read.
+        let mut rows = std::mem::take(&mut self.plain);
+        rows.set(plain, contacts, &movable, parallel, |c| self.plain_row(c));
+        self.plain = rows;
+        let mut rows = std::mem::take(&mut self.full);
+        rows.set(full, contacts, &movable, parallel, |c| self.full_row(c));
+        self.full = rows;
+        let mut rows = std::mem::take(&mut self.levers);
+        rows.set(levers, contacts, &movable, parallel, |c| self.lever_row(c));
+        self.levers = rows;
+        let mut rows = std::mem::take(&mut self.bonded_levers);
+        rows.set(bonded_levers, contacts, &movable, parallel, |c| {
+            self.lever_row(c)
+        });
+        self.bonded_levers = rows;
+        self.place_in_order();
+    }
+
+    /// Whether a body moves, of each.
+    pub(super) fn movable(&self) -> Vec<bool> {
+        let moves = |l: &SolverBody<S>| l.im > 0.0 || l.is > 0.0;
+        self.solver_bodies.iter().map(moves).collect()
+    }
+
+    /// Takes the places of contacts from their order as pushed to that of the iteration.
+    pub(super) fn place_in_order(&mut self) {
+        let (plain, full) = (self.plain.places(), self.full.places());
+        let (levers, bonded_levers) = (self.levers.places(), self.bonded_levers.places());
+        for place in &mut self.places {
+            *place = match *place {
+                Place::Plain(r) => Place::Plain(plain[r as usize]),
+                Place::Full(r) => Place::Full(full[r as usize]),
+                Place::Lever(r) => Place::Lever(levers[r as usize]),
+                Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
+                in_order => in_order,
+            };
+        }
+    }
+
+    /// W along and across the normal of a contact of two balls (1/kg).
+    fn of_balls(&self, contact: &ContactForm<S>) -> [f64; 2] {
+        let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
+        let w_n = a.im + b.im;
+        [w_n, w_n + a.is + b.is]
+    }
+
+    fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
+        let [w_n, w_t] = self.of_balls(contact);
+        PlainRow::new(contact, w_n, w_t)
+    }
+
+    fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
+        let [w_n, w_t] = self.of_balls(contact);
+        FullRow::new(contact, w_n, w_t)
+    }
+
+    fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {
+        LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
+    }
+}
