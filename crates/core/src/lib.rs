@@ -59,6 +59,7 @@ pub mod process;
 pub mod program;
 pub mod solve;
 pub mod step;
+pub mod threads;
 pub mod wear;
 
 pub use step::fields;

@@ -1,0 +1,116 @@
+//! Division of a loop among the threads of the current pool, where there is enough to do for that to pay.
+//!
+//! Loops are cut into chunks of a fixed size, whatever the number of threads, and what chunks give is joined in their
+//! order: the results have the same bits on any number of threads, one after the other included.
+
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Least work that pays for waking other threads (ns): a few times what that takes.
+const LEAST_WORK: u64 = 60_000;
+
+static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
+
+/// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured one. Results do not depend on it:
+/// tests set zero, so that small scenes run on several threads too.
+pub fn divide_from(nanoseconds: Option<u64>) {
+    LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
+}
+
+/// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller allows several threads.
+#[inline]
+pub fn pays(parallel: bool, items: usize, each: f64) -> bool {
+    parallel
+        && items as f64 * each >= LEAST.load(Ordering::Relaxed) as f64
+        && rayon::current_num_threads() > 1
+}
+
+/// Returns what `of` gives for each chunk of `size` items, which it gets with the index of the first; in the order of the chunks.
+pub fn map_chunks<T: Sync, R: Send>(
+    divide: bool,
+    items: &[T],
+    size: usize,
+    of: impl Fn(usize, &[T]) -> R + Sync,
+) -> Vec<R> {
+    map_ranges(divide, items.len(), size, |range| {
+        of(range.start, &items[range.clone()])
+    })
+}
+
+/// As [`map_chunks`], of the ranges of indices below `items`.
+pub fn map_ranges<R: Send>(
+    divide: bool,
+    items: usize,
+    size: usize,
+    of: impl Fn(Range<usize>) -> R + Sync,
+) -> Vec<R> {
+    let range = |k: usize| k * size..items.min((k + 1) * size);
+    let chunks = 0..items.div_ceil(size);
+    if divide && chunks.len() > 1 {
+        chunks.into_par_iter().map(|k| of(range(k))).collect()
+    } else {
+        chunks.map(|k| of(range(k))).collect()
+    }
+}
+
+/// Calls `on` with each chunk of `size` items and the index of its first.
+pub fn for_chunks<T: Send>(
+    divide: bool,
+    items: &mut [T],
+    size: usize,
+    on: impl Fn(usize, &mut [T]) + Sync,
+) {
+    if divide && items.len() > size {
+        let chunks = items.par_chunks_mut(size).enumerate();
+        chunks.for_each(|(k, chunk)| on(k * size, chunk));
+    } else {
+        let chunks = items.chunks_mut(size).enumerate();
+        chunks.for_each(|(k, chunk)| on(k * size, chunk));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_come_in_order_on_any_number_of_threads() {
+        let items: Vec<f64> = (0..1001).map(|k| f64::from(k).sin()).collect();
+        let sums = |threads: usize, divide: bool| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().unwrap();
+            let sum = |first: usize, part: &[f64]| (first, part.iter().sum::<f64>());
+            pool.install(|| {
+                let mut scaled = items.clone();
+                for_chunks(divide, &mut scaled, 64, |first, part| {
+                    for (k, x) in part.iter_mut().enumerate() {
+                        *x *= (first + k) as f64;
+                    }
+                });
+                (map_chunks(divide, &items, 64, sum), scaled)
+            })
+        };
+        let serial = sums(1, false);
+        assert_eq!(serial.0.len(), 16);
+        assert!(serial.0.iter().map(|s| s.0).eq((0..1001).step_by(64)));
+        assert_eq!(serial.1[1000], items[1000] * 1000.0);
+        for threads in 1..4 {
+            assert_eq!(sums(threads, true), serial);
+        }
+        assert_eq!(map_chunks(true, &[0u8; 0], 64, |_, _| ()), []);
+    }
+
+    #[test]
+    fn small_loops_are_not_divided() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2);
+        pool.build().unwrap().install(|| {
+            assert!(pays(true, 1_000_000, 100.0));
+            assert!(!pays(false, 1_000_000, 100.0));
+            assert!(!pays(true, 10, 1.0));
+        });
+        let alone = rayon::ThreadPoolBuilder::new().num_threads(1);
+        let alone = alone.build().unwrap();
+        assert!(!alone.install(|| pays(true, 1_000_000, 100.0)));
+    }
+}
