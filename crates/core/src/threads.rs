@@ -54,6 +54,19 @@ pub fn map_ranges<R: Send>(
     }
 }
 
+/// Returns what `of` gives for each of some tasks, in their order.
+pub fn map_tasks<T: Send, R: Send>(
+    divide: bool,
+    tasks: Vec<T>,
+    of: impl Fn(T) -> R + Send + Sync,
+) -> Vec<R> {
+    if divide && tasks.len() > 1 {
+        tasks.into_par_iter().map(of).collect()
+    } else {
+        tasks.into_iter().map(of).collect()
+    }
+}
+
 /// Calls `on` with each chunk of `size` items and the index of its first.
 pub fn for_chunks<T: Send>(
     divide: bool,

@@ -8,6 +8,7 @@ mod narrow;
 mod neighbours;
 mod order;
 mod prediction;
+mod renewal;
 mod sorted;
 mod sweep;
 
@@ -21,17 +22,12 @@ use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
-use narrow::Narrow;
 use neighbours::NeighbourSearch;
-use rayon::prelude::*;
+use renewal::{Scene, renew_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
 /// face.
 const SLACK: f64 = 0.01;
-/// Pairs per task.
-const CHUNK: usize = 256;
-/// Tasks whose contact points are kept at a time: a few megabytes.
-const BATCH: usize = 128;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
@@ -92,30 +88,15 @@ pub fn detect<S: Space>(
         let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
         rebuild(network, shapes, bodies, laws, &centres, &velocities, h);
     }
-    std::mem::swap(&mut network.contacts, &mut network.old);
-    network.contacts.clear();
-    let candidates = std::mem::take(&mut network.candidates);
-    let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
-    // What the points of a pair depend on is not changed by other pairs, so that they are found first.
-    if parallel {
-        for batch in candidates.chunks(BATCH * CHUNK) {
-            let chunks = batch.par_chunks(CHUNK);
-            let found: Vec<_> = chunks.map(|c| narrow.find_points(network, c)).collect();
-            for (pairs, found) in batch.chunks(CHUNK).zip(&found) {
-                narrow.update_contacts(network, pairs, found);
-            }
-        }
-    } else {
-        for pairs in candidates.chunks(CHUNK) {
-            let found = narrow.find_points(network, pairs);
-            narrow.update_contacts(network, pairs, &found);
-        }
-    }
-    let left = narrow.left();
-    network.candidates = candidates;
-    for k in left..network.old.len() {
-        drop_contact(network, k);
-    }
+    let scene = Scene {
+        shapes,
+        bodies,
+        centres: &centres,
+        laws,
+        time,
+        h,
+    };
+    renew_contacts(network, &scene, parallel);
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
@@ -214,8 +195,7 @@ fn frame<S: Space>(body: u32, offset: &S::Vector, bodies: &Bodies<S>) -> (S::Vec
     (bodies.position[b] + S::rotate(&rotation, offset), rotation)
 }
 
-fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
-    let contact = &network.old[k];
+fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     let Some(slot) = contact.memory() else {
         return;
     };
@@ -227,9 +207,8 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
         bond.life.fracture += torn;
         network.torn_energy += torn;
         network.memory[law].broken += 1;
-        let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
-        network.record_break(&contact, damage);
+        network.record_break(contact, damage);
         if let Some(record) = network.bond_breaks.last_mut() {
             record.torn = torn;
         }
@@ -237,6 +216,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     network.memory[law].release(slot as u32);
 }
 
-fn held<S: Space>(network: &Network<S>, old: Option<usize>) -> bool {
-    old.is_some_and(|k| network.bond(&network.old[k]).is_some_and(|b| b.intact()))
+#[inline]
+fn held<S: Space>(network: &Network<S>, old: Option<&Contact<S>>) -> bool {
+    old.is_some_and(|c| network.bond(c).is_some_and(|b| b.intact()))
 }

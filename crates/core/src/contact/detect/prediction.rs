@@ -6,16 +6,20 @@ use super::extents::Extents;
 use super::margin::{Stage, margin};
 use super::order::{PredictedMeeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
-use super::{CHUNK, LawTable, centres, rebuild};
+use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::grid;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
-use rayon::prelude::*;
+use crate::threads;
 
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
 const HEADROOM: f64 = 1.5;
+/// Pairs per task.
+const CHUNK: usize = 256;
+/// Time of a pair (ns).
+const COST: f64 = 20.0;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
@@ -286,15 +290,10 @@ fn find_closing<S: Space>(
         let pairs = pairs.iter();
         pairs.filter_map(|names| search.examine(*names)).collect()
     };
-    let met: Vec<Meeting<S>> = if motion.parallel {
-        let parts = candidates.par_chunks(CHUNK).map(examine);
-        let parts: Vec<_> = parts.collect();
-        parts.into_iter().flatten().collect()
-    } else {
-        examine(&candidates)
-    };
+    let divide = threads::pays(motion.parallel, candidates.len(), COST);
+    let met = threads::map_chunks(divide, &candidates, CHUNK, |_, pairs| examine(pairs));
     let (mut found, mut meetings) = (Vec::new(), Vec::new());
-    for meeting in met {
+    for meeting in met.into_iter().flatten() {
         let known = found.len();
         found.extend(meeting.contacts);
         if let Some(at) = meeting.at {

@@ -134,7 +134,14 @@ pub struct ContactTolerances {
 pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns the core of a rotated body.
     #[must_use]
-    fn turned(&self, rotation: &S::Rotation) -> Self;
+    fn turned(&self, rotation: &S::Rotation) -> Self {
+        let mut out = self.clone();
+        self.turn_into(rotation, &mut out);
+        out
+    }
+
+    /// As [`Core::turned`], in the place of another core, whose buffers are used again.
+    fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);
 
     /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
     /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).

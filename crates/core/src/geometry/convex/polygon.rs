@@ -210,13 +210,13 @@ impl Polygon {
 }
 
 impl Core<Dim2> for Polygon {
-    fn turned(&self, rotation: &f64) -> Self {
+    fn turn_into(&self, rotation: &f64, out: &mut Self) {
         let (s, c) = rotation.sin_cos();
         let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);
-        Self {
-            points: self.points.iter().map(turn).collect(),
-            normals: self.normals.iter().map(turn).collect(),
-        }
+        out.points.clear();
+        out.points.extend(self.points.iter().map(turn));
+        out.normals.clear();
+        out.normals.extend(self.normals.iter().map(turn));
     }
 
     fn contact_points(

@@ -153,12 +153,14 @@ pub fn across(v: &V) -> V {
 }
 
 impl Core<Dim3> for Polyhedron {
-    fn turned(&self, rotation: &UnitQuaternion<f64>) -> Self {
+    fn turn_into(&self, rotation: &UnitQuaternion<f64>, out: &mut Self) {
         let turn = rotation.to_rotation_matrix();
-        Self {
-            points: self.points.iter().map(|p| turn * p).collect(),
-            normals: self.normals.iter().map(|n| turn * n).collect(),
-            topology: Arc::clone(&self.topology),
+        out.points.clear();
+        out.points.extend(self.points.iter().map(|p| turn * p));
+        out.normals.clear();
+        out.normals.extend(self.normals.iter().map(|n| turn * n));
+        if !Arc::ptr_eq(&self.topology, &out.topology) {
+            out.topology = Arc::clone(&self.topology);
         }
     }
 
