@@ -287,8 +287,24 @@ fn find_closing<S: Space>(
         stage,
     };
     let examine = |pairs: &[(u32, u32)]| -> Vec<Meeting<S>> {
+        // Pairs and contacts are in the same order.
+        let contacts = &search.network.contacts;
+        let mut at = pairs.first().map_or(0, |first| {
+            contacts.partition_point(|c| c.key.pair() < *first)
+        });
+        let mut of_pair = |names: (u32, u32)| {
+            while contacts.get(at).is_some_and(|c| c.key.pair() < names) {
+                at += 1;
+            }
+            let first = at;
+            while contacts.get(at).is_some_and(|c| c.key.pair() == names) {
+                at += 1;
+            }
+            &contacts[first..at]
+        };
         let pairs = pairs.iter();
-        pairs.filter_map(|names| search.examine(*names)).collect()
+        let examine = |names: &(u32, u32)| search.examine(*names, of_pair(*names));
+        pairs.filter_map(examine).collect()
     };
     let divide = threads::pays(motion.parallel, candidates.len(), COST);
     let met = threads::map_chunks(divide, &candidates, CHUNK, |_, pairs| examine(pairs));
@@ -384,13 +400,16 @@ impl<'a, S: Space> Search<'a, S> {
     }
 
     /// Follows a pair through the step, if its relative motion is fast: its contacts if it meets, or that it is to be reported.
-    fn examine(&self, names: (u32, u32)) -> Option<Meeting<S>> {
+    fn examine(&self, names: (u32, u32), contacts: &[Contact<S>]) -> Option<Meeting<S>> {
+        if self.stage == Stage::Before && !contacts.is_empty() {
+            return None;
+        }
         let pair = &self.fast_pair(names)?;
         let sweep = self.sweep;
         let [one, other] = pair.materials();
         let law = self.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
-        let margin = margin(self.network, names, pair, self.stage, compliant)?;
+        let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
         if sweep.course(pair, margin.deepest) == Course::Clear {
             return None;
         }
