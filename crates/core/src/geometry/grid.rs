@@ -8,36 +8,48 @@
 use super::cells::Grid;
 use super::periodic::Periodic;
 use super::space::VectorLike;
+use crate::threads;
+
+/// Balls per task.
+const CHUNK: usize = 1024;
+/// Time of a ball (ns).
+const COST: f64 = 300.0;
 
 /// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a, b).
 ///
 /// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is linear in
-/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse).
+/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse). Balls are
+/// distributed over threads if `parallel`; the results are the same.
 pub fn pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
     reach: f64,
     periodic: &Periodic,
-    keep: impl Fn(u32, u32) -> bool,
+    parallel: bool,
+    keep: impl Fn(u32, u32) -> bool + Sync,
 ) -> Vec<(u32, u32)> {
     let n = centres.len();
     if n < 2 {
         return Vec::new();
     }
     let levels = Levels::new(centres, radii, reach, periodic);
-    let mut out = Vec::with_capacity(4 * n);
-    let mut near = Vec::new();
-    for a in 0..n as u32 {
-        let first = out.len();
-        levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
-            let pair = (a.min(b), a.max(b));
-            if keep(pair.0, pair.1) {
-                out.push(pair);
-            }
-            true
-        });
-        out[first..].sort_unstable();
-    }
+    let divide = threads::pays(parallel, n, COST);
+    let parts = threads::map_ranges(divide, n, CHUNK, |balls| {
+        let (mut out, mut near) = (Vec::with_capacity(8 * balls.len()), Vec::new());
+        for a in balls {
+            let (a, first) = (a as u32, out.len());
+            levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+                let pair = (a.min(b), a.max(b));
+                if keep(pair.0, pair.1) {
+                    out.push(pair);
+                }
+                true
+            });
+            out[first..].sort_unstable();
+        }
+        out
+    });
+    let mut out = parts.concat();
     if levels.levels.len() > 1 {
         out.sort_unstable();
     }
@@ -269,7 +281,7 @@ mod tests {
                 .map(|_| Vector2::new(rng.random_range(-2.0..12.0), rng.random_range(0.0..4.0)))
                 .collect();
             assert_eq!(
-                pairs(&x2, &r, 0.05, &periodic, |_, _| true),
+                pairs(&x2, &r, 0.05, &periodic, false, |_, _| true),
                 brute(&x2, &r, 0.05, &periodic)
             );
             let x3: Vec<_> = x2
@@ -277,7 +289,7 @@ mod tests {
                 .map(|p| Vector3::new(p.x, p.y * 0.3, p.x * 0.1))
                 .collect();
             assert_eq!(
-                pairs(&x3, &r, 0.05, &periodic, |_, _| true),
+                pairs(&x3, &r, 0.05, &periodic, false, |_, _| true),
                 brute(&x3, &r, 0.05, &periodic)
             );
         }
@@ -307,7 +319,7 @@ mod tests {
                     };
                     let (x, mut r) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector2::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, every);
+                    let found = pairs(&x, &r, reach, &periodic, true, every);
                     assert_eq!(found, brute(&x, &r, reach, &periodic));
                     assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
                     // One large ball among many small ones of equal size.
@@ -315,7 +327,7 @@ mod tests {
                     r[137] = 1.0;
                     let (x, _) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector3::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, every);
+                    let found = pairs(&x, &r, reach, &periodic, true, every);
                     assert_eq!(found, brute(&x, &r, reach, &periodic));
                     assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
                 }
@@ -351,7 +363,7 @@ mod tests {
             let periodic = Periodic {
                 period: [period, None, None],
             };
-            let found = pairs(&x, &r, reach, &periodic, |_, _| true).len() as f64;
+            let found = pairs(&x, &r, reach, &periodic, false, |_, _| true).len() as f64;
             let most = most_pairs(&x, &r, reach, &periodic);
             assert!(found <= most && most > last, "{found} of {most}");
             last = most;
@@ -369,7 +381,7 @@ mod tests {
         assert_eq!(none, None);
         x[1000..2000].fill(Vector2::new(500.25, 0.0));
         let radii = vec![0.6; 3000];
-        let found = pairs(&x, &radii, 0.0, &Periodic::default(), |_, _| true).len();
+        let found = pairs(&x, &radii, 0.0, &Periodic::default(), false, |_, _| true).len();
         assert!(found > 499_500);
         let pile = |most| more_than(&x, &radii, 0.0, &Periodic::default(), most, |_, _| true);
         assert_eq!(pile(found), None);
@@ -395,7 +407,9 @@ mod tests {
             Vector2::new(1e9, 1e9 + 1e-3),
         ];
         assert_eq!(
-            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), |_, _| true),
+            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), false, |_, _| {
+                true
+            }),
             vec![(1, 2)]
         );
     }

@@ -22,7 +22,7 @@ use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
-use neighbours::NeighbourSearch;
+use neighbours::{NeighbourSearch, joined};
 use renewal::{Scene, renew_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
@@ -86,7 +86,13 @@ pub fn detect<S: Space>(
     if must_rebuild(network, shapes, bodies, &centres) {
         let velocities = bodies.velocity.iter().copied();
         let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-        rebuild(network, shapes, bodies, laws, &centres, &velocities, h);
+        let motion = Motion {
+            velocities: &velocities,
+            time,
+            h,
+            parallel,
+        };
+        rebuild(network, shapes, bodies, laws, &centres, &motion);
     }
     let scene = Scene {
         shapes,
@@ -161,21 +167,21 @@ fn rebuild<S: Space>(
     bodies: &Bodies<S>,
     laws: &LawTable,
     centres: &[S::Vector],
-    velocities: &[(S::Vector, S::Spin)],
-    h: f64,
+    motion: &Motion<S>,
 ) {
-    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres);
-    let mut pairs = search.pairs_of_balls();
-    let turning = search.add_pairs_with_surfaces(&mut pairs, &network.widened, velocities, h);
+    // The old list makes room for the new one.
+    network.candidates = Vec::new();
+    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres, motion.parallel);
+    let pairs = search.pairs_of_balls();
+    let (mut more, turning) =
+        search.pairs_with_surfaces(&network.widened, motion.velocities, motion.h);
     // A bond may be longer than the search distance.
     let held = |c: &&Contact<S>| {
         network.bond(c).is_some_and(|b| b.intact())
             && !c.bodies.iter().any(|b| bodies.removed[*b as usize])
     };
-    pairs.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
-    pairs.sort_unstable();
-    pairs.dedup();
-    network.candidates = pairs;
+    more.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
+    network.candidates = joined(pairs, more);
     network.turning = turning;
     network.seen_at.clear();
     network.seen_at.extend(watched(shapes, bodies, centres));

@@ -19,6 +19,8 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) cores: &'a [S::Core],
     /// Origins and rotations of the surfaces.
     pub(super) frames: &'a [(S::Vector, S::Rotation)],
+    /// See [`simple_balls`].
+    pub(super) simple: &'a [bool],
     pub(super) laws: &'a LawTable,
     pub(super) time: f64,
     pub(super) h: f64,
@@ -109,18 +111,12 @@ impl<S: Space> Narrow<'_, S> {
             S::Vector::from_slice(&[1.0])
         };
         let (i, j) = (p.body as usize, q.body as usize);
-        let simple = |ball: &Ball<S>, b: usize| {
-            (ball.offset == S::Vector::zero()
-                && self.bodies.length[b] == ball.radius
-                && self.isotropic(b))
-                || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::zero())
-        };
         let Some(law) = self.laws.get(p.material, q.material) else {
             return;
         };
         let lengths = &self.bodies.length;
         let size = reduced_radius([p.radius, q.radius], [p.size(lengths), q.size(lengths)]);
-        let central = simple(p, i) && simple(q, j);
+        let central = self.simple[a as usize] && self.simple[b as usize];
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
         } else {
@@ -160,12 +156,6 @@ impl<S: Space> Narrow<'_, S> {
             Some(k) => found.renew_in_place(self, k, &touch),
             None => found.add(self, &touch, size),
         }
-    }
-
-    /// Returns whether a body's response to impulses is isotropic.
-    fn isotropic(&self, b: usize) -> bool {
-        let mass = &self.bodies.inverse_mass[b];
-        self.bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
     }
 
     fn ball_on_surface(&self, a: u32, b: u32, scratch: &mut Scratch<S>, found: &mut Found<S>) {
@@ -277,7 +267,7 @@ impl<S: Space> Narrow<'_, S> {
                 },
                 bodies: [ball.body, surface.body],
                 law,
-                central: still && centred && self.isotropic(i),
+                central: still && centred && is_isotropic(self.bodies, i),
                 vertex_contact: alone.is_some_and(|f| f != touch.feature),
                 geometry: ContactGeometry {
                     gap,
@@ -310,6 +300,25 @@ impl<S: Space> Narrow<'_, S> {
         };
         network.alert + old.iter().filter_map(stretch).fold(0.0, f64::max)
     }
+}
+
+/// Returns whether a body's response to impulses is isotropic.
+fn is_isotropic<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
+    let mass = &bodies.inverse_mass[b];
+    bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
+}
+
+/// Returns of each ball whether it is a whole body whose response is isotropic, or belongs to one that stands still: contacts of two
+/// such balls are central.
+pub(super) fn simple_balls<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<bool> {
+    let simple = |ball: &Ball<S>| {
+        let b = ball.body as usize;
+        (ball.offset == S::Vector::zero()
+            && bodies.length[b] == ball.radius
+            && is_isotropic(bodies, b))
+            || (bodies.immovable(b) && bodies.spin[b] == S::Spin::zero())
+    };
+    shapes.balls.iter().map(simple).collect()
 }
 
 /// Whether no touch has the feature of an old contact.

@@ -118,16 +118,16 @@ pub fn report_first_move<S: Space>(
 ) {
     let velocities = bodies.velocity.iter().copied();
     let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-    if network.seen_at.is_empty() {
-        let centres = centres(shapes, bodies);
-        rebuild(network, shapes, bodies, laws, &centres, &velocities, length);
-    }
     let motion = Motion {
         velocities: &velocities,
         time,
         h: length,
         parallel: false,
     };
+    if network.seen_at.is_empty() {
+        let centres = centres(shapes, bodies);
+        rebuild(network, shapes, bodies, laws, &centres, &motion);
+    }
     report_passing(network, shapes, bodies, laws, &motion);
 }
 
@@ -173,15 +173,7 @@ fn widen<S: Space>(
         };
         let centres = centres(shapes, bodies);
         limit(network, shapes, &centres);
-        rebuild(
-            network,
-            shapes,
-            bodies,
-            laws,
-            &centres,
-            motion.velocities,
-            motion.h,
-        );
+        rebuild(network, shapes, bodies, laws, &centres, motion);
         let looked = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
         let beyond = |b: &usize| need(&travels[*b]) > looked(*b);
         let farthest = (0..bodies.len())
@@ -278,11 +270,23 @@ fn find_closing<S: Space>(
         alert: network.alert,
     };
     let fast = network.fast;
+    let balls = shapes.balls.iter().map(|b| b.body);
+    let pieces = shapes.pieces.iter().map(|p| p.body);
+    let of = balls.chain(pieces);
+    let of = of.chain(shapes.surfaces.iter().map(|s| s.body));
     let search = Search {
         network,
         sweep: &sweep,
         laws,
-        travels: &travels,
+        travels: of.map(|b| travels[b as usize]).collect(),
+        // A pair with NaN is followed, and reported.
+        farthest: travels.iter().fold(0.0, |far, x| {
+            if *x <= far || f64::is_nan(far) {
+                far
+            } else {
+                *x
+            }
+        }),
         turning,
         stage,
     };
@@ -303,7 +307,10 @@ fn find_closing<S: Space>(
             &contacts[first..at]
         };
         let pairs = pairs.iter();
-        let examine = |names: &(u32, u32)| search.examine(*names, of_pair(*names));
+        let examine = |names: &(u32, u32)| {
+            let pair = search.fast_pair(*names)?;
+            search.examine(*names, &pair, of_pair(*names))
+        };
         pairs.filter_map(examine).collect()
     };
     let divide = threads::pays(motion.parallel, candidates.len(), COST);
@@ -353,8 +360,9 @@ struct Search<'a, S: Space> {
     network: &'a Network<S>,
     sweep: &'a Sweep<'a, S>,
     laws: &'a LawTable,
-    /// Displacement of each body in the step (m).
-    travels: &'a [f64],
+    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all bodies.
+    travels: Vec<f64>,
+    farthest: f64,
     /// Whether a surface moves by rotation.
     turning: bool,
     stage: Stage,
@@ -386,9 +394,23 @@ impl<'a, S: Space> Search<'a, S> {
         } else {
             self.network.fast
         };
-        let travel = |name: u32| self.travels[body_of(self.sweep.shapes, name)];
-        if travel(names.0) + travel(names.1) <= slow && !turns {
-            return None;
+        if !turns {
+            let [balls, pieces] = [
+                self.sweep.shapes.balls.len(),
+                self.sweep.shapes.pieces.len(),
+            ];
+            let travel = |name: u32| {
+                let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
+                let first = match name & (Key::PIECE | Key::SURFACE) {
+                    0 => 0,
+                    Key::PIECE => balls,
+                    _ => balls + pieces,
+                };
+                self.travels[first + k]
+            };
+            if 2.0 * self.farthest <= slow || travel(names.0) + travel(names.1) <= slow {
+                return None;
+            }
         }
         let pair = self.sweep.pair(names);
         // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
@@ -399,12 +421,13 @@ impl<'a, S: Space> Search<'a, S> {
         }
     }
 
-    /// Follows a pair through the step, if its relative motion is fast: its contacts if it meets, or that it is to be reported.
-    fn examine(&self, names: (u32, u32), contacts: &[Contact<S>]) -> Option<Meeting<S>> {
-        if self.stage == Stage::Before && !contacts.is_empty() {
-            return None;
-        }
-        let pair = &self.fast_pair(names)?;
+    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that it is to be reported.
+    fn examine(
+        &self,
+        names: (u32, u32),
+        pair: &Pair<S>,
+        contacts: &[Contact<S>],
+    ) -> Option<Meeting<S>> {
         let sweep = self.sweep;
         let [one, other] = pair.materials();
         let law = self.laws.get(one, other);

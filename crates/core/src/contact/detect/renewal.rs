@@ -1,7 +1,7 @@
 //! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the old ones, so that a
 //! second list is not needed.
 
-use super::narrow::Narrow;
+use super::narrow::{Narrow, simple_balls};
 use super::{LawTable, drop_contact};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
@@ -274,6 +274,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     let frame =
         |s: &crate::geometry::shape::Carried<S>| super::frame(s.body, &s.offset, scene.bodies);
     let frames: Vec<_> = surfaces.map(frame).collect();
+    let simple = simple_balls(scene.shapes, scene.bodies);
     let kind = usize::from(!(scene.shapes.pieces.is_empty() && frames.is_empty()));
     let divide = threads::pays(parallel, candidates.len(), COST[kind]);
     let batch = if divide { BATCH } else { 1 };
@@ -293,6 +294,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
             centres: scene.centres,
             cores: &cores,
             frames: &frames,
+            simple: &simple,
             laws: scene.laws,
             time: scene.time,
             h: scene.h,

@@ -22,6 +22,8 @@ pub struct Polygon {
     normals: Vec<Vector2<f64>>,
     /// Least distance of a side from the origin (m), slightly less for rounding; none if that is outside. Rotation keeps it.
     inner: f64,
+    /// Distance of the farthest corner from the origin (m), up to rounding.
+    far: f64,
 }
 
 /// Reason why points do not form a convex polygon.
@@ -135,6 +137,7 @@ impl Polygon {
             } else {
                 f64::NEG_INFINITY
             },
+            far,
         }
     }
 
@@ -171,13 +174,19 @@ impl Polygon {
 
     /// Returns the two ends of a side (m).
     pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
-        (self.points[k], self.points[(k + 1) % self.points.len()])
+        let next = if k + 1 == self.points.len() { 0 } else { k + 1 };
+        (self.points[k], self.points[next])
     }
 
     /// Returns the distance of the farthest corner from the origin (m).
     pub fn farthest(&self) -> f64 {
         let squared = self.points.iter().map(|p| p.norm_squared());
         squared.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Returns the largest error of rounding of a distance to another polygon near it, with its centre at `apart` (m).
+    pub(super) fn rounding(&self, other: &Self, apart: &Vector2<f64>) -> f64 {
+        ROUNDING * (self.far + other.far + apart.amax())
     }
 
     /// Returns the radius of a circle about the origin within the polygon (m); minus infinity if the origin is not.
@@ -249,7 +258,7 @@ impl Core<Dim2> for Polygon {
         out.points.extend(self.points.iter().map(turn));
         out.normals.clear();
         out.normals.extend(self.normals.iter().map(turn));
-        out.inner = self.inner;
+        (out.inner, out.far) = (self.inner, self.far);
     }
 
     fn contact_points(

@@ -42,11 +42,12 @@ pub fn contact_points(
         }
     };
     if best > 0.0 && !tolerances.held && !on_side(tolerances.slack) {
-        let corners = nearest_corners(a, b, apart);
-        let (i, j, d) = corners;
+        let rounding = a.rounding(b, apart);
+        let (i, j, d) = nearest_corners(a, b, apart, side_b, rounding);
         let (distance, slack) = (d.norm(), tolerances.slack);
         let corner = distance * distance - best * best > slack * slack;
-        if corner && distance < nearest_side(a, b, apart) {
+        let nearer = |of, to, apart: &V, side| is_nearer(of, to, apart, side, distance, rounding);
+        if corner && !nearer(a, b, &-apart, side_a) && !nearer(b, a, apart, side_b) {
             if distance <= reach {
                 let normal = d / distance;
                 let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
@@ -121,14 +122,19 @@ fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
         let along = to.points().iter().map(|p| p.dot(&n));
         along.fold(f64::INFINITY, |low, x| if x < low { x } else { low }) + height
     };
-    let (mut first, mut highest) = (0, f64::NEG_INFINITY);
+    let (mut first, mut highest, mut second) = (0, f64::NEG_INFINITY, f64::NEG_INFINITY);
     for k in 0..normals.len() {
         let height = heights(k);
         if height > highest {
-            (first, highest) = (k, height);
+            (first, highest, second) = (k, height, highest);
+        } else if height > second {
+            second = height;
         }
     }
     let (mut best, inner) = ((full(first, highest), first), to.inner());
+    if second - inner < best.0 {
+        return best;
+    }
     for k in 0..normals.len() {
         let height = heights(k);
         if k == first || height - inner < best.0 {
@@ -156,38 +162,68 @@ fn lies_on_side(of: &Polygon, to: &Polygon, k: usize, apart: &V, best: f64, slac
     })
 }
 
-/// Returns the two nearest corners and the vector from that of `b` to that of `a`.
-fn nearest_corners(a: &Polygon, b: &Polygon, apart: &V) -> (usize, usize, V) {
-    let mut best = (0, 0, a.points()[0] + apart - b.points()[0]);
+/// Returns the two nearest corners and the vector from that of `b` to that of `a`. A corner is at least as far from `b` as
+/// from the line through a side of it.
+fn nearest_corners(
+    a: &Polygon,
+    b: &Polygon,
+    apart: &V,
+    side: usize,
+    rounding: f64,
+) -> (usize, usize, V) {
+    let (from, normal) = (b.points()[side], b.normals()[side]);
+    let height = |p: &V| (p + apart - from).dot(&normal);
+    let (mut lowest, mut least) = (a.points()[0], f64::INFINITY);
+    for p in a.points() {
+        let height = height(p);
+        if height < least {
+            (lowest, least) = (*p, height);
+        }
+    }
+    let squared = b
+        .points()
+        .iter()
+        .map(|q| (lowest + apart - q).norm_squared());
+    let limit = squared.fold(f64::INFINITY, f64::min).sqrt() + rounding;
+    let mut best = (0, 0, V::repeat(f64::INFINITY));
+    let mut nearest = f64::INFINITY;
     for (i, p) in a.points().iter().enumerate() {
+        if height(p) > limit {
+            continue;
+        }
         for (j, q) in b.points().iter().enumerate() {
             let d = p + apart - q;
-            if d.norm_squared() < best.2.norm_squared() {
-                best = (i, j, d);
+            let squared = d.norm_squared();
+            if squared < nearest {
+                (best, nearest) = ((i, j, d), squared);
             }
         }
     }
     best
 }
 
-/// Returns the smallest distance between a corner of one and the interior of a side of the other.
-fn nearest_side(a: &Polygon, b: &Polygon, apart: &V) -> f64 {
-    let one = |of: &Polygon, to: &Polygon, apart: &V| {
-        let mut best = f64::INFINITY;
-        for k in 0..of.points().len() {
+/// Returns whether the inside of a side of `of` is as near to a corner of `to` as `distance` (m). A corner is at least as far
+/// from `of` as from the line through one of its sides.
+fn is_nearer(
+    of: &Polygon,
+    to: &Polygon,
+    apart: &V,
+    side: usize,
+    distance: f64,
+    rounding: f64,
+) -> bool {
+    let (origin, normal) = (of.points()[side], of.normals()[side]);
+    let limit = distance + rounding;
+    let near = |p: &&V| (*p + apart - origin).dot(&normal) <= limit;
+    to.points().iter().filter(near).any(|p| {
+        (0..of.points().len()).any(|k| {
             let (from, end) = of.side(k);
             let along = end - from;
-            for p in to.points() {
-                let d = p + apart - from;
-                let s = d.dot(&along);
-                if s > 0.0 && s < along.norm_squared() {
-                    best = best.min(d.dot(&of.normals()[k]).abs());
-                }
-            }
-        }
-        best
-    };
-    one(a, b, &-apart).min(one(b, a, apart))
+            let d = p + apart - from;
+            let s = d.dot(&along);
+            s > 0.0 && s < along.norm_squared() && d.dot(&of.normals()[k]).abs() <= distance
+        })
+    })
 }
 
 /// An end of the overlap of two sides.
@@ -231,7 +267,8 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         let p = other.points()[corner] + apart;
         ((p - from).dot(&along), p, corner)
     };
-    let (low, high) = (place((facing + 1) % n), place(facing));
+    let next = if facing + 1 == n { 0 } else { facing + 1 };
+    let (low, high) = (place(next), place(facing));
     let (low, high) = if low.0 <= high.0 {
         (low, high)
     } else {
