@@ -9,6 +9,7 @@ use super::cells::Grid;
 use super::periodic::Periodic;
 use super::space::VectorLike;
 use crate::threads;
+use std::ops::Range;
 
 /// Balls per task.
 const CHUNK: usize = 1024;
@@ -109,7 +110,7 @@ pub fn most_pairs<V: VectorLike>(
     for (a, x) in centres.iter().enumerate() {
         for level in levels.of(a as u32) {
             level.grid.around(x, periodic, &mut near);
-            let seen: usize = near.iter().map(|cell| level.grid.balls(*cell).len()).sum();
+            let seen: usize = near.iter().map(|row| row.len()).sum();
             sum += if levels.is_own(a as u32, level) {
                 0.5 * (seen as f64 - 1.0)
             } else {
@@ -128,24 +129,38 @@ const CROWD: f64 = 8.0;
 const MAX_LEVELS: usize = 31;
 
 /// Balls sorted by size into levels with a grid each, from small to large.
-struct Levels {
-    levels: Vec<Level>,
+struct Levels<V> {
+    levels: Vec<Level<V>>,
     /// Level of each ball; empty if there is only one.
     own: Vec<u8>,
 }
 
-struct Level {
+struct Level<V> {
     place: usize,
     grid: Grid,
+    /// Centres and radii of the balls, cell by cell (m).
+    places: Vec<(V, f64)>,
 }
 
-impl Levels {
-    fn new<V: VectorLike>(centres: &[V], radii: &[f64], reach: f64, periodic: &Periodic) -> Self {
+impl<V: VectorLike> Level<V> {
+    fn new(place: usize, grid: Grid, centres: &[V], radii: &[f64]) -> Self {
+        let at = |b: &u32| (centres[*b as usize], radii[*b as usize]);
+        let places = grid.sorted().iter().map(at).collect();
+        Self {
+            place,
+            grid,
+            places,
+        }
+    }
+}
+
+impl<V: VectorLike> Levels<V> {
+    fn new(centres: &[V], radii: &[f64], reach: f64, periodic: &Periodic) -> Self {
         let widest = radii.iter().copied().fold(0.0, f64::max);
         let width = |radius: f64| 2.0 * radius + reach;
         let grid = Grid::new(centres, None, width(widest), periodic);
         let one = |grid| Self {
-            levels: vec![Level { place: 0, grid }],
+            levels: vec![Level::new(0, grid, centres, radii)],
             own: Vec::new(),
         };
         if grid.crowd() <= CROWD {
@@ -174,10 +189,8 @@ impl Levels {
             let members = &members[*class];
             let widest = members.iter().map(|b| radii[*b as usize]);
             let widest = widest.fold(0.0, f64::max);
-            Level {
-                place,
-                grid: Grid::new(centres, Some(members), width(widest), periodic),
-            }
+            let grid = Grid::new(centres, Some(members), width(widest), periodic);
+            Level::new(place, grid, centres, radii)
         });
         let levels = levels.collect();
         let place = |class: &usize| filled.iter().position(|f| f == class).unwrap_or(0) as u8;
@@ -188,7 +201,7 @@ impl Levels {
     }
 
     /// Returns the levels that a ball searches: its own and the larger ones.
-    fn of(&self, ball: u32) -> &[Level] {
+    fn of(&self, ball: u32) -> &[Level<V>] {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         &self.levels[usize::from(own)..]
     }
@@ -196,28 +209,29 @@ impl Levels {
     /// Calls `each` with the balls within the search distance of `a` that it is paired with, until it
     /// returns false.
     #[allow(clippy::too_many_arguments)]
-    fn near<V: VectorLike>(
+    fn near(
         &self,
         a: u32,
         centres: &[V],
         radii: &[f64],
         reach: f64,
         periodic: &Periodic,
-        cells: &mut Vec<usize>,
+        rows: &mut Vec<Range<usize>>,
         mut each: impl FnMut(u32) -> bool,
     ) {
         let (xa, ra) = (centres[a as usize], radii[a as usize]);
         for level in self.of(a) {
-            level.grid.around(&xa, periodic, cells);
+            level.grid.around(&xa, periodic, rows);
             let own = self.is_own(a, level);
-            for &cell in cells.iter() {
-                for &b in level.grid.balls(cell) {
+            for row in rows.iter() {
+                let sorted = &level.grid.sorted()[row.clone()];
+                for (&b, (xb, rb)) in sorted.iter().zip(&level.places[row.clone()]) {
                     // Two balls of one level find each other twice.
                     if own && b <= a {
                         continue;
                     }
-                    let d = periodic.shortest(centres[b as usize] - xa);
-                    let limit = ra + radii[b as usize] + reach;
+                    let d = periodic.shortest(*xb - xa);
+                    let limit = ra + rb + reach;
                     if d.dot(&d) < limit * limit && !each(b) {
                         return;
                     }
@@ -240,7 +254,7 @@ impl Levels {
         })
     }
 
-    fn is_own(&self, ball: u32, level: &Level) -> bool {
+    fn is_own(&self, ball: u32, level: &Level<V>) -> bool {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         usize::from(own) == level.place
     }

@@ -19,8 +19,8 @@ pub(super) struct Narrow<'a, S: Space> {
     pub(super) cores: &'a [S::Core],
     /// Origins and rotations of the surfaces.
     pub(super) frames: &'a [(S::Vector, S::Rotation)],
-    /// See [`simple_balls`].
-    pub(super) simple: &'a [bool],
+    /// The balls.
+    pub(super) round: &'a [Round<S>],
     pub(super) laws: &'a LawTable,
     pub(super) time: f64,
     pub(super) h: f64,
@@ -81,14 +81,8 @@ impl<S: Space> Narrow<'_, S> {
     }
 
     fn ball_pair(&self, a: u32, b: u32, found: &mut Found<S>) {
-        let (p, q) = (
-            &self.shapes.balls[a as usize],
-            &self.shapes.balls[b as usize],
-        );
-        let d = self
-            .shapes
-            .periodic
-            .shortest(self.centres[a as usize] - self.centres[b as usize]);
+        let (p, q) = (&self.round[a as usize], &self.round[b as usize]);
+        let d = self.shapes.periodic.shortest(p.centre - q.centre);
         let old = found.old_of_balls((a, b));
         let sum = p.radius + q.radius;
         if sum == 0.0 {
@@ -110,25 +104,29 @@ impl<S: Space> Narrow<'_, S> {
         } else {
             S::Vector::from_slice(&[1.0])
         };
-        let (i, j) = (p.body as usize, q.body as usize);
         let Some(law) = self.laws.get(p.material, q.material) else {
             return;
         };
-        let lengths = &self.bodies.length;
-        let size = reduced_radius([p.radius, q.radius], [p.size(lengths), q.size(lengths)]);
-        let central = self.simple[a as usize] && self.simple[b as usize];
+        let size_of = |ball: u32| self.shapes.balls[ball as usize].size(&self.bodies.length);
+        let sizes = if p.radius > 0.0 && q.radius > 0.0 {
+            [p.radius, q.radius]
+        } else {
+            [size_of(a), size_of(b)]
+        };
+        let size = reduced_radius([p.radius, q.radius], sizes);
+        let central = p.simple && q.simple;
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
         } else {
-            let closest_point = self.centres[a as usize] - normal * p.radius;
-            let other = self.centres[b as usize] + normal * q.radius;
+            let closest_point = p.centre - normal * p.radius;
+            let other = q.centre + normal * q.radius;
             [
-                closest_point - self.bodies.position[i],
-                other - self.bodies.position[j],
+                closest_point - self.bodies.position[p.body as usize],
+                other - self.bodies.position[q.body as usize],
             ]
         };
         // A ball has its area where it touches the surface of a grain, not at the vertices beside that.
-        let vertex = |ball: &Ball<S>| {
+        let vertex = |ball: &Round<S>| {
             ball.radius == 0.0
                 && self
                     .bodies
@@ -308,17 +306,31 @@ fn is_isotropic<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
     bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
 }
 
-/// Returns of each ball whether it is a whole body whose response is isotropic, or belongs to one that stands still: contacts of two
-/// such balls are central.
-pub(super) fn simple_balls<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<bool> {
-    let simple = |ball: &Ball<S>| {
+/// What a pair of balls needs of either, side by side in memory.
+pub(super) struct Round<S: Space> {
+    centre: S::Vector,
+    radius: f64,
+    body: u32,
+    material: u16,
+    /// Whether it is a whole body whose response is isotropic, or belongs to one that stands still: contacts of two such balls are
+    /// central.
+    simple: bool,
+}
+
+impl<S: Space> Round<S> {
+    pub(super) fn new(ball: &Ball<S>, centre: S::Vector, bodies: &Bodies<S>) -> Self {
         let b = ball.body as usize;
-        (ball.offset == S::Vector::zero()
+        let whole = ball.offset == S::Vector::zero()
             && bodies.length[b] == ball.radius
-            && is_isotropic(bodies, b))
-            || (bodies.immovable(b) && bodies.spin[b] == S::Spin::zero())
-    };
-    shapes.balls.iter().map(simple).collect()
+            && is_isotropic(bodies, b);
+        Self {
+            centre,
+            radius: ball.radius,
+            body: ball.body,
+            material: ball.material,
+            simple: whole || (bodies.immovable(b) && bodies.spin[b] == S::Spin::zero()),
+        }
+    }
 }
 
 /// Whether no touch has the feature of an old contact.

@@ -1,7 +1,7 @@
 //! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the old ones, so that a
 //! second list is not needed.
 
-use super::narrow::{Narrow, simple_balls};
+use super::narrow::{Narrow, Round};
 use super::{LawTable, drop_contact};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
@@ -164,6 +164,13 @@ impl<'c, S: Space> Found<'c, S> {
 
     /// Adds the contact that continues the old contact `k` of the pair.
     pub fn renew(&mut self, narrow: &Narrow<S>, k: usize, touch: &Touch<S>) {
+        // Mostly it stays at its place, which still holds it.
+        if self.more.is_empty() && self.kept == self.read - self.old.len() + k {
+            let contact = &mut self.contacts[self.kept];
+            renew(narrow, contact, touch, &mut self.turned);
+            self.kept += 1;
+            return;
+        }
         let mut contact = self.old[k].clone();
         renew(narrow, &mut contact, touch, &mut self.turned);
         self.push(contact);
@@ -274,7 +281,9 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     let frame =
         |s: &crate::geometry::shape::Carried<S>| super::frame(s.body, &s.offset, scene.bodies);
     let frames: Vec<_> = surfaces.map(frame).collect();
-    let simple = simple_balls(scene.shapes, scene.bodies);
+    let balls = scene.shapes.balls.iter().zip(scene.centres);
+    let round = balls.map(|(ball, centre)| Round::new(ball, *centre, scene.bodies));
+    let round: Vec<_> = round.collect();
     let kind = usize::from(!(scene.shapes.pieces.is_empty() && frames.is_empty()));
     let divide = threads::pays(parallel, candidates.len(), COST[kind]);
     let batch = if divide { BATCH } else { 1 };
@@ -294,7 +303,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
             centres: scene.centres,
             cores: &cores,
             frames: &frames,
-            simple: &simple,
+            round: &round,
             laws: scene.laws,
             time: scene.time,
             h: scene.h,

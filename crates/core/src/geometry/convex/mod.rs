@@ -134,11 +134,7 @@ pub struct ContactTolerances {
 pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns the core of a rotated body.
     #[must_use]
-    fn turned(&self, rotation: &S::Rotation) -> Self {
-        let mut out = self.clone();
-        self.turn_into(rotation, &mut out);
-        out
-    }
+    fn turned(&self, rotation: &S::Rotation) -> Self;
 
     /// As [`Core::turned`], in the place of another core, whose buffers are used again.
     fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);

@@ -251,6 +251,16 @@ impl Polygon {
 }
 
 impl Core<Dim2> for Polygon {
+    fn turned(&self, rotation: &f64) -> Self {
+        let mut out = Self {
+            points: Vec::with_capacity(self.points.len()),
+            normals: Vec::with_capacity(self.normals.len()),
+            ..*self
+        };
+        self.turn_into(rotation, &mut out);
+        out
+    }
+
     fn turn_into(&self, rotation: &f64, out: &mut Self) {
         let (s, c) = rotation.sin_cos();
         let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);

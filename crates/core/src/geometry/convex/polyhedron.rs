@@ -153,6 +153,16 @@ pub fn across(v: &V) -> V {
 }
 
 impl Core<Dim3> for Polyhedron {
+    fn turned(&self, rotation: &UnitQuaternion<f64>) -> Self {
+        let mut out = Self {
+            points: Vec::with_capacity(self.points.len()),
+            normals: Vec::with_capacity(self.normals.len()),
+            topology: Arc::clone(&self.topology),
+        };
+        self.turn_into(rotation, &mut out);
+        out
+    }
+
     fn turn_into(&self, rotation: &UnitQuaternion<f64>, out: &mut Self) {
         let turn = rotation.to_rotation_matrix();
         out.points.clear();
