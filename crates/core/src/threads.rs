@@ -18,6 +18,14 @@ pub fn divide_from(nanoseconds: Option<u64>) {
     LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
 }
 
+/// Returns the size of the chunks of a loop whose results do not depend on it: smaller ones where all loops are divided.
+pub fn any_size(size: usize) -> usize {
+    match LEAST.load(Ordering::Relaxed) {
+        0 => size.div_ceil(16),
+        _ => size,
+    }
+}
+
 /// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller allows several threads.
 #[inline]
 pub fn pays(parallel: bool, items: usize, each: f64) -> bool {

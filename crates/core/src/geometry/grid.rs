@@ -35,7 +35,7 @@ pub fn pairs<V: VectorLike>(
     }
     let levels = Levels::new(centres, radii, reach, periodic);
     let divide = threads::pays(parallel, n, COST);
-    let parts = threads::map_ranges(divide, n, CHUNK, |balls| {
+    let parts = threads::map_ranges(divide, n, threads::any_size(CHUNK), |balls| {
         let (mut out, mut near) = (Vec::with_capacity(8 * balls.len()), Vec::new());
         for a in balls {
             let (a, first) = (a as u32, out.len());

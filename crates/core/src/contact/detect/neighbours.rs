@@ -127,6 +127,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, &self.shapes.periodic));
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
         let divide = threads::pays(self.parallel, surfaces.len() * all.len(), COST);
+        let size_of_task = threads::any_size(CHUNK);
         let of_surface = |s: usize| {
             let surface = &surfaces[s];
             let vertices = surface.shape.moving_vertices().iter();
@@ -151,7 +152,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
                 }
                 _ => &all,
             };
-            let found = threads::map_chunks(divide, candidates, CHUNK, |_, candidates| {
+            let found = threads::map_chunks(divide, candidates, size_of_task, |_, candidates| {
                 self.near_surface(&search, candidates)
             });
             let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };

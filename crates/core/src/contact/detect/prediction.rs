@@ -314,7 +314,9 @@ fn find_closing<S: Space>(
         pairs.filter_map(examine).collect()
     };
     let divide = threads::pays(motion.parallel, candidates.len(), COST);
-    let met = threads::map_chunks(divide, &candidates, CHUNK, |_, pairs| examine(pairs));
+    let met = threads::map_chunks(divide, &candidates, threads::any_size(CHUNK), |_, pairs| {
+        examine(pairs)
+    });
     let (mut found, mut meetings) = (Vec::new(), Vec::new());
     for meeting in met.into_iter().flatten() {
         let known = found.len();

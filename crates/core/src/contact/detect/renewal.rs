@@ -286,6 +286,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     let round: Vec<_> = round.collect();
     let kind = usize::from(!(scene.shapes.pieces.is_empty() && frames.is_empty()));
     let divide = threads::pays(parallel, candidates.len(), COST[kind]);
+    let size = threads::any_size(CHUNK[kind]);
     let batch = if divide { BATCH } else { 1 };
     let mut renewal = Renewal {
         contacts: std::mem::take(&mut network.contacts),
@@ -294,7 +295,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     };
     let mut rest = &candidates[..];
     while !rest.is_empty() {
-        let (pairs, after) = rest.split_at(rest.len().min(batch * CHUNK[kind]));
+        let (pairs, after) = rest.split_at(rest.len().min(batch * size));
         rest = after;
         let narrow = Narrow {
             network,
@@ -310,7 +311,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
         };
         let mut tasks = Vec::with_capacity(batch);
         let mut contacts = &mut renewal.contacts[renewal.read..];
-        let mut chunks = pairs.chunks(CHUNK[kind]).peekable();
+        let mut chunks = pairs.chunks(size).peekable();
         while let Some(chunk) = chunks.next() {
             let next = chunks.peek().map_or(after.first(), |next| next.first());
             let of_chunk = next.map_or(contacts.len(), |next| first_from(contacts, next));
@@ -358,7 +359,8 @@ fn turned_cores<S: Space>(
         cores = pieces.iter().map(|p| p.core.clone()).collect();
     }
     let divide = threads::pays(parallel, pieces.len(), TURN);
-    threads::for_chunks(divide, &mut cores, CHUNK[1], |first, cores| {
+    let size = threads::any_size(CHUNK[1]);
+    threads::for_chunks(divide, &mut cores, size, |first, cores| {
         for (core, piece) in cores.iter_mut().zip(&pieces[first..]) {
             let rotation = &scene.bodies.rotation[piece.body as usize];
             piece.core.turn_into(rotation, core);
