@@ -245,6 +245,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
             &radii,
             reach,
             &s.shapes.periodic,
+            s.options.solver.parallel,
             all,
         ));
         list = list.min(clock.elapsed().as_secs_f64());

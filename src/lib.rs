@@ -82,7 +82,8 @@ pub mod shipped;
 pub mod trade;
 
 pub use fretwork_core::{
-    bodies, certify, contact, energy, fields, geometry, laws, process, program, solve, step, wear,
+    bodies, certify, contact, energy, fields, geometry, laws, process, program, solve, step,
+    threads, wear,
 };
 pub use fretwork_elastic as elastic;
 pub use fretwork_plot as report;

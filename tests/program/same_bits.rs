@@ -1,12 +1,13 @@
-//! The same input gives the same bits: every shipped case, twice and on two threads. Contacts in another order are another
+//! The same input gives the same bits: every shipped case, twice and on two threads and three, and all shapes in motion. Contacts in another order are another
 //! path of the solver: in a hyperstatic set of contacts it ends in other forces, whose sums are compared instead.
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::VectorLike;
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Dimensional, Scene};
-use fretwork::scene::{Loaded, load};
+use fretwork::scene::{Loaded, load, load_text};
 use fretwork::step::Simulation;
+use fretwork::threads::divide_from;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -56,6 +57,8 @@ fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u
         .num_threads(threads)
         .build()
         .unwrap();
+    // Small scenes too.
+    divide_from((threads > 1).then_some(0));
     pool.install(|| match built(loaded) {
         Scene::Dim2(mut b) => {
             b.simulation.options.solver.parallel = threads > 1;
@@ -88,8 +91,120 @@ fn all_cases_repeat(time: Duration) {
         assert!(first.len() > 4);
         let again = bits(&loaded, 1, Ok(steps)).0;
         assert!(first == again, "{name}: another run, other bits");
-        let two = bits(&loaded, 2, Ok(steps)).0;
-        assert!(first == two, "{name}: two threads, other bits");
+        for threads in [2, 3] {
+            let many = bits(&loaded, threads, Ok(steps)).0;
+            assert!(first == many, "{name}: {threads} threads, other bits");
+        }
+    }
+}
+
+/// A case in which grains of all shapes fall fast on a surface in their way, and over each other.
+fn falling(dimension: usize, floor: &str, period: &str) -> Loaded {
+    let mut grains = [String::new(), String::new(), String::new()];
+    for k in 0..48u32 {
+        let t = f64::from(k);
+        let (column, row) = (f64::from(k % 8), f64::from(k / 8));
+        let (x, turn) = (0.1 * column - 0.35, (1.7 * t).sin());
+        let speed = -3.0 - (0.7 * t).cos();
+        let shift = 0.01 * (2.3 * t).sin();
+        let (kind, grain) = if dimension == 2 {
+            let at = format!(
+                "at: [{}, {}], velocity: [{turn}, {speed}]",
+                x + shift,
+                0.15 + 0.1 * row
+            );
+            let pentagon =
+                "(0.03, 0.0), (0.01, 0.03), (-0.03, 0.02), (-0.03, -0.02), (0.01, -0.03)";
+            match k % 3 {
+                0 => (0, format!("({at}, radius: 0.03)")),
+                1 => (
+                    1,
+                    format!("({at}, points: [{pentagon}], spin: [{}])", 9.0 * turn),
+                ),
+                _ => (
+                    2,
+                    format!(
+                        "({at}, shapes: [Capsule(from: (-0.02, 0.0), to: (0.02, 0.0), radius: 0.015)])"
+                    ),
+                ),
+            }
+        } else {
+            let y = 0.1 * f64::from(k / 8 % 3) - 0.1;
+            let at = format!(
+                "at: [{}, {}, {}], velocity: [{turn}, {shift}, {speed}]",
+                x + shift,
+                y - shift,
+                0.3 + 0.1 * f64::from(k / 24)
+            );
+            match k % 3 {
+                0 => (0, format!("({at}, radius: 0.03)")),
+                1 => (
+                    1,
+                    format!(
+                        "({at}, size: (0.05, 0.04, 0.03), turned: [{turn}, 0.3, 0.2], spin: [{turn}, 9.0, 2.0])"
+                    ),
+                ),
+                _ => (
+                    2,
+                    format!(
+                        "({at}, shapes: [Capsule(from: (-0.02, 0.0, 0.0), to: (0.02, 0.0, 0.0), radius: 0.015)])"
+                    ),
+                ),
+            }
+        };
+        grains[kind] += &(grain + ", ");
+    }
+    let solids = if dimension == 2 {
+        "Polygons"
+    } else {
+        "Polyhedra"
+    };
+    let gravity = ["[0.0, -9.81]", "[0.0, 0.0, -9.81]"][dimension - 2];
+    let text = format!(
+        r#"(
+    name: "all shapes fall",
+    dimension: {dimension},
+    time: (step: 2e-3, end: 1.0),
+    gravity: {gravity},
+    {period}
+    detection: (alert: 1e-3, skin: 0.01),
+    solver: (tolerance: 1e-4, max_iterations: 2000),
+    materials: {{"grain": "verification_grain"}},
+    interfaces: [(name: "joints", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": 0.3}}))],
+    bodies: [(name: "floor", material: "grain", shapes: [{floor}])],
+    grains: [
+        List(material: "grain", grains: [{}]),
+        {solids}(material: "grain", grains: [{}]),
+        Clusters(material: "grain", grains: [{}]),
+    ],
+)"#,
+        grains[0], grains[1], grains[2]
+    );
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/verification");
+    load_text("falling.ron", &text, folder.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn all_shapes_on_every_surface_on_any_number_of_threads() {
+    let rough = "RoughProfile(points: 60, rms: 0.01, hurst: 0.8, longest: 0.4, shortest: 0.05, height: 0.0, side: Below)";
+    let field = "HeightField(points: (16, 16), spacing: (0.1, 0.1), rms: 0.02)";
+    for (dimension, floor, period) in [
+        (2, "HalfSpace(normal: [0.0, 1.0])", ""),
+        (2, rough, "periodic: (x: 0.8),"),
+        (2, "Drum(radius: 0.9)", ""),
+        (3, "HalfSpace(normal: [0.0, 0.0, 1.0])", ""),
+        (3, field, "periodic: (x: 1.6, y: 1.6),"),
+        (3, "Mesh(file: \"valley.obj\", scale: 0.5)", ""),
+        (3, "Drum(radius: 0.7, axis: 1)", ""),
+    ] {
+        let loaded = falling(dimension, floor, period);
+        let first = bits(&loaded, 1, Ok(160)).0;
+        let contacts = first.len() / dimension - 2 * 49;
+        assert!(contacts >= 10, "{floor}: {contacts} contacts");
+        for threads in [2, 3] {
+            let many = bits(&loaded, threads, Ok(160)).0;
+            assert!(first == many, "{floor}: {threads} threads, other bits");
+        }
     }
 }
 

@@ -21,6 +21,14 @@ pub fn divide_from(nanoseconds: Option<u64>) {
     LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
 }
 
+/// Returns the size of the chunks of a loop whose results do not depend on it: smaller ones where all loops are divided.
+pub fn any_size(size: usize) -> usize {
+    match LEAST.load(Ordering::Relaxed) {
+        0 => size.div_ceil(16),
+        _ => size,
+    }
+}
+
 /// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller allows several threads.
 #[inline]
 pub fn pays(parallel: bool, items: usize, each: f64) -> bool {
@@ -105,6 +113,19 @@ pub fn fill<T: Send>(
     } else {
         list.clear();
         list.extend((0..count).map(of));
+    }
+}
+
+/// Returns what `of` gives for each of some tasks, in their order.
+pub fn map_tasks<T: Send, R: Send>(
+    divide: bool,
+    tasks: Vec<T>,
+    of: impl Fn(T) -> R + Send + Sync,
+) -> Vec<R> {
+    if divide && tasks.len() > 1 {
+        tasks.into_par_iter().map(of).collect()
+    } else {
+        tasks.into_iter().map(of).collect()
     }
 }
 

@@ -48,7 +48,7 @@ impl<S: Space> Strain<S> {
         let reach = if n > 0.0 { sum / n } else { 0.0 };
         let periodic = &s.shapes.periodic;
         let mut around = vec![Vec::new(); balls.len()];
-        for (a, b) in pairs(&centres, &radii, reach, periodic, |a, b| {
+        for (a, b) in pairs(&centres, &radii, reach, periodic, false, |a, b| {
             counts(a) && counts(b)
         }) {
             let apart = centres[b as usize] - centres[a as usize];

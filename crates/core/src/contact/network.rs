@@ -204,8 +204,9 @@ pub struct Network<S: Space> {
     /// Half thicknesses and extents of the collision shapes.
     #[serde(skip)]
     pub(crate) extents: super::detect::Extents,
+    /// Cores of the convex pieces in world axes, as at the last detection.
     #[serde(skip)]
-    pub(super) old: Vec<Contact<S>>,
+    pub(super) cores: Vec<S::Core>,
 }
 
 /// Sorted, so that equal sets are serialised to equal bytes.
@@ -284,7 +285,7 @@ impl<S: Space> Network<S> {
             turning: Vec::new(),
             extents: Default::default(),
             seen_at: Vec::new(),
-            old: Vec::new(),
+            cores: Vec::new(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::periodic::Periodic;
 use super::space::VectorLike;
+use std::ops::Range;
 
 /// Balls sorted into cells of equal size.
 pub(super) struct Grid {
@@ -112,16 +113,26 @@ impl Grid {
         &self.sorted[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// Iterates over the cells around a position, each once even if a periodic axis has only one or two
-    /// cells.
-    pub(super) fn around<V: VectorLike>(&self, x: &V, periodic: &Periodic, out: &mut Vec<usize>) {
+    /// Returns the balls, cell by cell.
+    pub(super) fn sorted(&self) -> &[u32] {
+        &self.sorted
+    }
+
+    /// Finds the cells around a position, each once even if a periodic axis has only one or two cells, as ranges in
+    /// [`Self::sorted`]: cells beside each other along x follow each other there.
+    pub(super) fn around<V: VectorLike>(
+        &self,
+        x: &V,
+        periodic: &Periodic,
+        out: &mut Vec<Range<usize>>,
+    ) {
         out.clear();
         let home = self.cell(&periodic.wrapped(*x));
         let mut axis: [([usize; 3], usize); 3] = [([0; 3], 1); 3];
         for k in 0..self.dimension {
             let (n, c) = (self.counts[k], home[k]);
             let mut list = [c; 3];
-            let mut len = 1;
+            let mut len = 0;
             let wraps = periodic.period[k].is_some();
             let below = if c > 0 {
                 Some(c - 1)
@@ -133,7 +144,7 @@ impl Grid {
             } else {
                 wraps.then_some(0)
             };
-            for neighbour in [below, above].into_iter().flatten() {
+            for neighbour in [below, Some(c), above].into_iter().flatten() {
                 if !list[..len].contains(&neighbour) {
                     list[len] = neighbour;
                     len += 1;
@@ -141,10 +152,17 @@ impl Grid {
             }
             axis[k] = (list, len);
         }
+        let row = &axis[0].0[..axis[0].1];
         for &cz in &axis[2].0[..axis[2].1] {
             for &cy in &axis[1].0[..axis[1].1] {
-                for &cx in &axis[0].0[..axis[0].1] {
-                    out.push(self.index([cx, cy, cz]));
+                let mut from = 0;
+                for k in 0..row.len() {
+                    if k + 1 == row.len() || row[k + 1] != row[k] + 1 {
+                        let first = self.index([row[from], cy, cz]);
+                        let last = self.index([row[k], cy, cz]);
+                        out.push(self.starts[first] as usize..self.starts[last + 1] as usize);
+                        from = k + 1;
+                    }
                 }
             }
         }

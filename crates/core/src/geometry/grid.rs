@@ -8,36 +8,49 @@
 use super::cells::Grid;
 use super::periodic::Periodic;
 use super::space::VectorLike;
+use crate::threads;
+use std::ops::Range;
+
+/// Balls per task.
+const CHUNK: usize = 1024;
+/// Time of a ball (ns).
+const COST: f64 = 300.0;
 
 /// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a, b).
 ///
 /// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is linear in
-/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse).
+/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse). Balls are
+/// distributed over threads if `parallel`; the results are the same.
 pub fn pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
     reach: f64,
     periodic: &Periodic,
-    keep: impl Fn(u32, u32) -> bool,
+    parallel: bool,
+    keep: impl Fn(u32, u32) -> bool + Sync,
 ) -> Vec<(u32, u32)> {
     let n = centres.len();
     if n < 2 {
         return Vec::new();
     }
     let levels = Levels::new(centres, radii, reach, periodic);
-    let mut out = Vec::with_capacity(4 * n);
-    let mut near = Vec::new();
-    for a in 0..n as u32 {
-        let first = out.len();
-        levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
-            let pair = (a.min(b), a.max(b));
-            if keep(pair.0, pair.1) {
-                out.push(pair);
-            }
-            true
-        });
-        out[first..].sort_unstable();
-    }
+    let divide = threads::pays(parallel, n, COST);
+    let parts = threads::map_ranges(divide, n, threads::any_size(CHUNK), |balls| {
+        let (mut out, mut near) = (Vec::with_capacity(8 * balls.len()), Vec::new());
+        for a in balls {
+            let (a, first) = (a as u32, out.len());
+            levels.near(a, centres, radii, reach, periodic, &mut near, |b| {
+                let pair = (a.min(b), a.max(b));
+                if keep(pair.0, pair.1) {
+                    out.push(pair);
+                }
+                true
+            });
+            out[first..].sort_unstable();
+        }
+        out
+    });
+    let mut out = parts.concat();
     if levels.levels.len() > 1 {
         out.sort_unstable();
     }
@@ -97,7 +110,7 @@ pub fn most_pairs<V: VectorLike>(
     for (a, x) in centres.iter().enumerate() {
         for level in levels.of(a as u32) {
             level.grid.around(x, periodic, &mut near);
-            let seen: usize = near.iter().map(|cell| level.grid.balls(*cell).len()).sum();
+            let seen: usize = near.iter().map(|row| row.len()).sum();
             sum += if levels.is_own(a as u32, level) {
                 0.5 * (seen as f64 - 1.0)
             } else {
@@ -116,24 +129,38 @@ const CROWD: f64 = 8.0;
 const MAX_LEVELS: usize = 31;
 
 /// Balls sorted by size into levels with a grid each, from small to large.
-struct Levels {
-    levels: Vec<Level>,
+struct Levels<V> {
+    levels: Vec<Level<V>>,
     /// Level of each ball; empty if there is only one.
     own: Vec<u8>,
 }
 
-struct Level {
+struct Level<V> {
     place: usize,
     grid: Grid,
+    /// Centres and radii of the balls, cell by cell (m).
+    places: Vec<(V, f64)>,
 }
 
-impl Levels {
-    fn new<V: VectorLike>(centres: &[V], radii: &[f64], reach: f64, periodic: &Periodic) -> Self {
+impl<V: VectorLike> Level<V> {
+    fn new(place: usize, grid: Grid, centres: &[V], radii: &[f64]) -> Self {
+        let at = |b: &u32| (centres[*b as usize], radii[*b as usize]);
+        let places = grid.sorted().iter().map(at).collect();
+        Self {
+            place,
+            grid,
+            places,
+        }
+    }
+}
+
+impl<V: VectorLike> Levels<V> {
+    fn new(centres: &[V], radii: &[f64], reach: f64, periodic: &Periodic) -> Self {
         let widest = radii.iter().copied().fold(0.0, f64::max);
         let width = |radius: f64| 2.0 * radius + reach;
         let grid = Grid::new(centres, None, width(widest), periodic);
         let one = |grid| Self {
-            levels: vec![Level { place: 0, grid }],
+            levels: vec![Level::new(0, grid, centres, radii)],
             own: Vec::new(),
         };
         if grid.crowd() <= CROWD {
@@ -162,10 +189,8 @@ impl Levels {
             let members = &members[*class];
             let widest = members.iter().map(|b| radii[*b as usize]);
             let widest = widest.fold(0.0, f64::max);
-            Level {
-                place,
-                grid: Grid::new(centres, Some(members), width(widest), periodic),
-            }
+            let grid = Grid::new(centres, Some(members), width(widest), periodic);
+            Level::new(place, grid, centres, radii)
         });
         let levels = levels.collect();
         let place = |class: &usize| filled.iter().position(|f| f == class).unwrap_or(0) as u8;
@@ -176,7 +201,7 @@ impl Levels {
     }
 
     /// Returns the levels that a ball searches: its own and the larger ones.
-    fn of(&self, ball: u32) -> &[Level] {
+    fn of(&self, ball: u32) -> &[Level<V>] {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         &self.levels[usize::from(own)..]
     }
@@ -184,28 +209,29 @@ impl Levels {
     /// Calls `each` with the balls within the search distance of `a` that it is paired with, until it
     /// returns false.
     #[allow(clippy::too_many_arguments)]
-    fn near<V: VectorLike>(
+    fn near(
         &self,
         a: u32,
         centres: &[V],
         radii: &[f64],
         reach: f64,
         periodic: &Periodic,
-        cells: &mut Vec<usize>,
+        rows: &mut Vec<Range<usize>>,
         mut each: impl FnMut(u32) -> bool,
     ) {
         let (xa, ra) = (centres[a as usize], radii[a as usize]);
         for level in self.of(a) {
-            level.grid.around(&xa, periodic, cells);
+            level.grid.around(&xa, periodic, rows);
             let own = self.is_own(a, level);
-            for &cell in cells.iter() {
-                for &b in level.grid.balls(cell) {
+            for row in rows.iter() {
+                let sorted = &level.grid.sorted()[row.clone()];
+                for (&b, (xb, rb)) in sorted.iter().zip(&level.places[row.clone()]) {
                     // Two balls of one level find each other twice.
                     if own && b <= a {
                         continue;
                     }
-                    let d = periodic.shortest(centres[b as usize] - xa);
-                    let limit = ra + radii[b as usize] + reach;
+                    let d = periodic.shortest(*xb - xa);
+                    let limit = ra + rb + reach;
                     if d.dot(&d) < limit * limit && !each(b) {
                         return;
                     }
@@ -228,7 +254,7 @@ impl Levels {
         })
     }
 
-    fn is_own(&self, ball: u32, level: &Level) -> bool {
+    fn is_own(&self, ball: u32, level: &Level<V>) -> bool {
         let own = self.own.get(ball as usize).copied().unwrap_or(0);
         usize::from(own) == level.place
     }
@@ -269,7 +295,7 @@ mod tests {
                 .map(|_| Vector2::new(rng.random_range(-2.0..12.0), rng.random_range(0.0..4.0)))
                 .collect();
             assert_eq!(
-                pairs(&x2, &r, 0.05, &periodic, |_, _| true),
+                pairs(&x2, &r, 0.05, &periodic, false, |_, _| true),
                 brute(&x2, &r, 0.05, &periodic)
             );
             let x3: Vec<_> = x2
@@ -277,7 +303,7 @@ mod tests {
                 .map(|p| Vector3::new(p.x, p.y * 0.3, p.x * 0.1))
                 .collect();
             assert_eq!(
-                pairs(&x3, &r, 0.05, &periodic, |_, _| true),
+                pairs(&x3, &r, 0.05, &periodic, false, |_, _| true),
                 brute(&x3, &r, 0.05, &periodic)
             );
         }
@@ -307,7 +333,7 @@ mod tests {
                     };
                     let (x, mut r) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector2::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, every);
+                    let found = pairs(&x, &r, reach, &periodic, true, every);
                     assert_eq!(found, brute(&x, &r, reach, &periodic));
                     assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
                     // One large ball among many small ones of equal size.
@@ -315,7 +341,7 @@ mod tests {
                     r[137] = 1.0;
                     let (x, _) = mixed(&mut rng, 400, ratio);
                     let x: Vec<_> = x.into_iter().map(Vector3::from).collect();
-                    let found = pairs(&x, &r, reach, &periodic, every);
+                    let found = pairs(&x, &r, reach, &periodic, true, every);
                     assert_eq!(found, brute(&x, &r, reach, &periodic));
                     assert!(most_pairs(&x, &r, reach, &periodic) >= found.len() as f64);
                 }
@@ -351,7 +377,7 @@ mod tests {
             let periodic = Periodic {
                 period: [period, None, None],
             };
-            let found = pairs(&x, &r, reach, &periodic, |_, _| true).len() as f64;
+            let found = pairs(&x, &r, reach, &periodic, false, |_, _| true).len() as f64;
             let most = most_pairs(&x, &r, reach, &periodic);
             assert!(found <= most && most > last, "{found} of {most}");
             last = most;
@@ -369,7 +395,7 @@ mod tests {
         assert_eq!(none, None);
         x[1000..2000].fill(Vector2::new(500.25, 0.0));
         let radii = vec![0.6; 3000];
-        let found = pairs(&x, &radii, 0.0, &Periodic::default(), |_, _| true).len();
+        let found = pairs(&x, &radii, 0.0, &Periodic::default(), false, |_, _| true).len();
         assert!(found > 499_500);
         let pile = |most| more_than(&x, &radii, 0.0, &Periodic::default(), most, |_, _| true);
         assert_eq!(pile(found), None);
@@ -395,7 +421,9 @@ mod tests {
             Vector2::new(1e9, 1e9 + 1e-3),
         ];
         assert_eq!(
-            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), |_, _| true),
+            pairs(&x, &[1e-3; 3], 0.0, &Periodic::default(), false, |_, _| {
+                true
+            }),
             vec![(1, 2)]
         );
     }

@@ -1,5 +1,6 @@
 //! Shapes, distances and the neighbour search.
 pub mod algebra;
+mod boxes;
 mod cells;
 pub mod convex;
 pub mod crossing;

@@ -1,14 +1,10 @@
 //! The profile of a first body in 2D: a chain of segments, solid on its right-hand side.
 
+use super::boxes::{Boxes, Window};
 use super::recede::{Recede, Shares, Vertex};
 use super::shape::{ClosestPoint, Corner, Surface, at_vertex};
 use super::space::Dim2;
 use nalgebra::Vector2;
-use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{AABB, RTree};
-
-/// Bounding box of a segment, with the segment's index and its shift along x (m).
-type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, f64)>;
 
 /// Distance from a vertex, relative to its segment, up to which it is one of rounding.
 const AT_VERTEX: f64 = 1e-9;
@@ -27,7 +23,7 @@ pub struct Polyline {
     period: Option<f64>,
     /// Whether it is closed: its last point is its first.
     closed: bool,
-    tree: RTree<Segment>,
+    boxes: Boxes,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<Worn>,
     /// Where the points were when the boxes were built, and the margin of these (m); `None` unless the profile deforms.
@@ -127,7 +123,7 @@ impl Polyline {
             points,
             period,
             closed,
-            tree: RTree::new(),
+            boxes: Boxes::default(),
             worn: None,
             deformed: None,
         };
@@ -137,26 +133,26 @@ impl Polyline {
 
     /// Builds the bounding boxes of the segments, with a margin along each axis (m).
     fn index(&mut self, margin: [f64; 2]) {
-        let images: &[f64] = if self.period.is_some() {
-            &[-1.0, 0.0, 1.0]
-        } else {
-            &[0.0]
+        let margin = Vector2::from(margin);
+        let of = |ends: &[Vector2<f64>]| Window {
+            low: ends[0].inf(&ends[1]) - margin,
+            high: ends[0].sup(&ends[1]) + margin,
         };
-        let mut segments = Vec::with_capacity(images.len() * self.segments());
-        for image in images {
-            let shift = image * self.period.unwrap_or(0.0);
-            for k in 0..self.segments() {
-                let [a, b] = self.segment(k, shift);
-                let (low, high) = (a.inf(&b), a.sup(&b));
-                let corners = (
-                    [low.x - margin[0], low.y - margin[1]],
-                    [high.x + margin[0], high.y + margin[1]],
-                );
-                let place = Rectangle::from_corners(corners.0, corners.1);
-                segments.push(Segment::new(place, (k as u32, shift)));
+        self.boxes.set(self.points.windows(2).map(of));
+    }
+
+    /// Calls `each` with the segments whose boxes meet a window, and their shifts along x (m), until it returns false.
+    fn visit(&self, window: &Window, mut each: impl FnMut(usize, f64) -> bool) {
+        let Some(period) = self.period else {
+            self.boxes.visit(window, &mut |k| each(k, 0.0));
+            return;
+        };
+        for shift in [-period, 0.0, period] {
+            let image = window.shifted(-shift);
+            if !self.boxes.visit(&image, &mut |k| each(k, shift)) {
+                return;
             }
         }
-        self.tree = RTree::bulk_load(segments);
     }
 
     /// Returns whether the chain goes on after its last segment with its first.
@@ -210,13 +206,12 @@ impl Surface<Dim2> for Polyline {
     ) {
         let (c, shift) = self.wrapped(centre);
         let start = out.len();
-        let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
-        for segment in self.tree.locate_in_envelope_intersecting(window) {
-            let (k, image) = segment.data;
-            let [a, b] = self.segment(k as usize, image);
+        self.visit(&Window::around(&c, reach), |segment, image| {
+            let k = segment as u32;
+            let [a, b] = self.segment(segment, image);
             let along = b - a;
-            let s = (c - a).dot(&along) / along.norm_squared();
-            if (0.0..=1.0).contains(&s) {
+            let (s, end) = ((c - a).dot(&along), along.norm_squared());
+            if s >= 0.0 && s <= end {
                 let normal = Vector2::new(-along.y, along.x) / along.norm();
                 let distance = (c - a).dot(&normal);
                 if distance.abs() < reach {
@@ -228,16 +223,16 @@ impl Surface<Dim2> for Polyline {
                         feature: 2 * k,
                     });
                 }
-                continue;
+                return true;
             }
             // A vertex gives one contact point: from the segment that ends in it, or at the chain's start.
-            let at_end = s > 1.0;
+            let at_end = s > end;
             if !at_end && (k > 0 || self.goes_on()) {
-                continue;
+                return true;
             }
             let vertex = if at_end { b } else { a };
             let next = if at_end {
-                self.following(k as usize)
+                self.following(segment)
             } else {
                 None
             };
@@ -266,7 +261,8 @@ impl Surface<Dim2> for Polyline {
                     feature,
                 });
             }
-        }
+            true
+        });
         out[start..].sort_by_key(|t| t.feature);
         // A vertex on a vertex of another grain is found by both segments.
         let mut k = start + 1;
@@ -286,11 +282,12 @@ impl Surface<Dim2> for Polyline {
 
     fn near(&self, centre: &Vector2<f64>, reach: f64) -> bool {
         let (c, _) = self.wrapped(centre);
-        let window = AABB::from_corners([c.x - reach, c.y - reach], [c.x + reach, c.y + reach]);
-        self.tree
-            .locate_in_envelope_intersecting(window)
-            .next()
-            .is_some()
+        let mut any = false;
+        self.visit(&Window::around(&c, reach), |_, _| {
+            any = true;
+            false
+        });
+        any
     }
 
     fn corners(
@@ -302,26 +299,31 @@ impl Surface<Dim2> for Polyline {
         // The chain's images are one period to each side.
         let middle = (low + high) * 0.5;
         let (_, shift) = self.wrapped(&middle);
-        let window = AABB::from_corners([low.x - shift, low.y], [high.x - shift, high.y]);
+        let window = Window {
+            low: Vector2::new(low.x - shift, low.y),
+            high: Vector2::new(high.x - shift, high.y),
+        };
         let first = out.len();
-        for segment in self.tree.locate_in_envelope_intersecting(window) {
-            let (k, image) = (segment.data.0 as usize, segment.data.1);
+        self.visit(&window, |k, image| {
             let [a, b] = self.segment(k, image);
+            let at = b + Vector2::new(shift, 0.0);
+            let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
+            if !inside {
+                return true;
+            }
             let next = if k + 1 < self.segments() {
                 k + 1
             } else if self.goes_on() {
                 0
             } else {
-                continue;
+                return true;
             };
             let (before, after) = (b - a, self.points[next + 1] - self.points[next]);
             let normal = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
             let normals = [normal(before), normal(after)];
-            let at = b + Vector2::new(shift, 0.0);
-            let inside = (0..2).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis]);
             // With the solid on the right, a convex corner turns right.
             let convex = normals[0].perp(&normals[1]) < -1e-9;
-            if inside && (convex || self.deforms()) {
+            if convex || self.deforms() {
                 let feature = 2 * k as u32 + 1;
                 out.push(Corner {
                     at,
@@ -329,7 +331,8 @@ impl Surface<Dim2> for Polyline {
                     feature,
                 });
             }
-        }
+            true
+        });
         out[first..].sort_by_key(|c| c.feature);
     }
 

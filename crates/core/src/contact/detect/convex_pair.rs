@@ -1,13 +1,14 @@
 //! Contacts of convex pieces with balls, with each other and with surfaces, several contact points per pair.
 
-use super::narrow::Narrow;
-use super::{SLACK, drop_contact, frame, held};
-use crate::contact::network::{Contact, ContactGeometry, Key, Network};
+use super::narrow::{Narrow, Scratch};
+use super::renewal::{Found, Touch};
+use super::{SLACK, held};
+use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
 /// The pair: bodies, materials, and the size used where the contact point defines none (m).
-pub(super) struct Pair<S: Space> {
+struct Pair<S: Space> {
     name: (u32, u32),
     bodies: [u32; 2],
     law: u16,
@@ -16,73 +17,53 @@ pub(super) struct Pair<S: Space> {
     origins: [S::Vector; 2],
 }
 
-/// Contact points of pairs with at least one convex piece.
-pub(super) struct PairPoints<S: Space> {
-    /// Each pair, `None` if it has no law, and the end of its points.
-    pairs: Vec<(Option<Pair<S>>, usize)>,
-    points: Vec<ContactPoint<S::Vector>>,
-}
-
-impl<S: Space> PairPoints<S> {
-    /// Iterates over the pairs and their points.
-    pub(super) fn iter(
-        &self,
-    ) -> impl Iterator<Item = (&Option<Pair<S>>, &[ContactPoint<S::Vector>])> {
-        let mut from = 0;
-        self.pairs.iter().map(move |(pair, end)| {
-            let points = &self.points[from..*end];
-            from = *end;
-            (pair, points)
-        })
-    }
-}
-
 impl<S: Space> Narrow<'_, S> {
-    /// Finds the contact points of those pairs that have a convex piece.
-    pub(super) fn find_points(&self, network: &Network<S>, pairs: &[(u32, u32)]) -> PairPoints<S> {
-        let mut found = PairPoints {
-            pairs: Vec::new(),
-            points: Vec::new(),
-        };
-        let old = &network.old;
-        // Pairs and contacts are sorted.
-        let mut at = pairs
-            .first()
-            .map_or(0, |first| old.partition_point(|c| c.key.pair() < *first));
-        let mut points = Vec::new();
-        for &(a, b) in pairs.iter().filter(|(a, b)| (a | b) & Key::PIECE != 0) {
-            while old.get(at).is_some_and(|c| c.key.pair() < (a, b)) {
-                at += 1;
-            }
-            let of_pair = old[at..].iter().take_while(|c| c.key.pair() == (a, b));
-            let old = at..at + of_pair.count();
-            at = old.end;
+    /// Renews the contacts of a pair with at least one convex piece.
+    pub(super) fn convex_pair(
+        &self,
+        name: (u32, u32),
+        scratch: &mut Scratch<S>,
+        found: &mut Found<S>,
+    ) {
+        let held = found.old().iter().any(|c| held(self.network, Some(c)));
+        scratch.points.clear();
+        let pair = if !held && self.far(name) {
+            None
+        } else {
             let tolerances = ContactTolerances {
-                reach: self.reach(network, old.clone()),
-                slack: SLACK * network.alert,
-                held: old.clone().any(|k| held(network, Some(k))),
+                reach: self.reach(found.old()),
+                slack: SLACK * self.network.alert,
+                held,
             };
-            points.clear();
-            let pair = self.contact_points(a, b, &tolerances, &mut points);
-            found.points.append(&mut points);
-            found.pairs.push((pair, found.points.len()));
+            self.contact_points(name.0, name.1, &tolerances, scratch)
+        };
+        match pair {
+            Some(pair) if !(scratch.points.is_empty() && found.old().is_empty()) => {
+                self.create_contacts(&pair, scratch, found);
+            }
+            _ => found.drop_others(|_| false),
         }
-        found
     }
 
-    /// Updates the contacts of a pair with at least one convex piece.
-    pub(super) fn convex_pair(
-        &mut self,
-        network: &mut Network<S>,
-        name: (u32, u32),
-        pair: &Option<Pair<S>>,
-        points: &[ContactPoint<S::Vector>],
-    ) {
-        let old = self.old_contacts_of(network, name);
-        match pair {
-            Some(pair) => self.create_contacts(network, pair, points, old),
-            None => old.for_each(|k| drop_contact(network, k)),
+    /// Returns whether the bounding balls of a pair without bonds are too far from each other for contacts.
+    fn far(&self, (a, b): (u32, u32)) -> bool {
+        if b & Key::SURFACE != 0 {
+            return false;
         }
+        let balls = self.shapes.balls.len();
+        let place = |name: u32| {
+            let k = (name & !Key::PIECE) as usize;
+            if name & Key::PIECE == 0 {
+                (self.centres[k], self.shapes.balls[k].radius)
+            } else {
+                (self.centres[balls + k], self.shapes.pieces[k].bound)
+            }
+        };
+        let ((x, r), (y, s)) = (place(a), place(b));
+        let apart = self.shapes.periodic.shortest(x - y);
+        // Beyond what counts as corner on face.
+        let limit = r + s + (1.0 + 4.0 * SLACK) * self.network.alert;
+        apart.dot(&apart) > limit * limit
     }
 
     /// Finds the contact points of a pair in world axes. `None` if the pair has no law.
@@ -91,8 +72,9 @@ impl<S: Space> Narrow<'_, S> {
         a: u32,
         b: u32,
         tolerances: &ContactTolerances,
-        out: &mut Vec<ContactPoint<S::Vector>>,
+        scratch: &mut Scratch<S>,
     ) -> Option<Pair<S>> {
+        let out = &mut scratch.points;
         let balls = self.shapes.balls.len();
         let at = |name: u32| (name & !Key::PIECE) as usize;
         let of = |body: u32| self.bodies.position[body as usize];
@@ -103,7 +85,7 @@ impl<S: Space> Narrow<'_, S> {
                 &self.shapes.surfaces[(b & !Key::SURFACE) as usize],
             );
             let law = self.laws.get(piece.material, surface.material)?;
-            let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
+            let (origin, rotation) = self.frames[(b & !Key::SURFACE) as usize];
             let closed = surface.shape.is_closed();
             let mut apart = self.centres[balls + k] - origin;
             if closed {
@@ -111,7 +93,9 @@ impl<S: Space> Narrow<'_, S> {
             }
             let place = S::unrotate(&rotation, &apart);
             // The core in the surface's axes.
-            let core = self.cores[k].turned(&S::inverse(&rotation));
+            let own = &self.cores[k];
+            let core = scratch.core.get_or_insert_with(|| own.clone());
+            own.turn_into(&S::inverse(&rotation), core);
             core.contact_points_with_surface(
                 surface.shape.as_ref(),
                 &place,
@@ -175,60 +159,65 @@ impl<S: Space> Narrow<'_, S> {
     }
 
     /// Creates contacts from the contact points within the alert distance, with the memory of old ones.
-    fn create_contacts(
-        &mut self,
-        network: &mut Network<S>,
-        pair: &Pair<S>,
-        contact_points: &[ContactPoint<S::Vector>],
-        old: std::ops::Range<usize>,
-    ) {
-        let origins = pair.origins;
-        let matched = match_old_contacts(&network.old, contact_points, old.clone(), &origins[0]);
-        let pairs = contact_points.iter().copied().zip(matched);
-        let mut met: Vec<_> = pairs
-            .filter(|(m, before)| m.gap < network.alert || held(network, *before))
-            .collect();
+    fn create_contacts(&self, pair: &Pair<S>, scratch: &mut Scratch<S>, found: &mut Found<S>) {
+        let (network, origins) = (self.network, pair.origins);
+        let Scratch {
+            points,
+            matched,
+            ways,
+            met,
+            taken,
+            ..
+        } = scratch;
+        let old = found.old();
+        match_old_contacts(old, points, &origins[0], matched, ways);
+        met.clear();
+        let pairs = points.iter().copied().zip(matched.iter().copied());
+        met.extend(
+            pairs.filter(|(m, before)| {
+                m.gap < network.alert || held(network, before.map(|k| &old[k]))
+            }),
+        );
         // A face in 3D may lose a corner; a bond there continues at the nearest remaining one.
-        for k in old.clone() {
-            if held(network, Some(k)) && !met.iter().any(|m| m.1 == Some(k)) {
-                let at = network.old[k].arms[0] - origins[0];
+        for (k, contact) in old.iter().enumerate() {
+            if held(network, Some(contact)) && !met.iter().any(|m| m.1 == Some(k)) {
+                let at = contact.arms[0] - origins[0];
                 let far = |m: &ContactPoint<S::Vector>| (m.on_candidate - at).norm();
-                let nearest = contact_points
-                    .iter()
-                    .min_by(|m, n| far(m).total_cmp(&far(n)));
-                let feature = network.old[k].key.feature;
+                let nearest = points.iter().min_by(|m, n| far(m).total_cmp(&far(n)));
+                let feature = contact.key.feature;
                 met.extend(nearest.map(|m| (ContactPoint { feature, ..*m }, Some(k))));
             }
         }
         met.sort_by_key(|(m, _)| m.feature);
-        let taken: Vec<usize> = met.iter().filter_map(|m| m.1).collect();
-        for (m, before) in met {
-            let found = Contact {
+        taken.clear();
+        taken.resize(old.len(), false);
+        for (m, before) in met.iter() {
+            let touch = Touch {
+                key: Key {
+                    candidate: pair.name.0,
+                    antagonist: pair.name.1,
+                    feature: m.feature,
+                },
+                bodies: pair.bodies,
+                law: pair.law,
+                central: false,
                 vertex_contact: !m.facing,
-                ..Contact::new(
-                    Key {
-                        candidate: pair.name.0,
-                        antagonist: pair.name.1,
-                        feature: m.feature,
-                    },
-                    pair.bodies,
-                    pair.law,
-                    ContactGeometry {
-                        gap: m.gap,
-                        normal: m.normal,
-                        arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
-                        radius: if m.share > 0.0 { m.share } else { pair.radius },
-                    },
-                    self.time,
-                )
+                geometry: ContactGeometry {
+                    gap: m.gap,
+                    normal: m.normal,
+                    arms: [m.on_candidate + origins[0], m.on_antagonist + origins[1]],
+                    radius: if m.share > 0.0 { m.share } else { pair.radius },
+                },
             };
-            self.add_contact(network, found, before, pair.radius);
-        }
-        for k in old {
-            if !taken.contains(&k) {
-                drop_contact(network, k);
+            match before {
+                Some(k) => {
+                    taken[*k] = true;
+                    found.renew(self, *k, &touch);
+                }
+                None => found.add(self, &touch, pair.radius),
             }
         }
+        found.drop_others(|k| taken[k]);
     }
 }
 
@@ -236,36 +225,34 @@ impl<S: Space> Narrow<'_, S> {
 /// nearest of those whose corner is no longer found, in order of distance. If one of two old contacts is
 /// gone, a new point at the other end of the face must not take over the remaining one.
 fn match_old_contacts<S: Space>(
-    contacts: &[Contact<S>],
+    old: &[Contact<S>],
     contact_points: &[ContactPoint<S::Vector>],
-    old: std::ops::Range<usize>,
     origin: &S::Vector,
-) -> Vec<Option<usize>> {
-    let mut matched: Vec<Option<usize>> = Vec::with_capacity(contact_points.len());
+    matched: &mut Vec<Option<usize>>,
+    ways: &mut Vec<(f64, usize, usize)>,
+) {
+    matched.clear();
     for m in contact_points {
         // With a period two points may have the same key.
-        let same = |k: &usize| contacts[*k].key.feature == m.feature;
-        let found = old
-            .clone()
-            .find(|k| same(k) && !matched.contains(&Some(*k)));
+        let same = |k: &usize| old[*k].key.feature == m.feature;
+        let found = (0..old.len()).find(|k| same(k) && !matched.contains(&Some(*k)));
         matched.push(found);
     }
-    let mut ways = Vec::new();
+    ways.clear();
     for (k, m) in contact_points.iter().enumerate() {
-        for at in old.clone() {
+        for (at, contact) in old.iter().enumerate() {
             if matched[k].is_none() && !matched.contains(&Some(at)) {
-                let way = contacts[at].arms[0] - (m.on_candidate + *origin);
+                let way = contact.arms[0] - (m.on_candidate + *origin);
                 ways.push((way.norm(), k, at));
             }
         }
     }
     ways.sort_by(|x, y| x.0.total_cmp(&y.0));
-    for (_, k, at) in ways {
+    for (_, k, at) in ways.iter().copied() {
         if matched[k].is_none() && !matched.contains(&Some(at)) {
             matched[k] = Some(at);
         }
     }
-    matched
 }
 
 #[cfg(test)]
@@ -315,7 +302,9 @@ mod tests {
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
         let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
-            match_old_contacts(old, new, 0..old.len(), &Vector2::zeros())
+            let (mut matched, mut ways) = (vec![None], Vec::new());
+            match_old_contacts(old, new, &Vector2::zeros(), &mut matched, &mut ways);
+            matched
         };
         let new = [contact_point(-1.0, 4), contact_point(1.0, 6)];
         assert_eq!(of(&[contact(1.0, 3)], &new), [None, Some(0)]);

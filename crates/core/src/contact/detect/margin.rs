@@ -1,7 +1,7 @@
 //! How far two bodies may penetrate before a contact between them is predicted, or reported.
 
 use super::sweep::Pair;
-use crate::contact::network::Network;
+use crate::contact::network::{Contact, Network};
 use crate::geometry::space::Space;
 
 /// Penetration, as a fraction of the fast motion, from which a pair without a contact gets one.
@@ -30,19 +30,14 @@ pub(super) struct Margin {
     pub begins: f64,
 }
 
-/// Returns the accepted penetration of a pair; `None` if the pair need not be examined.
+/// Returns the accepted penetration of a pair with these contacts; `None` if the pair need not be examined.
 pub(super) fn margin<S: Space>(
     network: &Network<S>,
-    names: (u32, u32),
+    of_pair: &[Contact<S>],
     pair: &Pair<S>,
     stage: Stage,
     compliant: bool,
 ) -> Option<Margin> {
-    let contacts = &network.contacts;
-    let first = contacts.partition_point(|c| c.key.pair() < names);
-    let of_pair = contacts[first..]
-        .iter()
-        .take_while(|c| c.key.pair() == names);
     let (mut any, mut overlap) = (false, 0.0f64);
     for contact in of_pair {
         // An intact bond keeps its gap.

@@ -8,6 +8,7 @@ mod narrow;
 mod neighbours;
 mod order;
 mod prediction;
+mod renewal;
 mod sorted;
 mod sweep;
 
@@ -21,17 +22,12 @@ use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
-use narrow::Narrow;
-use neighbours::NeighbourSearch;
-use rayon::prelude::*;
+use neighbours::{NeighbourSearch, joined};
+use renewal::{Scene, renew_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
 /// face.
 const SLACK: f64 = 0.01;
-/// Pairs per task.
-const CHUNK: usize = 256;
-/// Tasks whose contact points are kept at a time: a few megabytes.
-const BATCH: usize = 128;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
@@ -90,32 +86,23 @@ pub fn detect<S: Space>(
     if must_rebuild(network, shapes, bodies, &centres) {
         let velocities = bodies.velocity.iter().copied();
         let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-        rebuild(network, shapes, bodies, laws, &centres, &velocities, h);
+        let motion = Motion {
+            velocities: &velocities,
+            time,
+            h,
+            parallel,
+        };
+        rebuild(network, shapes, bodies, laws, &centres, &motion);
     }
-    std::mem::swap(&mut network.contacts, &mut network.old);
-    network.contacts.clear();
-    let candidates = std::mem::take(&mut network.candidates);
-    let mut narrow = Narrow::new(shapes, bodies, &centres, laws, time, h);
-    // What the points of a pair depend on is not changed by other pairs, so that they are found first.
-    if parallel {
-        for batch in candidates.chunks(BATCH * CHUNK) {
-            let chunks = batch.par_chunks(CHUNK);
-            let found: Vec<_> = chunks.map(|c| narrow.find_points(network, c)).collect();
-            for (pairs, found) in batch.chunks(CHUNK).zip(&found) {
-                narrow.update_contacts(network, pairs, found);
-            }
-        }
-    } else {
-        for pairs in candidates.chunks(CHUNK) {
-            let found = narrow.find_points(network, pairs);
-            narrow.update_contacts(network, pairs, &found);
-        }
-    }
-    let left = narrow.left();
-    network.candidates = candidates;
-    for k in left..network.old.len() {
-        drop_contact(network, k);
-    }
+    let scene = Scene {
+        shapes,
+        bodies,
+        centres: &centres,
+        laws,
+        time,
+        h,
+    };
+    renew_contacts(network, &scene, parallel);
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
@@ -180,21 +167,21 @@ fn rebuild<S: Space>(
     bodies: &Bodies<S>,
     laws: &LawTable,
     centres: &[S::Vector],
-    velocities: &[(S::Vector, S::Spin)],
-    h: f64,
+    motion: &Motion<S>,
 ) {
-    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres);
-    let mut pairs = search.pairs_of_balls();
-    let turning = search.add_pairs_with_surfaces(&mut pairs, &network.widened, velocities, h);
+    // The old list makes room for the new one.
+    network.candidates = Vec::new();
+    let search = NeighbourSearch::new(network, shapes, bodies, laws, centres, motion.parallel);
+    let pairs = search.pairs_of_balls();
+    let (mut more, turning) =
+        search.pairs_with_surfaces(&network.widened, motion.velocities, motion.h);
     // A bond may be longer than the search distance.
     let held = |c: &&Contact<S>| {
         network.bond(c).is_some_and(|b| b.intact())
             && !c.bodies.iter().any(|b| bodies.removed[*b as usize])
     };
-    pairs.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
-    pairs.sort_unstable();
-    pairs.dedup();
-    network.candidates = pairs;
+    more.extend(network.contacts.iter().filter(held).map(|c| c.key.pair()));
+    network.candidates = joined(pairs, more);
     network.turning = turning;
     network.seen_at.clear();
     network.seen_at.extend(watched(shapes, bodies, centres));
@@ -214,8 +201,7 @@ fn frame<S: Space>(body: u32, offset: &S::Vector, bodies: &Bodies<S>) -> (S::Vec
     (bodies.position[b] + S::rotate(&rotation, offset), rotation)
 }
 
-fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
-    let contact = &network.old[k];
+fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
     let Some(slot) = contact.memory() else {
         return;
     };
@@ -227,9 +213,8 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
         bond.life.fracture += torn;
         network.torn_energy += torn;
         network.memory[law].broken += 1;
-        let contact = contact.clone();
         network.broken_pairs.insert(contact.key.pair());
-        network.record_break(&contact, damage);
+        network.record_break(contact, damage);
         if let Some(record) = network.bond_breaks.last_mut() {
             record.torn = torn;
         }
@@ -237,6 +222,7 @@ fn drop_contact<S: Space>(network: &mut Network<S>, k: usize) {
     network.memory[law].release(slot as u32);
 }
 
-fn held<S: Space>(network: &Network<S>, old: Option<usize>) -> bool {
-    old.is_some_and(|k| network.bond(&network.old[k]).is_some_and(|b| b.intact()))
+#[inline]
+fn held<S: Space>(network: &Network<S>, old: Option<&Contact<S>>) -> bool {
+    old.is_some_and(|c| network.bond(c).is_some_and(|b| b.intact()))
 }

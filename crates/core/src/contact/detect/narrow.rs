@@ -1,118 +1,102 @@
 //! Narrow phase: gaps and normals of candidate pairs, and transfer of contact memory.
 
-use super::convex_pair::PairPoints;
-use super::{LawTable, drop_contact, frame, held};
+use super::renewal::{Found, Touch};
+use super::{LawTable, held};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
-use crate::geometry::convex::{ConvexCollider, Core};
+use crate::geometry::convex::ContactPoint;
 use crate::geometry::shape::{Ball, ClosestPoint, Shapes, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
-use std::ops::Range;
 
-/// One pass over the candidate pairs, in order, in parallel with the old contacts.
+/// What the narrow phase reads. Pairs do not depend on each other.
 pub(super) struct Narrow<'a, S: Space> {
+    pub(super) network: &'a Network<S>,
     pub(super) shapes: &'a Shapes<S>,
     pub(super) bodies: &'a Bodies<S>,
     /// Centres of the balls, then of the pieces (m).
     pub(super) centres: &'a [S::Vector],
     /// Cores of the pieces in world axes.
-    pub(super) cores: Vec<S::Core>,
+    pub(super) cores: &'a [S::Core],
+    /// Origins and rotations of the surfaces.
+    pub(super) frames: &'a [(S::Vector, S::Rotation)],
+    /// The balls.
+    pub(super) round: &'a [Round<S>],
     pub(super) laws: &'a LawTable,
     pub(super) time: f64,
     pub(super) h: f64,
-    /// Index of the next old contact.
-    at: usize,
-    touches: Vec<ClosestPoint<S::Vector>>,
 }
 
-impl<'a, S: Space> Narrow<'a, S> {
-    pub(super) fn new(
-        shapes: &'a Shapes<S>,
-        bodies: &'a Bodies<S>,
-        centres: &'a [S::Vector],
-        laws: &'a LawTable,
-        time: f64,
-        h: f64,
-    ) -> Self {
-        let turned = |p: &ConvexCollider<S>| p.core.turned(&bodies.rotation[p.body as usize]);
+/// Buffers that pairs use one after the other.
+pub(super) struct Scratch<S: Space> {
+    pub(super) touches: Vec<ClosestPoint<S::Vector>>,
+    pub(super) points: Vec<ContactPoint<S::Vector>>,
+    /// The old contact that each point continues.
+    pub(super) matched: Vec<Option<usize>>,
+    /// Distance of points from old contacts (m).
+    pub(super) ways: Vec<(f64, usize, usize)>,
+    /// Points that become contacts.
+    pub(super) met: Vec<(ContactPoint<S::Vector>, Option<usize>)>,
+    /// Whether each old contact of the pair goes on.
+    pub(super) taken: Vec<bool>,
+    /// A core in the axes of a surface.
+    pub(super) core: Option<S::Core>,
+}
+
+impl<S: Space> Default for Scratch<S> {
+    fn default() -> Self {
         Self {
-            shapes,
-            bodies,
-            centres,
-            cores: shapes.pieces.iter().map(turned).collect(),
-            laws,
-            time,
-            h,
-            at: 0,
             touches: Vec::new(),
+            points: Vec::new(),
+            matched: Vec::new(),
+            ways: Vec::new(),
+            met: Vec::new(),
+            taken: Vec::new(),
+            core: None,
         }
     }
+}
 
-    /// Updates the contacts of pairs, of which the convex ones have these contact points.
-    pub(super) fn update_contacts(
-        &mut self,
-        network: &mut Network<S>,
+impl<S: Space> Narrow<'_, S> {
+    /// Renews the contacts of pairs, in order; `contacts` are the old ones from the first pair to the last.
+    pub(super) fn renew<'c>(
+        &self,
         pairs: &[(u32, u32)],
-        found: &PairPoints<S>,
-    ) {
-        let mut convex = found.iter();
+        contacts: &'c mut [Contact<S>],
+    ) -> Found<'c, S> {
+        let mut found = Found::new(contacts);
+        let mut scratch = Scratch::default();
         for &(a, b) in pairs {
             if (a | b) & Key::PIECE != 0 {
-                if let Some((pair, points)) = convex.next() {
-                    self.convex_pair(network, (a, b), pair, points);
-                }
+                found.begin_pair((a, b));
+                self.convex_pair((a, b), &mut scratch, &mut found);
             } else if b & Key::SURFACE == 0 {
-                self.ball_pair(network, a, b);
+                self.ball_pair(a, b, &mut found);
             } else {
-                self.ball_on_surface(network, a, b);
+                found.begin_pair((a, b));
+                self.ball_on_surface(a, b, &mut scratch, &mut found);
             }
         }
+        found.end();
+        found
     }
 
-    /// Returns the index of the first old contact after the last candidate.
-    pub(super) fn left(&self) -> usize {
-        self.at
-    }
-
-    /// Returns the old contacts of a pair; drops those of skipped pairs.
-    pub(super) fn old_contacts_of(
-        &mut self,
-        network: &mut Network<S>,
-        pair: (u32, u32),
-    ) -> std::ops::Range<usize> {
-        while self.at < network.old.len() && network.old[self.at].key.pair() < pair {
-            drop_contact(network, self.at);
-            self.at += 1;
-        }
-        let first = self.at;
-        while self.at < network.old.len() && network.old[self.at].key.pair() == pair {
-            self.at += 1;
-        }
-        first..self.at
-    }
-
-    pub(super) fn ball_pair(&mut self, network: &mut Network<S>, a: u32, b: u32) {
-        let (p, q) = (
-            &self.shapes.balls[a as usize],
-            &self.shapes.balls[b as usize],
-        );
-        let d = self
-            .shapes
-            .periodic
-            .shortest(self.centres[a as usize] - self.centres[b as usize]);
-        let old = self.old_contacts_of(network, (a, b)).next();
+    fn ball_pair(&self, a: u32, b: u32, found: &mut Found<S>) {
+        let (p, q) = (&self.round[a as usize], &self.round[b as usize]);
+        let d = self.shapes.periodic.shortest(p.centre - q.centre);
+        let old = found.old_of_balls((a, b));
         let sum = p.radius + q.radius;
         if sum == 0.0 {
             // Points of surfaces do not touch each other.
             return;
         }
         let squared = d.dot(&d);
-        let limit = sum + network.alert;
-        if squared >= limit * limit && !held(network, old) {
-            if let Some(k) = old {
-                drop_contact(network, k);
+        let limit = sum + self.network.alert;
+        if squared >= limit * limit {
+            match old {
+                Some(k) if !held(self.network, Some(found.contact(k))) => return found.drop_old(k),
+                None => return,
+                _ => {}
             }
-            return;
         }
         let length = squared.sqrt();
         let normal = if length > 0.0 {
@@ -120,91 +104,84 @@ impl<'a, S: Space> Narrow<'a, S> {
         } else {
             S::Vector::from_slice(&[1.0])
         };
-        let (i, j) = (p.body as usize, q.body as usize);
-        let simple = |ball: &Ball<S>, b: usize| {
-            (ball.offset == S::Vector::zero()
-                && self.bodies.length[b] == ball.radius
-                && self.isotropic(b))
-                || (self.bodies.immovable(b) && self.bodies.spin[b] == S::Spin::zero())
-        };
         let Some(law) = self.laws.get(p.material, q.material) else {
             return;
         };
-        let lengths = &self.bodies.length;
-        let size = reduced_radius([p.radius, q.radius], [p.size(lengths), q.size(lengths)]);
-        let closest_point = self.centres[a as usize] - normal * p.radius;
-        let central = simple(p, i) && simple(q, j);
+        let size_of = |ball: u32| self.shapes.balls[ball as usize].size(&self.bodies.length);
+        let sizes = if p.radius > 0.0 && q.radius > 0.0 {
+            [p.radius, q.radius]
+        } else {
+            [size_of(a), size_of(b)]
+        };
+        let size = reduced_radius([p.radius, q.radius], sizes);
+        let central = p.simple && q.simple;
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
         } else {
-            let other = self.centres[b as usize] + normal * q.radius;
+            let closest_point = p.centre - normal * p.radius;
+            let other = q.centre + normal * q.radius;
             [
-                closest_point - self.bodies.position[i],
-                other - self.bodies.position[j],
+                closest_point - self.bodies.position[p.body as usize],
+                other - self.bodies.position[q.body as usize],
             ]
         };
         // A ball has its area where it touches the surface of a grain, not at the vertices beside that.
-        let vertex = |ball: &Ball<S>| {
-            let carrier = self.bodies.carrier(ball.body as usize);
-            ball.radius == 0.0 && carrier.is_some_and(|c| c.grain)
+        let vertex = |ball: &Round<S>| {
+            ball.radius == 0.0
+                && self
+                    .bodies
+                    .carrier(ball.body as usize)
+                    .is_some_and(|c| c.grain)
         };
-        let found = Contact {
+        let touch = Touch {
+            key: Key {
+                candidate: a,
+                antagonist: b,
+                feature: 0,
+            },
+            bodies: [p.body, q.body],
+            law,
             central,
             vertex_contact: vertex(p) || vertex(q),
-            ..Contact::new(
-                Key {
-                    candidate: a,
-                    antagonist: b,
-                    feature: 0,
-                },
-                [p.body, q.body],
-                law,
-                ContactGeometry {
-                    gap: length - sum,
-                    normal,
-                    arms,
-                    radius: size,
-                },
-                self.time,
-            )
+            geometry: ContactGeometry {
+                gap: length - sum,
+                normal,
+                arms,
+                radius: size,
+            },
         };
-        self.add_contact(network, found, old, size);
+        match old {
+            Some(k) => found.renew_in_place(self, k, &touch),
+            None => found.add(self, &touch, size),
+        }
     }
 
-    /// Returns whether a body's response to impulses is isotropic.
-    fn isotropic(&self, b: usize) -> bool {
-        let mass = &self.bodies.inverse_mass[b];
-        self.bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
-    }
-
-    pub(super) fn ball_on_surface(&mut self, network: &mut Network<S>, a: u32, b: u32) {
+    fn ball_on_surface(&self, a: u32, b: u32, scratch: &mut Scratch<S>, found: &mut Found<S>) {
+        let network = self.network;
         let ball = &self.shapes.balls[a as usize];
         let surface = &self.shapes.surfaces[(b & !Key::SURFACE) as usize];
-        let old = self.old_contacts_of(network, (a, b));
-        let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
+        let (origin, rotation) = self.frames[(b & !Key::SURFACE) as usize];
         let mut apart = self.centres[a as usize] - origin;
         if surface.shape.is_closed() {
             apart = self.shapes.periodic.shortest(apart);
         }
         let local = S::unrotate(&rotation, &apart);
-        let margin = self.reach(network, old.clone());
-        let mut touches = std::mem::take(&mut self.touches);
+        let margin = self.reach(found.old());
+        let touches = &mut scratch.touches;
         touches.clear();
-        surface
-            .shape
-            .touches(&local, ball.radius + margin, &mut touches);
+        surface.shape.touches(&local, ball.radius + margin, touches);
         if touches.is_empty() {
             // A point that came too fast is pushed out of a grain from any depth.
             touches.extend(surface.shape.enclosing(&local));
         }
-        let mut alone = Vec::new();
+        let mut alone = None;
         // The vertices of a grain are points of their own.
         let several = ball.radius > 0.0 && !surface.shape.is_closed();
         if surface.shape.deforms() && several {
-            let found = touches.len();
+            let nearest = touches.len();
             let reach = ball.radius + margin;
-            surface.shape.vertices_within(&local, reach, &mut touches);
-            let (first, more) = touches.split_at_mut(found);
+            surface.shape.vertices_within(&local, reach, touches);
+            let (first, more) = touches.split_at_mut(nearest);
             let mut kept = 0;
             for k in 0..more.len() {
                 if first.iter().all(|t| t.feature != more[k].feature) {
@@ -212,7 +189,7 @@ impl<'a, S: Space> Narrow<'a, S> {
                     kept += 1;
                 }
             }
-            touches.truncate(found + kept);
+            touches.truncate(nearest + kept);
         }
         // Its area, with bonds and attraction, is that of a ball or of a point of a surface once: at the nearest point.
         let point_of_surface = ball.radius == 0.0 && ball.area == S::Vector::zero();
@@ -220,13 +197,15 @@ impl<'a, S: Space> Narrow<'a, S> {
             let nearest = touches.iter().map(|t| t.distance);
             let nearest = nearest.fold(f64::INFINITY, f64::min);
             let first = touches.iter().find(|t| t.distance == nearest);
-            alone.extend(first.map(|t| t.feature));
+            alone = first.map(|t| t.feature);
             touches.sort_by_key(|t| t.feature);
         }
         let Some(law) = self.laws.get(ball.material, surface.material) else {
             return;
         };
-        let mut taken = vec![false; old.len()];
+        let taken = &mut scratch.taken;
+        taken.clear();
+        taken.resize(found.old().len(), false);
         let (i, j) = (ball.body as usize, surface.body as usize);
         let grain = |b: usize| self.bodies.carrier(b).is_some_and(|c| c.grain);
         let twice = ball.radius == 0.0 && grain(i) && grain(j);
@@ -238,33 +217,38 @@ impl<'a, S: Space> Narrow<'a, S> {
         };
         let size = ball.size(&self.bodies.length);
         // A bond whose facet is no longer touched goes on at the nearest one, also where that had a contact without a bond.
-        let left = old
-            .clone()
-            .find(|k| is_gone(network, *k, &touches) && held(network, Some(*k)));
-        let heir = alone
-            .iter()
-            .find(|f| !held(network, of_feature(network, &old, **f)));
-        let left = left.filter(|_| heir.is_some());
-        for touch in &touches {
+        let old = found.old();
+        let mut heir = None;
+        let mut left = None;
+        if let Some(feature) = alone {
+            let of = old.iter().find(|c| c.key.feature == u64::from(feature));
+            heir = Some(feature).filter(|_| !held(network, of));
+            left = heir.and_then(|_| {
+                let gone = |c: &Contact<S>| is_gone(c, touches) && held(network, Some(c));
+                old.iter().position(gone)
+            });
+        }
+        for touch in touches.iter() {
             // The contact of the same feature, or else the nearest of those no longer found.
+            let old = found.old();
             let matched = match left {
-                Some(k) if heir == Some(&touch.feature) => Some(k),
+                Some(k) if heir == Some(touch.feature) => Some(k),
                 _ => {
-                    let free = |k: &usize| !taken[k - old.start] && Some(*k) != left;
+                    let free = |k: &usize| !taken[*k] && Some(*k) != left;
                     let of = u64::from(touch.feature);
-                    let mut all = old.clone().filter(free);
-                    let same = all.find(|k| network.old[*k].key.feature == of);
-                    let mut others = old.clone().filter(free);
-                    same.or_else(|| others.find(|k| is_gone(network, *k, &touches)))
+                    let mut all = (0..old.len()).filter(free);
+                    let same = all.find(|k| old[*k].key.feature == of);
+                    let mut others = (0..old.len()).filter(free);
+                    same.or_else(|| others.find(|k| is_gone(&old[*k], touches)))
                 }
             };
-            let matched = matched.filter(|k| !taken[k - old.start]);
+            let matched = matched.filter(|k| !taken[*k]);
             let gap = touch.distance - ball.radius;
-            if gap >= network.alert && !held(network, matched) {
+            if gap >= network.alert && !held(network, matched.map(|k| &old[k])) {
                 continue;
             }
             if let Some(k) = matched {
-                taken[k - old.start] = true;
+                taken[k] = true;
             }
             let normal = S::rotate(&rotation, &touch.normal);
             let own = S::unrotate(&self.bodies.rotation[i], &normal);
@@ -273,41 +257,36 @@ impl<'a, S: Space> Narrow<'a, S> {
             let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::zero();
             let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;
             let arm = self.centres[a as usize] - normal * ball.radius - self.bodies.position[i];
-            let found = Contact {
-                central: still && centred && self.isotropic(i),
-                vertex_contact: alone.first().is_some_and(|f| *f != touch.feature),
-                ..Contact::new(
-                    Key {
-                        candidate: a,
-                        antagonist: b,
-                        feature: u64::from(touch.feature),
-                    },
-                    [ball.body, surface.body],
-                    law,
-                    ContactGeometry {
-                        gap,
-                        normal,
-                        arms: [arm, closest_point - self.bodies.position[j]],
-                        radius,
-                    },
-                    self.time,
-                )
+            let touch = Touch {
+                key: Key {
+                    candidate: a,
+                    antagonist: b,
+                    feature: u64::from(touch.feature),
+                },
+                bodies: [ball.body, surface.body],
+                law,
+                central: still && centred && is_isotropic(self.bodies, i),
+                vertex_contact: alone.is_some_and(|f| f != touch.feature),
+                geometry: ContactGeometry {
+                    gap,
+                    normal,
+                    arms: [arm, closest_point - self.bodies.position[j]],
+                    radius,
+                },
             };
-            self.add_contact(network, found, matched, size);
-        }
-        for k in old.clone() {
-            if !taken[k - old.start] {
-                drop_contact(network, k);
+            match matched {
+                Some(k) => found.renew(self, k, &touch),
+                None => found.add(self, &touch, size),
             }
         }
-        self.touches = touches;
+        found.drop_others(|k| taken[k]);
     }
 
     /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the same
     /// extension within a step, and the displacement of its bodies in the step.
-    pub(super) fn reach(&self, network: &Network<S>, old: Range<usize>) -> f64 {
-        let stretch = |k: usize| {
-            let old = &network.old[k];
+    pub(super) fn reach(&self, old: &[Contact<S>]) -> f64 {
+        let network = self.network;
+        let stretch = |old: &Contact<S>| {
             let bond = network.bond(old).filter(|b| b.intact())?;
             let moved = [0, 1].map(|side| {
                 let b = old.bodies[side] as usize;
@@ -317,86 +296,46 @@ impl<'a, S: Space> Narrow<'a, S> {
             let open = old.gap.max(0.0) + bond.opening_t.norm();
             Some(network.skin + 2.0 * open + moved[0] + moved[1])
         };
-        network.alert + old.filter_map(stretch).fold(0.0, f64::max)
-    }
-
-    /// Adds a contact, with the memory of an old one of the same key, of bodies of the reduced radius `size` (m).
-    pub(super) fn add_contact(
-        &self,
-        network: &mut Network<S>,
-        mut found: Contact<S>,
-        old: Option<usize>,
-        size: f64,
-    ) {
-        match old {
-            Some(k) => {
-                let old = &network.old[k];
-                found.impulse = old.impulse;
-                found.moment = old.moment;
-                found.formed_at = old.formed_at;
-                found.friction_work = old.friction_work;
-                found.compression_time = old.compression_time;
-                found.slot = old.slot;
-                found.broken = old.broken;
-                found.spring = old.spring;
-                let (from, normal) = (old.normal, found.normal);
-                // Tangential forces of springs and the memory of a bond rotate with the pair.
-                let [i, j] = found.bodies.map(|b| self.bodies.spin[b as usize]);
-                let angle = || 0.5 * self.h * S::split_spin(&normal, &(i + j)).0;
-                if found.spring.force_t != S::Tangent::zero() {
-                    let force = &mut found.spring.force_t;
-                    *force = S::transport(&from, &normal, angle(), force);
-                }
-                if let Some(slot) = found.memory() {
-                    let angle = angle();
-                    let memory = &mut network.memory[found.law as usize];
-                    let bond = &mut memory.bonds[slot];
-                    bond.opening_t = S::transport(&from, &found.normal, angle, &bond.opening_t);
-                    if let Some(rotation) = memory.rotations.get_mut(slot) {
-                        *rotation = S::transport_spin(&from, &found.normal, angle, rotation);
-                    }
-                }
-            }
-            None => {
-                found.broken = network.broken_pairs.contains(&found.key.pair());
-                // Penetrations in the initial state belong to the sample.
-                if self.time > 0.0 {
-                    let pair = found.key.pair();
-                    let before = network.old[..self.at].iter().rev();
-                    let same = before.take_while(|c| c.key.pair() == pair);
-                    let known = same.map(|c| -c.gap).fold(0.0, f64::max);
-                    // A point of a grain is as thick as its grain.
-                    let grain =
-                        |b: &&u32| self.bodies.carrier(**b as usize).is_some_and(|c| c.grain);
-                    let grain = found.bodies.iter().find(grain);
-                    let size = grain.map_or(size, |b| self.bodies.length[*b as usize]);
-                    let compliant = network.memory[found.law as usize].compliant;
-                    network.step_size.record_late(
-                        &found,
-                        [known, size],
-                        compliant,
-                        self.time,
-                        self.bodies,
-                    );
-                }
-            }
-        }
-        network.contacts.push(found);
+        network.alert + old.iter().filter_map(stretch).fold(0.0, f64::max)
     }
 }
 
-/// The old contact of a pair with a feature of its surface.
-fn of_feature<S: Space>(network: &Network<S>, old: &Range<usize>, feature: u32) -> Option<usize> {
-    let mut all = old.clone();
-    all.find(|k| network.old[*k].key.feature == u64::from(feature))
+/// Returns whether a body's response to impulses is isotropic.
+fn is_isotropic<S: Space>(bodies: &Bodies<S>, b: usize) -> bool {
+    let mass = &bodies.inverse_mass[b];
+    bodies.tensor(b).is_none() && (1..S::D).all(|k| mass[k] == mass[0])
+}
+
+/// What a pair of balls needs of either, side by side in memory.
+pub(super) struct Round<S: Space> {
+    centre: S::Vector,
+    radius: f64,
+    body: u32,
+    material: u16,
+    /// Whether it is a whole body whose response is isotropic, or belongs to one that stands still: contacts of two such balls are
+    /// central.
+    simple: bool,
+}
+
+impl<S: Space> Round<S> {
+    pub(super) fn new(ball: &Ball<S>, centre: S::Vector, bodies: &Bodies<S>) -> Self {
+        let b = ball.body as usize;
+        let whole = ball.offset == S::Vector::zero()
+            && bodies.length[b] == ball.radius
+            && is_isotropic(bodies, b);
+        Self {
+            centre,
+            radius: ball.radius,
+            body: ball.body,
+            material: ball.material,
+            simple: whole || (bodies.immovable(b) && bodies.spin[b] == S::Spin::zero()),
+        }
+    }
 }
 
 /// Whether no touch has the feature of an old contact.
-fn is_gone<S: Space>(
-    network: &Network<S>,
-    old: usize,
-    touches: &[ClosestPoint<S::Vector>],
-) -> bool {
-    let of = network.old[old].key.feature;
-    touches.iter().all(|t| u64::from(t.feature) != of)
+fn is_gone<S: Space>(old: &Contact<S>, touches: &[ClosestPoint<S::Vector>]) -> bool {
+    touches
+        .iter()
+        .all(|t| u64::from(t.feature) != old.key.feature)
 }

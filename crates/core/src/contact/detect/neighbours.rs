@@ -7,6 +7,12 @@ use crate::contact::network::{Key, Network};
 use crate::geometry::grid;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads;
+
+/// Shapes per task.
+const CHUNK: usize = 2048;
+/// Time of a shape near a surface (ns).
+const COST: f64 = 20.0;
 
 /// The neighbour list is built for this multiple of the spin of rotating surfaces.
 const TURNING: f64 = 1.5;
@@ -29,6 +35,7 @@ pub(super) struct NeighbourSearch<'a, S: Space> {
     reach: f64,
     /// Whether each body never moves.
     still: Vec<bool>,
+    parallel: bool,
 }
 
 impl<'a, S: Space> NeighbourSearch<'a, S> {
@@ -38,6 +45,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         bodies: &'a Bodies<S>,
         laws: &'a LawTable,
         centres: &'a [S::Vector],
+        parallel: bool,
     ) -> Self {
         let mut radii: Vec<f64> = shapes.balls.iter().map(|b| b.radius).collect();
         radii.extend(shapes.pieces.iter().map(|p| p.bound));
@@ -55,6 +63,7 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
             radii,
             reach: network.alert + network.skin,
             still: bodies.still(),
+            parallel,
         }
     }
 
@@ -84,86 +93,170 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
 
     /// Returns the pairs of balls and pieces.
     pub(super) fn pairs_of_balls(&self) -> Vec<(u32, u32)> {
-        let periodic = &self.shapes.periodic;
-        let pairs = grid::pairs(self.centres, &self.radii, self.reach, periodic, |a, b| {
+        let (periodic, reach) = (&self.shapes.periodic, self.reach);
+        let keep = |a: u32, b: u32| {
             let (a, b) = (self.owner(a), self.owner(b));
             self.may_touch(a.0, b.0) && self.laws.get(a.1, b.1).is_some()
-        });
-        if self.shapes.pieces.is_empty() {
-            return pairs;
+        };
+        let mut pairs = grid::pairs(
+            self.centres,
+            &self.radii,
+            reach,
+            periodic,
+            self.parallel,
+            keep,
+        );
+        if !self.shapes.pieces.is_empty() {
+            let name = |at: u32| self.owner(at).2;
+            pairs.iter_mut().for_each(|p| *p = (name(p.0), name(p.1)));
         }
-        let name = |at: u32| self.owner(at).2;
-        pairs.iter().map(|p| (name(p.0), name(p.1))).collect()
+        pairs
     }
 
-    /// Adds the pairs of balls and pieces with surfaces; returns the spin of each surface for which the list is
-    /// valid (rad/s), zero where rotation does not move it.
-    pub(super) fn add_pairs_with_surfaces(
+    /// Returns the pairs of balls and pieces with surfaces, surface by surface, and the spin of each surface for which the list
+    /// is valid (rad/s), zero where rotation does not move it.
+    pub(super) fn pairs_with_surfaces(
         &self,
-        pairs: &mut Vec<(u32, u32)>,
         widened: &[f64],
         velocities: &[(S::Vector, S::Spin)],
         h: f64,
-    ) -> Vec<f64> {
-        let mut turning = Vec::with_capacity(self.shapes.surfaces.len());
+    ) -> (Vec<(u32, u32)>, Vec<f64>) {
+        let surfaces = &self.shapes.surfaces;
         let all: Vec<u32> = (0..self.radii.len() as u32).collect();
-        let any_closed = self.shapes.surfaces.iter().any(|s| s.shape.is_closed());
+        let any_closed = surfaces.iter().any(|s| s.shape.is_closed());
         let sorted = any_closed.then(|| Sorted::new::<S>(self.centres, &self.shapes.periodic));
         let largest = self.radii.iter().copied().fold(0.0, f64::max);
-        let mut around = Vec::new();
-        for (s, surface) in self.shapes.surfaces.iter().enumerate() {
-            let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
-            let pivot = self.bodies.position[surface.body as usize];
-            let spin = velocities[surface.body as usize].1;
-            let follows = surface.shape.deforms();
-            let sweeps = !follows
-                && !surface
-                    .shape
-                    .keeps_place(&S::unrotate_spin(&rotation, &spin));
-            let closed = surface.shape.is_closed();
+        let divide = threads::pays(self.parallel, surfaces.len() * all.len(), COST);
+        let size_of_task = threads::any_size(CHUNK);
+        let of_surface = |s: usize| {
+            let surface = &surfaces[s];
             let vertices = surface.shape.moving_vertices().iter();
             let size = vertices.map(|x| x.norm()).fold(0.0, f64::max);
-            let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
-            turning.push(spin);
-            let extra = widening(widened, surface.body);
+            let spin = velocities[surface.body as usize].1;
+            let rotation = &self.bodies.rotation[surface.body as usize];
+            let own = S::unrotate_spin(rotation, &spin);
+            let sweeps = !surface.shape.deforms() && !surface.shape.keeps_place(&own);
+            let search = SurfaceSearch {
+                s,
+                size,
+                sweep: sweeps.then(|| TURNING * spin.norm() * h),
+                extra: widening(widened, surface.body),
+            };
+            let mut around = Vec::new();
             let candidates = match &sorted {
-                Some(sorted) if closed => {
-                    let most = size + largest + self.reach + extra;
+                Some(sorted) if surface.shape.is_closed() => {
+                    let (origin, _) = frame(surface.body, &surface.offset, self.bodies);
+                    let most = size + largest + self.reach + search.extra;
                     sorted.near(&origin, most, &mut around);
                     &around
                 }
                 _ => &all,
             };
-            for at in candidates {
-                let (body, material, name) = self.owner(*at);
-                let radius = self.radii[*at as usize];
-                let known = self.laws.get(material, surface.material).is_some();
-                if known && self.may_touch(body, surface.body) {
-                    let centre = self.centres[*at as usize];
-                    let mut reach = radius + self.reach + extra;
-                    let mut apart = centre - origin;
-                    if closed {
-                        apart = self.shapes.periodic.shortest(apart);
-                        let far = apart.norm();
-                        if far > size + reach {
-                            continue;
-                        }
-                        if far < size {
-                            // Within a grain no place is too deep.
-                            pairs.push((name, s as u32 | Key::SURFACE));
-                            continue;
-                        }
-                    }
-                    let local = S::unrotate(&rotation, &apart);
-                    if sweeps {
-                        reach += spin * h * ((centre - pivot).norm() + radius);
-                    }
-                    if surface.shape.near(&local, reach) {
-                        pairs.push((name, s as u32 | Key::SURFACE));
-                    }
+            let found = threads::map_chunks(divide, candidates, size_of_task, |_, candidates| {
+                self.near_surface(&search, candidates)
+            });
+            let spin = if sweeps { TURNING * spin.norm() } else { 0.0 };
+            (found.concat(), spin)
+        };
+        let found = threads::map_ranges(divide, surfaces.len(), 1, |s| of_surface(s.start));
+        let (mut pairs, mut turning) = (Vec::new(), Vec::with_capacity(surfaces.len()));
+        for (of_surface, spin) in found {
+            pairs.extend(of_surface);
+            turning.push(spin);
+        }
+        (pairs, turning)
+    }
+
+    /// Returns the pairs of some balls and pieces with a surface.
+    fn near_surface(&self, search: &SurfaceSearch, candidates: &[u32]) -> Vec<(u32, u32)> {
+        let surface = &self.shapes.surfaces[search.s];
+        let (origin, rotation) = frame(surface.body, &surface.offset, self.bodies);
+        let pivot = self.bodies.position[surface.body as usize];
+        let closed = surface.shape.is_closed();
+        let mut pairs = Vec::new();
+        for at in candidates {
+            let (body, material, name) = self.owner(*at);
+            let radius = self.radii[*at as usize];
+            let known = self.laws.get(material, surface.material).is_some();
+            if !known || !self.may_touch(body, surface.body) {
+                continue;
+            }
+            let centre = self.centres[*at as usize];
+            let mut reach = radius + self.reach + search.extra;
+            let mut apart = centre - origin;
+            let pair = (name, search.s as u32 | Key::SURFACE);
+            if closed {
+                apart = self.shapes.periodic.shortest(apart);
+                let far = apart.norm();
+                if far > search.size + reach {
+                    continue;
+                }
+                if far < search.size {
+                    // Within a grain no place is too deep.
+                    pairs.push(pair);
+                    continue;
                 }
             }
+            if let Some(sweep) = search.sweep {
+                reach += sweep * ((centre - pivot).norm() + radius);
+            }
+            if surface.shape.near(&S::unrotate(&rotation, &apart), reach) {
+                pairs.push(pair);
+            }
         }
-        turning
+        pairs
+    }
+}
+
+/// The search for what is near a surface.
+struct SurfaceSearch {
+    /// Index of the surface.
+    s: usize,
+    /// Distance of its farthest vertex, if it deforms (m).
+    size: f64,
+    /// Angle by which it turns before the list is built again, if that moves it (rad).
+    sweep: Option<f64>,
+    /// Additional range (m).
+    extra: f64,
+}
+
+/// Joins sorted pairs with some more in any order; each pair once.
+pub(super) fn joined(pairs: Vec<(u32, u32)>, mut more: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
+    if more.is_empty() {
+        return pairs;
+    }
+    more.sort_unstable();
+    more.dedup();
+    let mut out = Vec::with_capacity(pairs.len() + more.len());
+    let mut more = more.into_iter().peekable();
+    for pair in pairs {
+        while let Some(other) = more.next_if(|other| *other <= pair) {
+            if other < pair {
+                out.push(other);
+            }
+        }
+        out.push(pair);
+    }
+    out.extend(more);
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::joined;
+
+    #[test]
+    fn joined_pairs_are_sorted_and_single() {
+        let pairs: Vec<(u32, u32)> = (0..20).map(|k| (k / 3, 2 * k)).collect();
+        for step in [1, 2, 7, 50] {
+            let more: Vec<_> = (0..40).map(|k| (k * step % 9, k)).collect();
+            let more = [more.clone(), more].concat();
+            let mut all = [pairs.clone(), more.clone()].concat();
+            all.sort_unstable();
+            all.dedup();
+            assert_eq!(joined(pairs.clone(), more), all);
+        }
+        assert_eq!(joined(Vec::new(), vec![(2, 1), (1, 2)]), [(1, 2), (2, 1)]);
+        assert_eq!(joined(pairs.clone(), Vec::new()), pairs);
     }
 }

@@ -6,16 +6,20 @@ use super::extents::Extents;
 use super::margin::{Stage, margin};
 use super::order::{PredictedMeeting, mark_later};
 use super::sweep::{Course, Pair, Sweep};
-use super::{CHUNK, LawTable, centres, rebuild};
+use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key, Network};
 use crate::geometry::grid;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
-use rayon::prelude::*;
+use crate::threads;
 
 /// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
 const HEADROOM: f64 = 1.5;
+/// Pairs per task.
+const CHUNK: usize = 256;
+/// Time of a pair (ns).
+const COST: f64 = 20.0;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
@@ -114,16 +118,16 @@ pub fn report_first_move<S: Space>(
 ) {
     let velocities = bodies.velocity.iter().copied();
     let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
-    if network.seen_at.is_empty() {
-        let centres = centres(shapes, bodies);
-        rebuild(network, shapes, bodies, laws, &centres, &velocities, length);
-    }
     let motion = Motion {
         velocities: &velocities,
         time,
         h: length,
         parallel: false,
     };
+    if network.seen_at.is_empty() {
+        let centres = centres(shapes, bodies);
+        rebuild(network, shapes, bodies, laws, &centres, &motion);
+    }
     report_passing(network, shapes, bodies, laws, &motion);
 }
 
@@ -169,15 +173,7 @@ fn widen<S: Space>(
         };
         let centres = centres(shapes, bodies);
         limit(network, shapes, &centres);
-        rebuild(
-            network,
-            shapes,
-            bodies,
-            laws,
-            &centres,
-            motion.velocities,
-            motion.h,
-        );
+        rebuild(network, shapes, bodies, laws, &centres, motion);
         let looked = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
         let beyond = |b: &usize| need(&travels[*b]) > looked(*b);
         let farthest = (0..bodies.len())
@@ -274,27 +270,55 @@ fn find_closing<S: Space>(
         alert: network.alert,
     };
     let fast = network.fast;
+    let balls = shapes.balls.iter().map(|b| b.body);
+    let pieces = shapes.pieces.iter().map(|p| p.body);
+    let of = balls.chain(pieces);
+    let of = of.chain(shapes.surfaces.iter().map(|s| s.body));
     let search = Search {
         network,
         sweep: &sweep,
         laws,
-        travels: &travels,
+        travels: of.map(|b| travels[b as usize]).collect(),
+        // A pair with NaN is followed, and reported.
+        farthest: travels.iter().fold(0.0, |far, x| {
+            if *x <= far || f64::is_nan(far) {
+                far
+            } else {
+                *x
+            }
+        }),
         turning,
         stage,
     };
     let examine = |pairs: &[(u32, u32)]| -> Vec<Meeting<S>> {
+        // Pairs and contacts are in the same order.
+        let contacts = &search.network.contacts;
+        let mut at = pairs.first().map_or(0, |first| {
+            contacts.partition_point(|c| c.key.pair() < *first)
+        });
+        let mut of_pair = |names: (u32, u32)| {
+            while contacts.get(at).is_some_and(|c| c.key.pair() < names) {
+                at += 1;
+            }
+            let first = at;
+            while contacts.get(at).is_some_and(|c| c.key.pair() == names) {
+                at += 1;
+            }
+            &contacts[first..at]
+        };
         let pairs = pairs.iter();
-        pairs.filter_map(|names| search.examine(*names)).collect()
+        let examine = |names: &(u32, u32)| {
+            let pair = search.fast_pair(*names)?;
+            search.examine(*names, &pair, of_pair(*names))
+        };
+        pairs.filter_map(examine).collect()
     };
-    let met: Vec<Meeting<S>> = if motion.parallel {
-        let parts = candidates.par_chunks(CHUNK).map(examine);
-        let parts: Vec<_> = parts.collect();
-        parts.into_iter().flatten().collect()
-    } else {
-        examine(&candidates)
-    };
+    let divide = threads::pays(motion.parallel, candidates.len(), COST);
+    let met = threads::map_chunks(divide, &candidates, threads::any_size(CHUNK), |_, pairs| {
+        examine(pairs)
+    });
     let (mut found, mut meetings) = (Vec::new(), Vec::new());
-    for meeting in met {
+    for meeting in met.into_iter().flatten() {
         let known = found.len();
         found.extend(meeting.contacts);
         if let Some(at) = meeting.at {
@@ -338,8 +362,9 @@ struct Search<'a, S: Space> {
     network: &'a Network<S>,
     sweep: &'a Sweep<'a, S>,
     laws: &'a LawTable,
-    /// Displacement of each body in the step (m).
-    travels: &'a [f64],
+    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all bodies.
+    travels: Vec<f64>,
+    farthest: f64,
     /// Whether a surface moves by rotation.
     turning: bool,
     stage: Stage,
@@ -371,9 +396,23 @@ impl<'a, S: Space> Search<'a, S> {
         } else {
             self.network.fast
         };
-        let travel = |name: u32| self.travels[body_of(self.sweep.shapes, name)];
-        if travel(names.0) + travel(names.1) <= slow && !turns {
-            return None;
+        if !turns {
+            let [balls, pieces] = [
+                self.sweep.shapes.balls.len(),
+                self.sweep.shapes.pieces.len(),
+            ];
+            let travel = |name: u32| {
+                let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
+                let first = match name & (Key::PIECE | Key::SURFACE) {
+                    0 => 0,
+                    Key::PIECE => balls,
+                    _ => balls + pieces,
+                };
+                self.travels[first + k]
+            };
+            if 2.0 * self.farthest <= slow || travel(names.0) + travel(names.1) <= slow {
+                return None;
+            }
         }
         let pair = self.sweep.pair(names);
         // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
@@ -384,14 +423,18 @@ impl<'a, S: Space> Search<'a, S> {
         }
     }
 
-    /// Follows a pair through the step, if its relative motion is fast: its contacts if it meets, or that it is to be reported.
-    fn examine(&self, names: (u32, u32)) -> Option<Meeting<S>> {
-        let pair = &self.fast_pair(names)?;
+    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that it is to be reported.
+    fn examine(
+        &self,
+        names: (u32, u32),
+        pair: &Pair<S>,
+        contacts: &[Contact<S>],
+    ) -> Option<Meeting<S>> {
         let sweep = self.sweep;
         let [one, other] = pair.materials();
         let law = self.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
-        let margin = margin(self.network, names, pair, self.stage, compliant)?;
+        let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
         if sweep.course(pair, margin.deepest) == Course::Clear {
             return None;
         }

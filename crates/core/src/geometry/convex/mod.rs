@@ -136,6 +136,9 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     #[must_use]
     fn turned(&self, rotation: &S::Rotation) -> Self;
 
+    /// As [`Core::turned`], in the place of another core, whose buffers are used again.
+    fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);
+
     /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
     /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).
     fn contact_points(

@@ -11,12 +11,19 @@ use nalgebra::{Matrix1, Vector2};
 /// Cosine of the largest angle between two sides that count as opposite: about five degrees.
 const FACING: f64 = 0.996;
 
+/// Bound of the rounding of rotations and distances, relative to the size.
+const ROUNDING: f64 = 1e-12;
+
 /// Anticlockwise corners, and the outward unit normals of the sides that start at them. Two points are a
 /// segment with two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     points: Vec<Vector2<f64>>,
     normals: Vec<Vector2<f64>>,
+    /// Least distance of a side from the origin (m), slightly less for rounding; none if that is outside. Rotation keeps it.
+    inner: f64,
+    /// Distance of the farthest corner from the origin (m), up to rounding.
+    far: f64,
 }
 
 /// Reason why points do not form a convex polygon.
@@ -115,16 +122,30 @@ impl Polygon {
             Vector2::new(along.y, -along.x) / along.norm()
         };
         let normals = (0..n).map(normal).collect();
-        Self { points, normals }
+        Self::of(points, normals)
+    }
+
+    fn of(points: Vec<Vector2<f64>>, normals: Vec<Vector2<f64>>) -> Self {
+        let height = points.iter().zip(&normals).map(|(p, n)| p.dot(n));
+        let inner = height.fold(f64::INFINITY, f64::min);
+        let far = points.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        Self {
+            points,
+            normals,
+            inner: if inner > 0.0 {
+                inner - ROUNDING * far
+            } else {
+                f64::NEG_INFINITY
+            },
+            far,
+        }
     }
 
     /// Returns the part of a body with this core and a rounding radius (m).
     pub fn part(&self, rounding: f64) -> ConvexPart<Dim2> {
         let properties = mass::of(&self.points, rounding);
-        let core = Self {
-            points: self.points.iter().map(|p| p - properties.centre).collect(),
-            normals: self.normals.clone(),
-        };
+        let points = self.points.iter().map(|p| p - properties.centre);
+        let core = Self::of(points.collect(), self.normals.clone());
         ConvexPart {
             bound: core.farthest() + rounding,
             core,
@@ -153,34 +174,54 @@ impl Polygon {
 
     /// Returns the two ends of a side (m).
     pub fn side(&self, k: usize) -> (Vector2<f64>, Vector2<f64>) {
-        (self.points[k], self.points[(k + 1) % self.points.len()])
+        let next = if k + 1 == self.points.len() { 0 } else { k + 1 };
+        (self.points[k], self.points[next])
     }
 
     /// Returns the distance of the farthest corner from the origin (m).
     pub fn farthest(&self) -> f64 {
-        self.points.iter().map(|p| p.norm()).fold(0.0, f64::max)
+        let squared = self.points.iter().map(|p| p.norm_squared());
+        squared.fold(0.0, f64::max).sqrt()
+    }
+
+    /// Returns the largest error of rounding of a distance to another polygon near it, with its centre at `apart` (m).
+    pub(super) fn rounding(&self, other: &Self, apart: &Vector2<f64>) -> f64 {
+        ROUNDING * (self.far + other.far + apart.amax())
+    }
+
+    /// Returns the radius of a circle about the origin within the polygon (m); minus infinity if the origin is not.
+    pub fn inner(&self) -> f64 {
+        self.inner
     }
 
     /// Returns the side whose normal is most opposed to a direction.
     pub fn facing(&self, direction: &Vector2<f64>) -> usize {
-        let against = |k: &usize| self.normals[*k].dot(direction);
-        (0..self.normals.len())
-            .min_by(|a, b| against(a).total_cmp(&against(b)))
-            .unwrap_or(0)
+        let mut best: (f64, usize) = (f64::INFINITY, 0);
+        for (k, normal) in self.normals.iter().enumerate() {
+            let along = normal.dot(direction);
+            if along.total_cmp(&best.0).is_lt() {
+                best = (along, k);
+            }
+        }
+        best.1
     }
 
     /// Returns the signed distance of a point from the boundary (m, negative inside), the unit normal at the
     /// nearest point, and the corner if that is one.
     pub fn distance(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>, Option<usize>) {
-        let depth = |k: usize| (point - self.points[k]).dot(&self.normals[k]);
         let n = self.points.len();
-        let deepest = (0..n)
-            .max_by(|a, b| depth(*a).total_cmp(&depth(*b)))
-            .unwrap_or(0);
+        let (mut deepest, mut depth): (_, f64) = (0, f64::NEG_INFINITY);
+        for (k, (corner, normal)) in self.points.iter().zip(&self.normals).enumerate() {
+            let height = (point - corner).dot(normal);
+            // Of equal ones the last.
+            if height.total_cmp(&depth).is_ge() {
+                (deepest, depth) = (k, height);
+            }
+        }
         let (a, b) = self.side(deepest);
         let s = (point - a).dot(&(b - a));
-        if depth(deepest) <= 0.0 || (s >= 0.0 && s <= (b - a).norm_squared()) {
-            return (depth(deepest), self.normals[deepest], None);
+        if depth <= 0.0 || (s >= 0.0 && s <= (b - a).norm_squared()) {
+            return (depth, self.normals[deepest], None);
         }
         // Outside, beyond the ends of that side: the nearest of all sides and corners.
         let mut best = (f64::INFINITY, self.normals[deepest], None);
@@ -211,12 +252,23 @@ impl Polygon {
 
 impl Core<Dim2> for Polygon {
     fn turned(&self, rotation: &f64) -> Self {
+        let mut out = Self {
+            points: Vec::with_capacity(self.points.len()),
+            normals: Vec::with_capacity(self.normals.len()),
+            ..*self
+        };
+        self.turn_into(rotation, &mut out);
+        out
+    }
+
+    fn turn_into(&self, rotation: &f64, out: &mut Self) {
         let (s, c) = rotation.sin_cos();
         let turn = |v: &Vector2<f64>| Vector2::new(c * v.x - s * v.y, s * v.x + c * v.y);
-        Self {
-            points: self.points.iter().map(turn).collect(),
-            normals: self.normals.iter().map(turn).collect(),
-        }
+        out.points.clear();
+        out.points.extend(self.points.iter().map(turn));
+        out.normals.clear();
+        out.normals.extend(self.normals.iter().map(turn));
+        (out.inner, out.far) = (self.inner, self.far);
     }
 
     fn contact_points(

@@ -24,19 +24,30 @@ pub fn contact_points(
 ) {
     let reach = tolerances.reach + roundings[0] + roundings[1];
     let (from_a, side_a) = separation(a, b, &-apart);
+    if from_a > reach {
+        return;
+    }
     let (from_b, side_b) = separation(b, a, apart);
-    if from_a.max(from_b) > reach {
+    if from_b > reach {
         return;
     }
     // Of two equally good sides the candidate's is used, independent of rounding.
     let a_leads = from_a + tolerances.slack * 1e-3 >= from_b;
     let best = if a_leads { from_a } else { from_b };
-    if best > 0.0 {
-        let corners = nearest_corners(a, b, apart);
-        let (i, j, d) = corners;
+    let on_side = |slack: f64| {
+        if a_leads {
+            lies_on_side(a, b, side_a, &-apart, best, slack)
+        } else {
+            lies_on_side(b, a, side_b, apart, best, slack)
+        }
+    };
+    if best > 0.0 && !tolerances.held && !on_side(tolerances.slack) {
+        let rounding = a.rounding(b, apart);
+        let (i, j, d) = nearest_corners(a, b, apart, side_b, rounding);
         let (distance, slack) = (d.norm(), tolerances.slack);
         let corner = distance * distance - best * best > slack * slack;
-        if corner && !tolerances.held && distance < nearest_side(a, b, apart) {
+        let nearer = |of, to, apart: &V, side| is_nearer(of, to, apart, side, distance, rounding);
+        if corner && !nearer(a, b, &-apart, side_a) && !nearer(b, a, apart, side_b) {
             if distance <= reach {
                 let normal = d / distance;
                 let (pa, pb) = (a.points()[i] + apart, b.points()[j]);
@@ -66,9 +77,9 @@ pub fn contact_points(
     };
     let normal = lead.normals()[side];
     let ends = clip(lead, other, side, &(at_other - at_lead), tolerances.slack);
-    let along = ends.len() == 2 && other.faces(&normal);
+    let along = ends.as_slice().len() == 2 && other.faces(&normal);
     let facing = along || lead.points().len() == 2 || other.points().len() == 2;
-    for point in ends {
+    for point in ends.as_slice() {
         let gap = point.height - lead_rounding - other_rounding;
         if gap > tolerances.reach {
             continue;
@@ -100,54 +111,119 @@ fn name(corner: usize, of_candidate: bool) -> u64 {
 }
 
 /// Returns the greatest separation along a side of `of`, and that side; `to` is at `apart` relative to it.
+///
+/// A side is at most as far from `to` as from its centre, less the radius of a circle within it: only those that may be
+/// the best are compared with all corners, first the one that faces the centre.
 fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
-    let mut best = (f64::NEG_INFINITY, 0);
-    for (k, n) in of.normals().iter().enumerate() {
-        let lowest = to
-            .points()
-            .iter()
-            .map(|p| p.dot(n))
-            .fold(f64::INFINITY, f64::min);
-        let s = lowest + (apart - of.points()[k]).dot(n);
-        if s > best.0 {
+    let (points, normals) = (of.points(), of.normals());
+    let heights = |k: usize| (apart - points[k]).dot(&normals[k]);
+    let full = |k: usize, height: f64| {
+        let n = normals[k];
+        let along = to.points().iter().map(|p| p.dot(&n));
+        along.fold(f64::INFINITY, |low, x| if x < low { x } else { low }) + height
+    };
+    let (mut first, mut highest, mut second) = (0, f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for k in 0..normals.len() {
+        let height = heights(k);
+        if height > highest {
+            (first, highest, second) = (k, height, highest);
+        } else if height > second {
+            second = height;
+        }
+    }
+    let (mut best, inner) = ((full(first, highest), first), to.inner());
+    if second - inner < best.0 {
+        return best;
+    }
+    for k in 0..normals.len() {
+        let height = heights(k);
+        if k == first || height - inner < best.0 {
+            continue;
+        }
+        let s = full(k, height);
+        // Of equal ones the first.
+        if s > best.0 || (s == best.0 && k < best.1) {
             best = (s, k);
         }
     }
     best
 }
 
-/// Returns the two nearest corners and the vector from that of `b` to that of `a`.
-fn nearest_corners(a: &Polygon, b: &Polygon, apart: &V) -> (usize, usize, V) {
-    let mut best = (0, 0, a.points()[0] + apart - b.points()[0]);
+/// Returns whether a corner of `to` lies before the inside of a side of `of` and not farther than two corners can be
+/// from each other where they define no direction: then none are nearer.
+fn lies_on_side(of: &Polygon, to: &Polygon, k: usize, apart: &V, best: f64, slack: f64) -> bool {
+    let (from, end) = of.side(k);
+    let (along, normal) = (end - from, of.normals()[k]);
+    to.points().iter().any(|p| {
+        let d = p + apart - from;
+        let (s, height) = (d.dot(&along), d.dot(&normal).abs());
+        let near = height * height - best * best <= slack * slack;
+        near && s > 0.0 && s < along.norm_squared()
+    })
+}
+
+/// Returns the two nearest corners and the vector from that of `b` to that of `a`. A corner is at least as far from `b` as
+/// from the line through a side of it.
+fn nearest_corners(
+    a: &Polygon,
+    b: &Polygon,
+    apart: &V,
+    side: usize,
+    rounding: f64,
+) -> (usize, usize, V) {
+    let (from, normal) = (b.points()[side], b.normals()[side]);
+    let height = |p: &V| (p + apart - from).dot(&normal);
+    let (mut lowest, mut least) = (a.points()[0], f64::INFINITY);
+    for p in a.points() {
+        let height = height(p);
+        if height < least {
+            (lowest, least) = (*p, height);
+        }
+    }
+    let squared = b
+        .points()
+        .iter()
+        .map(|q| (lowest + apart - q).norm_squared());
+    let limit = squared.fold(f64::INFINITY, f64::min).sqrt() + rounding;
+    let mut best = (0, 0, V::repeat(f64::INFINITY));
+    let mut nearest = f64::INFINITY;
     for (i, p) in a.points().iter().enumerate() {
+        if height(p) > limit {
+            continue;
+        }
         for (j, q) in b.points().iter().enumerate() {
             let d = p + apart - q;
-            if d.norm_squared() < best.2.norm_squared() {
-                best = (i, j, d);
+            let squared = d.norm_squared();
+            if squared < nearest {
+                (best, nearest) = ((i, j, d), squared);
             }
         }
     }
     best
 }
 
-/// Returns the smallest distance between a corner of one and the interior of a side of the other.
-fn nearest_side(a: &Polygon, b: &Polygon, apart: &V) -> f64 {
-    let one = |of: &Polygon, to: &Polygon, apart: &V| {
-        let mut best = f64::INFINITY;
-        for k in 0..of.points().len() {
+/// Returns whether the inside of a side of `of` is as near to a corner of `to` as `distance` (m). A corner is at least as far
+/// from `of` as from the line through one of its sides.
+fn is_nearer(
+    of: &Polygon,
+    to: &Polygon,
+    apart: &V,
+    side: usize,
+    distance: f64,
+    rounding: f64,
+) -> bool {
+    let (origin, normal) = (of.points()[side], of.normals()[side]);
+    let limit = distance + rounding;
+    let near = |p: &&V| (*p + apart - origin).dot(&normal) <= limit;
+    to.points().iter().filter(near).any(|p| {
+        (0..of.points().len()).any(|k| {
             let (from, end) = of.side(k);
             let along = end - from;
-            for p in to.points() {
-                let d = p + apart - from;
-                let s = d.dot(&along);
-                if s > 0.0 && s < along.norm_squared() {
-                    best = best.min(d.dot(&of.normals()[k]).abs());
-                }
-            }
-        }
-        best
-    };
-    one(a, b, &-apart).min(one(b, a, apart))
+            let d = p + apart - from;
+            let s = d.dot(&along);
+            s > 0.0 && s < along.norm_squared() && d.dot(&of.normals()[k]).abs() <= distance
+        })
+    })
 }
 
 /// An end of the overlap of two sides.
@@ -163,8 +239,23 @@ struct End {
     share: f64,
 }
 
+/// One end or two.
+enum Ends {
+    One(End),
+    Two([End; 2]),
+}
+
+impl Ends {
+    fn as_slice(&self) -> &[End] {
+        match self {
+            Self::One(end) => std::slice::from_ref(end),
+            Self::Two(ends) => ends,
+        }
+    }
+}
+
 /// Clips the side of `other` opposite a side of `lead` to that side; returns its ends.
-fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> Vec<End> {
+fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> Ends {
     let normal = lead.normals()[side];
     let (from, to) = lead.side(side);
     let length = (to - from).norm();
@@ -176,7 +267,8 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         let p = other.points()[corner] + apart;
         ((p - from).dot(&along), p, corner)
     };
-    let (low, high) = (place((facing + 1) % n), place(facing));
+    let next = if facing + 1 == n { 0 } else { facing + 1 };
+    let (low, high) = (place(next), place(facing));
     let (low, high) = if low.0 <= high.0 {
         (low, high)
     } else {
@@ -212,11 +304,11 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
         };
         let inside = lower.0 >= -slack && lower.0 <= length + slack;
         return if inside || high.0 <= low.0 {
-            vec![of_other(lower)]
+            Ends::One(of_other(lower))
         } else if lower.0 < 0.0 {
-            vec![over(0.0, side)]
+            Ends::One(over(0.0, side))
         } else {
-            vec![over(length, (side + 1) % lead.points().len())]
+            Ends::One(over(length, (side + 1) % lead.points().len()))
         };
     }
     let mut ends = [
@@ -234,7 +326,7 @@ fn clip(lead: &Polygon, other: &Polygon, side: usize, apart: &V, slack: f64) -> 
     for end in &mut ends {
         end.share = 0.5 * (right - left);
     }
-    Vec::from(ends)
+    Ends::Two(ends)
 }
 
 #[cfg(test)]

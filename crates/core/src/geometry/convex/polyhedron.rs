@@ -154,11 +154,23 @@ pub fn across(v: &V) -> V {
 
 impl Core<Dim3> for Polyhedron {
     fn turned(&self, rotation: &UnitQuaternion<f64>) -> Self {
-        let turn = rotation.to_rotation_matrix();
-        Self {
-            points: self.points.iter().map(|p| turn * p).collect(),
-            normals: self.normals.iter().map(|n| turn * n).collect(),
+        let mut out = Self {
+            points: Vec::with_capacity(self.points.len()),
+            normals: Vec::with_capacity(self.normals.len()),
             topology: Arc::clone(&self.topology),
+        };
+        self.turn_into(rotation, &mut out);
+        out
+    }
+
+    fn turn_into(&self, rotation: &UnitQuaternion<f64>, out: &mut Self) {
+        let turn = rotation.to_rotation_matrix();
+        out.points.clear();
+        out.points.extend(self.points.iter().map(|p| turn * p));
+        out.normals.clear();
+        out.normals.extend(self.normals.iter().map(|n| turn * n));
+        if !Arc::ptr_eq(&self.topology, &out.topology) {
+            out.topology = Arc::clone(&self.topology);
         }
     }
 

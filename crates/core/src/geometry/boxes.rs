@@ -1,0 +1,144 @@
+//! Bounding boxes of the segments of a chain, of groups of successive ones, of groups of these, and so on: what is near a place
+//! is found without a look at the rest. Successive segments of a chain are near each other, so that nothing has to be sorted.
+
+use nalgebra::Vector2;
+
+/// Boxes per group.
+const GROUP: usize = 8;
+
+/// An axis-aligned box, with its border.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Least coordinates (m).
+    pub low: Vector2<f64>,
+    /// Greatest coordinates (m).
+    pub high: Vector2<f64>,
+}
+
+impl Window {
+    /// The box of all places within `reach` (m) of one along the axes.
+    pub fn around(centre: &Vector2<f64>, reach: f64) -> Self {
+        Self {
+            low: Vector2::new(centre.x - reach, centre.y - reach),
+            high: Vector2::new(centre.x + reach, centre.y + reach),
+        }
+    }
+
+    /// Moves the box along x (m).
+    pub fn shifted(&self, x: f64) -> Self {
+        Self {
+            low: Vector2::new(self.low.x + x, self.low.y),
+            high: Vector2::new(self.high.x + x, self.high.y),
+        }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        self.low.x <= other.high.x
+            && other.low.x <= self.high.x
+            && self.low.y <= other.high.y
+            && other.low.y <= self.high.y
+    }
+
+    fn joined(boxes: &[Self]) -> Self {
+        let mut all = boxes[0];
+        for one in &boxes[1..] {
+            (all.low, all.high) = (all.low.inf(&one.low), all.high.sup(&one.high));
+        }
+        all
+    }
+}
+
+/// The boxes of a chain.
+#[derive(Clone, Debug, Default)]
+pub struct Boxes {
+    /// Those of the segments, then those of the groups of each level; the last level has one.
+    levels: Vec<Vec<Window>>,
+}
+
+impl Boxes {
+    /// Takes new boxes of the segments, in the order of the chain.
+    pub fn set(&mut self, segments: impl Iterator<Item = Window>) {
+        if self.levels.is_empty() {
+            self.levels.push(Vec::new());
+        }
+        self.levels[0].clear();
+        self.levels[0].extend(segments);
+        let mut level = 0;
+        while self.levels[level].len() > 1 {
+            let groups: Vec<Window> = self.levels[level]
+                .chunks(GROUP)
+                .map(Window::joined)
+                .collect();
+            level += 1;
+            match self.levels.get_mut(level) {
+                Some(known) => *known = groups,
+                None => self.levels.push(groups),
+            }
+        }
+        self.levels.truncate(level + 1);
+    }
+
+    /// Calls `each` with the segments whose box meets a window, in order, until it returns false; returns whether it did not.
+    pub fn visit(&self, window: &Window, each: &mut impl FnMut(usize) -> bool) -> bool {
+        let top = self.levels.len();
+        top == 0 || self.descend(top - 1, 0, window, each)
+    }
+
+    fn descend(
+        &self,
+        level: usize,
+        group: usize,
+        window: &Window,
+        each: &mut impl FnMut(usize) -> bool,
+    ) -> bool {
+        let boxes = &self.levels[level];
+        let first = group * GROUP;
+        for (k, one) in boxes.iter().enumerate().skip(first).take(GROUP) {
+            if window.meets(one) {
+                let goes_on = if level == 0 {
+                    each(k)
+                } else {
+                    self.descend(level - 1, k, window, each)
+                };
+                if !goes_on {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_segments_in_a_window_are_found_in_order() {
+        for count in [0u32, 1, 2, 8, 9, 64, 65, 700] {
+            let segment = |k: u32| {
+                let t = 0.1 * f64::from(k);
+                Window::around(&Vector2::new(t.cos() * t, t.sin() * t), 0.05 * t)
+            };
+            let mut boxes = Boxes::default();
+            // Of another chain, which is forgotten.
+            boxes.set((0..90).map(segment));
+            boxes.set((0..count).map(segment));
+            for k in 0..200 {
+                let t = 0.35 * f64::from(k);
+                let centre = Vector2::new(t.sin() * t, (1.3 * t).cos() * t);
+                let window = Window::around(&centre, 0.02 * t);
+                let mut found = Vec::new();
+                let mut push = |k| {
+                    found.push(k as u32);
+                    true
+                };
+                assert!(boxes.visit(&window, &mut push));
+                let meets = |k: &u32| window.meets(&segment(*k));
+                assert!(found.iter().copied().eq((0..count).filter(meets)));
+                let any = !boxes.visit(&window, &mut |_| false);
+                assert_eq!(any, !found.is_empty());
+            }
+        }
+    }
+}
