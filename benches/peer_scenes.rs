@@ -1,51 +1,102 @@
-//! Time of steps of three scenes, and of the sweep per contact and iteration, compared with LMGC90.
+//! Time of steps of four scenes, and of the sweep per contact and iteration, compared with LMGC90.
 //!
-//! `cargo bench --bench peer_scenes` prints, for each scene, the cold first step, solved until it
-//! converges; then, after `SETTLE` further steps (the first step of LMGC90 is not converged, so its
-//! packing is not at rest by the error measure used here), the mean of `STEPS` warm steps, their time by part,
-//! and the ratios to the times of LMGC90 in `cases/benchmarks/README.md`. One thread.
+//! `cargo bench --bench peer_scenes` prints, for each scene, the cold first step, solved until it converges; then the
+//! means of two windows of steps: while the scene moves (steps 2 to 61), and later, at rest or in flow; with the
+//! ratios to the times of LMGC90 in the same steps of the same scene (`cases/benchmarks/README.md`). One thread;
+//! processor time, as for LMGC90; the parts of a step are measured as shares of wall-clock time. A word selects
+//! the scenes whose names contain it; `STEPS` sets the number of steps of the later window.
 
+use cpu_time::ProcessTime;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
 use fretwork::step::{Simulation, Steps};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Case, LMGC90's warm step (ms), LMGC90's best sweep (ns per contact and iteration).
-const SCENES: [(&str, f64, f64); 3] = [
-    ("disks_box_5000", 132.0, 43.0),
-    ("spheres_box_5000", 364.0, 155.0),
-    ("cohesive_disks_3000", 138.0, 71.0),
+/// Steps from `first` to `last`, the cold one being 1, and LMGC90's processor time (ms) and iterations per step and its time
+/// of a sweep (ns per contact and iteration) in them: its best of three repetitions.
+struct Window {
+    name: &'static str,
+    first: u32,
+    last: u32,
+    peer_ms: f64,
+    peer_iterations: f64,
+    peer_ns: f64,
+}
+
+const fn window(name: &'static str, first: u32, last: u32, peer: (f64, f64, f64)) -> Window {
+    Window {
+        name,
+        first,
+        last,
+        peer_ms: peer.0,
+        peer_iterations: peer.1,
+        peer_ns: peer.2,
+    }
+}
+
+/// Cases and their windows.
+const SCENES: [(&str, [Window; 3]); 4] = [
+    (
+        "disks_box_5000",
+        [
+            window("cold", 1, 1, (5369.5, 6330.0, 42.4)),
+            window("moving", 2, 61, (132.7, 85.7, 43.6)),
+            window("rest", 202, 261, (70.4, 10.0, 51.2)),
+        ],
+    ),
+    (
+        "spheres_box_5000",
+        [
+            window("cold", 1, 1, (10252.2, 2490.0, 208.3)),
+            window("moving", 2, 61, (437.9, 75.5, 215.4)),
+            window("rest", 202, 261, (176.3, 17.5, 181.6)),
+        ],
+    ),
+    (
+        "cohesive_disks_3000",
+        [
+            window("cold", 1, 1, (370.2, 480.0, 79.8)),
+            window("moving", 2, 61, (143.1, 157.8, 83.3)),
+            window("shear", 102, 161, (89.3, 92.2, 80.3)),
+        ],
+    ),
+    (
+        "sheared_disks_3000",
+        [
+            window("cold", 1, 1, (900.5, 2550.0, 37.1)),
+            window("moving", 2, 61, (496.1, 1332.2, 38.3)),
+            window("flow", 102, 161, (525.5, 1395.8, 39.6)),
+        ],
+    ),
 ];
 
-/// Steps between the cold step and the timed ones.
-const SETTLE: u32 = 30;
-
 fn main() {
-    let steps: u32 = std::env::var("STEPS")
-        .ok()
-        .and_then(|s| s.parse().ok())
-        .unwrap_or(20);
+    let steps: Option<u32> = std::env::var("STEPS").ok().and_then(|s| s.parse().ok());
     println!(
-        "{:<22} {:>9} {:>9} {:>10} {:>6} {:>9} {:>8} {:>8} {:>8} {:>9} {:>7} {:>7}",
+        "{:<20} {:<7} {:>8} {:>7} {:>8} {:>7} {:>7} {:>7} {:>8} {:>8} {:>8} {:>7} {:>7}",
         "scene",
+        "steps",
         "contacts",
-        "cold ms",
-        "cold iter",
         "iter",
-        "step ms",
+        "step-ms",
         "detect",
         "laws",
         "solve",
         "ns/c/it",
-        "x peer",
-        "x sweep"
+        "peer-ms",
+        "peer-it",
+        "x-step",
+        "x-sweep"
     );
     // Words of the command line select the scenes whose names contain them.
     let wanted = std::env::args().skip(1).find(|a| !a.starts_with('-'));
-    for (name, peer_ms, peer_ns) in SCENES {
+    for (name, mut windows) in SCENES {
         if wanted.as_ref().is_some_and(|w| !name.contains(w.as_str())) {
             continue;
+        }
+        if let (Some(n), Some(later)) = (steps, windows.last_mut()) {
+            later.last = later.first + n - 1;
         }
         let file = format!("{}/cases/benchmarks/{name}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(
@@ -57,46 +108,57 @@ fn main() {
             .build(&SearchPath::new(&[]))
             .unwrap_or_else(|e| panic!("{e}"));
         match scene {
-            Scene::Dim2(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
-            Scene::Dim3(b) => bench(name, b.simulation, steps, peer_ms, peer_ns),
+            Scene::Dim2(b) => bench(name, b.simulation, &windows),
+            Scene::Dim3(b) => bench(name, b.simulation, &windows),
         }
     }
 }
 
-fn bench<S: Steps>(name: &str, mut s: Simulation<S>, steps: u32, peer_ms: f64, peer_ns: f64) {
-    let ms = |d: Duration| d.as_secs_f64() * 1e3;
-    let clock = Instant::now();
-    let cold = s.step().unwrap_or_else(|e| panic!("{e}"));
-    let cold_ms = ms(clock.elapsed());
-    for _ in 0..SETTLE {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
+fn bench<S: Steps>(name: &str, mut s: Simulation<S>, windows: &[Window]) {
+    let mut number = 0;
+    for window in windows {
+        while number + 1 < window.first {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+            number += 1;
+        }
+        time(name, &mut s, window);
+        number = window.last;
     }
-    let (mut total, mut detect, mut laws, mut solve) = (0.0, 0.0, 0.0, 0.0);
-    let (mut iterations, mut sweeps_ns, mut unconverged) = (0u64, 0.0, 0);
-    for _ in 0..steps {
-        let clock = Instant::now();
+}
+
+/// Performs the steps of a window and prints its line.
+fn time<S: Steps>(name: &str, s: &mut Simulation<S>, window: &Window) {
+    let [mut detect, mut laws, mut solve] = [Duration::ZERO; 3];
+    let (mut iterations, mut swept, mut contacts, mut unconverged) = (0u64, 0.0, 0, 0);
+    let (clock, wall) = (ProcessTime::now(), Instant::now());
+    for _ in window.first..=window.last {
         let r = s.step().unwrap_or_else(|e| panic!("{e}"));
-        total += ms(clock.elapsed());
-        detect += ms(r.timing.detect);
-        laws += ms(r.timing.laws);
-        solve += ms(r.timing.solve);
+        detect += r.timing.detect;
+        laws += r.timing.laws;
+        solve += r.timing.solve;
+        let n = s.state.network.contacts.len();
+        contacts += n;
         iterations += u64::from(r.solver.iterations);
+        swept += n as f64 * f64::from(r.solver.iterations);
         unconverged += u32::from(!r.solver.converged);
-        sweeps_ns += r.timing.solve.as_secs_f64() * 1e9 / s.state.network.contacts.len() as f64;
     }
-    let n = f64::from(steps);
-    let per = sweeps_ns / iterations as f64;
+    let n = f64::from(window.last - window.first + 1);
+    let step = 1e3 * clock.elapsed().as_secs_f64() / n;
+    let wall = wall.elapsed().as_secs_f64();
+    let part = |d: Duration| step * d.as_secs_f64() / wall;
+    let per = 1e6 * n * part(solve) / swept;
     println!(
-        "{name:<22} {:>9} {cold_ms:>9.1} {:>10} {:>6.1} {:>9.2} {:>8.2} {:>8.2} {:>8.2} {per:>9.1} {:>7.1} {:>7.1}{}",
-        s.state.network.contacts.len(),
-        cold.solver.iterations,
+        "{name:<20} {:<7} {:>8.0} {:>7.1} {step:>8.2} {:>7.2} {:>7.2} {:>7.2} {per:>8.1} {:>8.0} {:>8.0} {:>7.1} {:>7.1}{}",
+        window.name,
+        contacts as f64 / n,
         iterations as f64 / n,
-        total / n,
-        detect / n,
-        laws / n,
-        solve / n,
-        peer_ms / (total / n),
-        peer_ns / per,
+        part(detect),
+        part(laws),
+        part(solve),
+        window.peer_ms,
+        window.peer_iterations,
+        window.peer_ms / step,
+        window.peer_ns / per,
         if unconverged > 0 {
             format!("  ({unconverged} steps unconverged)")
         } else {
