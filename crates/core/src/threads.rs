@@ -129,6 +129,18 @@ pub fn map_tasks<T: Send, R: Send>(
     }
 }
 
+/// Items of a partial sum.
+const SUM: usize = 1024;
+
+/// Returns the sum of what `of` gives for each index below `count`, which takes about `each` nanoseconds: partial sums of a fixed number of
+/// items, added in their order.
+pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+        items.map(&of).sum::<f64>()
+    });
+    parts.iter().sum()
+}
+
 /// Calls `on` with each chunk of `size` items and the index of its first.
 pub fn for_chunks<T: Send>(
     divide: bool,

@@ -6,7 +6,7 @@
 use crate::bodies::Bodies;
 use crate::energy::BodyWork;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, pays};
+use crate::threads::{fill, map_chunks_mut, map_chunks_of_two, map_ranges, pays};
 
 /// Bodies of a task.
 const CHUNK: usize = 1024;
@@ -161,17 +161,28 @@ impl<S: Space> StepStart<S> {
         received: &[(S::Vector, S::Spin)],
         gravity: &S::Vector,
         time: f64,
-        h: f64,
-        theta: f64,
+        [h, theta]: [f64; 2],
+        parallel: bool,
     ) -> BodyWork {
+        let divide = pays(parallel, bodies.len(), EACH);
+        let parts = map_ranges(divide, bodies.len(), CHUNK, |some| {
+            let (mut potential, mut scheme) = (0.0, 0.0);
+            for b in some.filter(|b| bodies.carrier(*b).is_none()) {
+                let (v, w) = (self.velocity[b], self.spin[b]);
+                let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
+                potential -= h * bodies.mass[b] * gravity.dot(&average);
+                if theta != 0.5 {
+                    let (dv, dw) = (bodies.velocity[b] - v, bodies.spin[b] - w);
+                    let turning = dw.dot(&bodies.angular_momentum(b, &dw));
+                    scheme += (theta - 0.5) * (bodies.mass[b] * dv.dot(&dv) + turning);
+                }
+            }
+            (potential, scheme)
+        });
         let mut work = BodyWork::default();
-        for b in (0..bodies.len()).filter(|b| bodies.carrier(*b).is_none()) {
-            let (v, w) = (self.velocity[b], self.spin[b]);
-            let average = v * (1.0 - theta) + bodies.velocity[b] * theta;
-            work.potential -= h * bodies.mass[b] * gravity.dot(&average);
-            let (dv, dw) = (bodies.velocity[b] - v, bodies.spin[b] - w);
-            work.scheme += (theta - 0.5)
-                * (bodies.mass[b] * dv.dot(&dv) + dw.dot(&bodies.angular_momentum(b, &dw)));
+        for (potential, scheme) in parts {
+            work.potential += potential;
+            work.scheme += scheme;
         }
         for (driven, (impulse, moment)) in bodies.driven.iter().zip(received) {
             let b = driven.body as usize;

@@ -5,8 +5,14 @@ use super::{Scheme, Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
-use crate::laws::{SpringForm, Totals};
+use crate::laws::{Interface, SpringForm, Totals};
+use crate::threads::{map_chunks, pays};
 use std::time::Instant;
+
+/// Contacts of a task; sums are formed per chunk and added in order.
+const CHUNK: usize = 1024;
+/// About what it takes to look whether a contact is one of a driven body (ns).
+const RECEIVED: f64 = 5.0;
 
 /// Velocity and spin of each body.
 type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
@@ -75,7 +81,7 @@ impl<S: Space> Simulation<S> {
     ) -> Result<(StepStart<S>, Motions<S>), StepError> {
         let StepInfo { time, h, theta, .. } = *info;
         let mut start = StepStart::new(&self.state.bodies);
-        self.workspace.spring_energy = self.state.network.spring_energy();
+        self.workspace.spring_energy = self.spring_energy();
         let clock = Instant::now();
         let parallel = self.options.solver.parallel;
         motion::advance(&mut self.state.bodies, (1.0 - theta) * h, parallel);
@@ -156,48 +162,79 @@ impl<S: Space> Simulation<S> {
 
     /// Ends the step of dynamical systems and books the step in the energy ledger.
     fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
-        let mut received =
-            vec![(S::Vector::zero(), S::Spin::zero()); self.state.bodies.driven.len()];
-        let mut place = vec![usize::MAX; self.state.bodies.len()];
-        for (d, driven) in self.state.bodies.driven.iter().enumerate() {
-            place[driven.body as usize] = d;
-        }
-        for contact in &self.state.network.contacts {
-            for (side, sign) in [(0, 1.0), (1, -1.0)] {
-                let d = place[contact.bodies[side] as usize];
-                if d != usize::MAX {
-                    let impulse = contact.impulse * sign;
-                    received[d].0 += impulse;
-                    received[d].1 +=
-                        S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
-                }
-            }
-        }
+        let received = self.received();
         let Scheme { h, theta } = self.options.scheme;
         let mut work = start.work(
             &self.state.bodies,
             &received,
             &self.state.gravity,
             self.state.time,
-            h,
-            theta,
+            [h, theta],
+            self.options.solver.parallel,
         );
         if self.state.steps == 0 {
             let springs = self.workspace.springs.iter().flatten();
             self.workspace.spring_energy = springs.map(SpringForm::initial_energy).sum();
             work.external += self.workspace.spring_energy;
         }
-        let change = self.state.network.spring_energy() - self.workspace.spring_energy;
-        work.scheme += totals.springs - change;
+        let springs = self.spring_energy();
+        work.scheme += totals.springs - (springs - self.workspace.spring_energy);
         let (moving, stored) = self.end_systems(theta * h, &mut work);
         let (mut kinetic, mut elastic) = (
-            self.state.bodies.kinetic_energy(),
-            self.state.network.elastic_energy(),
+            self.state
+                .bodies
+                .sum_kinetic_energy(self.options.solver.parallel),
+            self.state.network.bond_energy() + springs,
         );
         if !self.state.systems.is_empty() {
             (kinetic, elastic) = (kinetic + moving, elastic + stored);
         }
         self.state.energy.book(totals, &work, kinetic, elastic);
         self.state.received = received;
+    }
+
+    /// Energy in the springs of compliant contacts (J).
+    fn spring_energy(&self) -> f64 {
+        if self.laws.iter().any(Interface::compliant) {
+            let parallel = self.options.solver.parallel;
+            self.state.network.sum_spring_energy(parallel)
+        } else {
+            0.0
+        }
+    }
+
+    /// Impulses and moments that contacts gave to the driven bodies, in their order (N s, N m s).
+    fn received(&self) -> Motions<S> {
+        let (driven, contacts) = (&self.state.bodies.driven, &self.state.network.contacts);
+        let none = vec![(S::Vector::zero(), S::Spin::zero()); driven.len()];
+        let mut place = vec![u32::MAX; self.state.bodies.len()];
+        for (driven, d) in driven.iter().zip(0..) {
+            place[driven.body as usize] = d;
+        }
+        let divide = pays(self.options.solver.parallel, contacts.len(), RECEIVED);
+        let parts = map_chunks(divide, contacts, CHUNK, |_, contacts| {
+            let mut received = Vec::new();
+            for contact in contacts {
+                for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                    let d = place[contact.bodies[side] as usize];
+                    if d != u32::MAX {
+                        received.resize_with(none.len(), || none[0]);
+                        let impulse = contact.impulse * sign;
+                        let (p, moment) = &mut received[d as usize];
+                        *p += impulse;
+                        *moment += S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
+                    }
+                }
+            }
+            received
+        });
+        let mut received = none;
+        for part in &parts {
+            for (all, (p, moment)) in received.iter_mut().zip(part) {
+                all.0 += *p;
+                all.1 += *moment;
+            }
+        }
+        received
     }
 }
