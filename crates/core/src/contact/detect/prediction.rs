@@ -20,6 +20,8 @@ const HEADROOM: f64 = 1.5;
 const CHUNK: usize = 256;
 /// Time of a pair (ns).
 const COST: f64 = 20.0;
+/// Bound of the rounding of gaps, relative to the motion.
+const ROUNDING: f64 = 1e-9;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
@@ -308,8 +310,15 @@ fn find_closing<S: Space>(
         };
         let pairs = pairs.iter();
         let examine = |names: &(u32, u32)| {
+            if search.is_slow(*names) {
+                return None;
+            }
+            let contacts = of_pair(*names);
+            if search.is_found(*names, contacts) {
+                return None;
+            }
             let pair = search.fast_pair(*names)?;
-            search.examine(*names, &pair, of_pair(*names))
+            search.examine(*names, &pair, contacts)
         };
         pairs.filter_map(examine).collect()
     };
@@ -385,35 +394,54 @@ struct Meeting<S: Space> {
 }
 
 impl<'a, S: Space> Search<'a, S> {
-    /// Returns the pair with these keys if its relative motion in the step is fast.
-    fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
-        let turns = self.turning && names.1 & Key::SURFACE != 0;
+    /// Returns whether a surface moves into the way of the pair by rotation.
+    fn turns(&self, names: (u32, u32)) -> bool {
+        self.turning && names.1 & Key::SURFACE != 0
+    }
+
+    /// Relative motion in a step from which a pair is followed (m).
+    fn slow(&self, names: (u32, u32)) -> f64 {
         // Two balls have a single contact: if they move less than the alert distance, detection has found
         // it.
         let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
-        let slow = if balls {
+        if balls {
             self.network.alert
         } else {
             self.network.fast
-        };
-        if !turns {
-            let [balls, pieces] = [
-                self.sweep.shapes.balls.len(),
-                self.sweep.shapes.pieces.len(),
-            ];
-            let travel = |name: u32| {
-                let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
-                let first = match name & (Key::PIECE | Key::SURFACE) {
-                    0 => 0,
-                    Key::PIECE => balls,
-                    _ => balls + pieces,
-                };
-                self.travels[first + k]
-            };
-            if 2.0 * self.farthest <= slow || travel(names.0) + travel(names.1) <= slow {
-                return None;
-            }
         }
+    }
+
+    /// Upper bound of the relative motion of a pair, without that of a rotating surface (m).
+    fn travel(&self, names: (u32, u32)) -> f64 {
+        let shapes = self.sweep.shapes;
+        let [balls, pieces] = [shapes.balls.len(), shapes.pieces.len()];
+        let travel = |name: u32| {
+            let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
+            let first = match name & (Key::PIECE | Key::SURFACE) {
+                0 => 0,
+                Key::PIECE => balls,
+                _ => balls + pieces,
+            };
+            self.travels[first + k]
+        };
+        travel(names.0) + travel(names.1)
+    }
+
+    /// Returns whether the relative motion of a pair is slow, at sight.
+    fn is_slow(&self, names: (u32, u32)) -> bool {
+        let slow = self.slow(names);
+        !self.turns(names) && (2.0 * self.farthest <= slow || self.travel(names) <= slow)
+    }
+
+    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart than they move: it has no contact.
+    fn is_found(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
+        let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
+        convex && contacts.is_empty() && self.travel(names) <= self.network.alert
+    }
+
+    /// Returns the pair with these keys if its relative motion in the step is fast.
+    fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
+        let slow = self.slow(names);
         let pair = self.sweep.pair(names);
         // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
         if pair.travel <= slow {
@@ -435,6 +463,13 @@ impl<'a, S: Space> Search<'a, S> {
         let law = self.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
         let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
+        // The gap that detection found, in the same places, is enough for the motion.
+        let gap = contacts.iter().map(|c| c.gap).fold(f64::INFINITY, f64::min);
+        let wide = gap + margin.deepest > (1.0 + ROUNDING) * pair.travel;
+        let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
+        if wide && known && !contacts.is_empty() && self.stage == Stage::After {
+            return None;
+        }
         if sweep.course(pair, margin.deepest) == Course::Clear {
             return None;
         }
