@@ -7,6 +7,7 @@
 )]
 
 mod angular_layer;
+mod attraction;
 mod blocks;
 mod bond_energy;
 mod bond_formation;

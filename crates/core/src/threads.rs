@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Least work that pays for waking other threads (ns): a few times what that takes.
-const LEAST_WORK: u64 = 60_000;
+/// Least work that pays for waking other threads (ns): many times what that takes, since other programs may run on their cores.
+const LEAST_WORK: u64 = 150_000;
 
 /// Least items of a task in [`fill`].
 const LEAST_ITEMS: usize = 256;

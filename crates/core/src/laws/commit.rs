@@ -245,7 +245,8 @@ pub struct SlotCommit<'a, S: Space> {
 }
 
 impl<S: Space> SlotCommit<'_, S> {
-    /// The contacts that the law acts on, as places in the network; values of columns are in their order.
+    /// Contacts that the law acts on, as places in the network; values of columns are in their order. Where the law acts on many, the hook is
+    /// called for some at a time, several times in a step.
     pub fn contacts(&self) -> &[usize] {
         &self.evaluator.members
     }

@@ -31,7 +31,7 @@ pub struct LawEvaluator {
 }
 
 /// Contacts of a batch: few enough that its columns stay in a cache.
-const BATCH: usize = 256;
+const BATCH: usize = 512;
 
 /// Checks made on the outputs of law calls.
 #[derive(Debug, Default)]

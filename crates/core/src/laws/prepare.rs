@@ -94,21 +94,28 @@ impl LawEvaluator {
             if self.members.is_empty() {
                 continue;
             }
-            if law.constant_contact() && (cohesive == 0 || law.cohesion().is_none()) {
+            let cohesion = law.cohesion().filter(|_| cohesive > 0);
+            if law.constant_contact() {
+                // One answer for all contacts, and then cohesion adds to it.
+                let mut first_moment = step.moments.len();
                 self.prepare_contact(law, history, &mut step)?;
+                let Some(cohesion) = cohesion else { continue };
+                self.members.truncate(cohesive);
+                self.in_batches(|batch| {
+                    batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)?;
+                    first_moment += batch.members.len();
+                    Ok(())
+                })?;
                 continue;
             }
             let rest = self.members.split_off(cohesive);
-            let with_cohesion = law.cohesion();
             self.in_batches(|batch| {
                 let first_moment = step.moments.len();
                 batch.prepare_contact(law, history, &mut step)?;
-                match with_cohesion {
-                    Some(cohesion) => {
-                        batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)
-                    }
-                    None => Ok(()),
-                }
+                let Some(cohesion) = cohesion else {
+                    return Ok(());
+                };
+                batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)
             })?;
             self.members = rest;
             self.in_batches(|batch| batch.prepare_contact(law, history, &mut step))?;
@@ -213,7 +220,7 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Applies friction and restitution that are the same for all contacts of an interface.
+    /// Applies friction and restitution that are the same for all contacts of an interface, which are the members.
     fn apply_constant<S: Space>(
         &mut self,
         law: &Interface,
@@ -266,7 +273,7 @@ impl LawEvaluator {
             self.apply_cohesion(law, k, before, info, &mut step.forms[*at]);
         }
         if law.rotates() {
-            let moments = step.moments[first_moment..].iter_mut();
+            let moments = step.moments.iter_mut().skip(first_moment);
             for (k, form) in moments.enumerate().take(count) {
                 let at = form.contact as usize;
                 let normal = &network.contacts[at].normal;

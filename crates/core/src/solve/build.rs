@@ -75,6 +75,7 @@ impl<S: Space> Problem<S> {
         parallel: bool,
         body: impl Fn(usize) -> (Mobility<S>, f64) + Sync + Send,
     ) {
+        debug_assert!(self.solver_bodies.is_empty());
         let (divide, count) = (pays(parallel, free.len(), BODY), free.len());
         self.free.extend_from_slice(free);
         fill(divide, &mut self.lengths, count, |b| body(b).1);
@@ -100,6 +101,7 @@ impl<S: Space> Problem<S> {
 
     /// Adds all contacts to a problem that has none, in the order of the iteration.
     pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
+        debug_assert!(self.places.is_empty());
         let mut of_kind: [Vec<u32>; 4] = Default::default();
         for (k, contact) in contacts.iter().enumerate() {
             let list = &mut of_kind[kind(contact) as usize];

@@ -273,9 +273,12 @@ impl<S: Space> Problem<S> {
         size_of::<LeverRow<S, Bonded<S>>>(),
     ];
 
-    /// Bytes per contact for the order of the iteration: its index as pushed and in that order, bodies, sequence and place.
-    pub const BYTES_TO_SORT: usize =
-        size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
+    /// Bytes per contact for the order of the iteration: its index as pushed and in that order, bodies, sequence and place, and for
+    /// contacts of two balls without a bond the row before it is sorted.
+    pub const BYTES_TO_SORT: [usize; 4] = {
+        let place = size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
+        [place + size_of::<PlainRow<S>>(), place, place, place]
+    };
 
     /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {

@@ -27,6 +27,11 @@ impl Schedule {
         ranges(&self.colours)
     }
 
+    /// Returns the number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.groups.last().map_or(0, |end| *end as usize)
+    }
+
     /// Returns the range of contacts of a block, in the new order.
     pub fn block(&self, k: usize) -> std::ops::Range<usize> {
         let [from, to] = [k, k + 1].map(|k| self.groups[self.blocks[k] as usize] as usize);

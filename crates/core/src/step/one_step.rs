@@ -9,7 +9,7 @@ use crate::laws::{Interface, SpringForm, Totals};
 use crate::threads::{map_chunks, pays};
 use std::time::Instant;
 
-/// Contacts of a task; sums are formed per chunk and added in order.
+/// Contacts of a task.
 const CHUNK: usize = 1024;
 /// About what it takes to look whether a contact is one of a driven body (ns).
 const RECEIVED: f64 = 5.0;
@@ -206,7 +206,6 @@ impl<S: Space> Simulation<S> {
     /// Impulses and moments that contacts gave to the driven bodies, in their order (N s, N m s).
     fn received(&self) -> Motions<S> {
         let (driven, contacts) = (&self.state.bodies.driven, &self.state.network.contacts);
-        let none = vec![(S::Vector::zero(), S::Spin::zero()); driven.len()];
         let mut place = vec![u32::MAX; self.state.bodies.len()];
         for (driven, d) in driven.iter().zip(0..) {
             place[driven.body as usize] = d;
@@ -218,22 +217,20 @@ impl<S: Space> Simulation<S> {
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     let d = place[contact.bodies[side] as usize];
                     if d != u32::MAX {
-                        received.resize_with(none.len(), || none[0]);
                         let impulse = contact.impulse * sign;
-                        let (p, moment) = &mut received[d as usize];
-                        *p += impulse;
-                        *moment += S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
+                        let moment =
+                            S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
+                        received.push((d, impulse, moment));
                     }
                 }
             }
             received
         });
-        let mut received = none;
-        for part in &parts {
-            for (all, (p, moment)) in received.iter_mut().zip(part) {
-                all.0 += *p;
-                all.1 += *moment;
-            }
+        let mut received = vec![(S::Vector::zero(), S::Spin::zero()); driven.len()];
+        for (d, impulse, moment) in parts.into_iter().flatten() {
+            let all = &mut received[d as usize];
+            all.0 += impulse;
+            all.1 += moment;
         }
         received
     }
