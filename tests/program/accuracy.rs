@@ -198,8 +198,8 @@ fn bonds_that_break_in_a_part_of_a_step_are_recorded() {
     }
 }
 
-/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by about 1 %; three tenths of that are asked for. The
-/// reference has a tenth of the step and a tenth of the tolerance.
+/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 % (tolerance 1e-6), less or more by what the tolerance
+/// leaves open, 0.5 to 1.4 %; 0.3 % are asked for. The reference has a tenth of the step and a tenth of the tolerance.
 #[test]
 fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference() {
     let folder = Folder::new("scar");
@@ -221,7 +221,7 @@ fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference
     let (fixed, _) = friction("fixed", &coarse);
     let (chosen, summary) = friction("chosen", &[&coarse[..], &["accuracy=0.003"]].concat());
     let error = |x: f64| (x / exact - 1.0).abs();
-    assert!(error(fixed) > 0.008, "{}", error(fixed));
+    assert!(error(fixed) > 0.0045, "{}", error(fixed));
     assert!(
         error(chosen) < 0.5 * error(fixed),
         "{} of {}",
