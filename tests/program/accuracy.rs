@@ -198,8 +198,8 @@ fn bonds_that_break_in_a_part_of_a_step_are_recorded() {
     }
 }
 
-/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 % (tolerance 1e-6), less or more by what the tolerance
-/// leaves open, 0.5 to 1.4 %; 0.3 % are asked for. The reference has a tenth of the step and a tenth of the tolerance.
+/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 %; 0.3 % are asked for. The reference has a tenth of the
+/// step and a tenth of the tolerance, which is tight in both: at 1e-4 it leaves friction open by 0.5 %, whichever way contacts are swept.
 #[test]
 fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference() {
     let folder = Folder::new("scar");
@@ -216,18 +216,19 @@ fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference
         let summary = folder.summary(out);
         (summary["friction_coefficient"].as_f64().unwrap(), summary)
     };
-    let coarse = ["time.step=1e-3", "solver.tolerance=1e-4"];
-    let (exact, reference) = friction("fine", &["time.step=1e-4", "solver.tolerance=1e-5"]);
+    let coarse = ["time.step=1e-3", "solver.tolerance=1e-6"];
+    let (exact, reference) = friction("fine", &["time.step=1e-4", "solver.tolerance=1e-7"]);
     let (fixed, _) = friction("fixed", &coarse);
     let (chosen, summary) = friction("chosen", &[&coarse[..], &["accuracy=0.003"]].concat());
     let error = |x: f64| (x / exact - 1.0).abs();
-    assert!(error(fixed) > 0.0045, "{}", error(fixed));
+    assert!(error(fixed) > 0.008, "{}", error(fixed));
     assert!(
         error(chosen) < 0.5 * error(fixed),
         "{} of {}",
         error(chosen),
         error(fixed)
     );
+    assert!(error(chosen) < 0.003, "{}", error(chosen));
     let accuracy = &summary["accuracy"];
     assert!(
         !accuracy["changes"].as_array().unwrap().is_empty(),
