@@ -273,6 +273,7 @@ pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
         "jump",
         "stopped",
         "cpu_seconds",
+        "time_spent",
         "plugins",
         "version",
         "seed",

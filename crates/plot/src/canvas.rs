@@ -145,14 +145,20 @@ impl Canvas {
         colour: impl Fn([f32; 2], f32) -> [f32; 3],
     ) {
         let (width, height) = (self.pixmap.width(), self.pixmap.height());
-        let span = |c: f32, end: u32| {
-            let from = (c - radius - 1.0).max(0.0) as u32;
-            from..((c + radius + 2.0).max(0.0) as u32).min(end)
-        };
+        let rows =
+            (y - radius - 1.0).max(0.0) as u32..((y + radius + 2.0).max(0.0) as u32).min(height);
         let pixels = self.pixmap.data_mut();
-        for row in span(y, height) {
+        for row in rows {
             let dy = row as f32 + 0.5 - y;
-            for column in span(x, width) {
+            // Columns that the disk does not reach in this row are not looked at.
+            let reach = (radius + 1.0) * (radius + 1.0) - dy * dy;
+            if reach <= 0.0 {
+                continue;
+            }
+            let half = reach.sqrt();
+            let from = (x - half - 1.0).max(0.0) as u32;
+            let to = ((x + half + 2.0).max(0.0) as u32).min(width);
+            for column in from..to {
                 let dx = column as f32 + 0.5 - x;
                 let distance = (dx * dx + dy * dy).sqrt();
                 let cover = (radius - distance + 0.5).min(1.0);
@@ -290,8 +296,11 @@ impl Canvas {
 
     fn write_file(&self, path: &Path) -> Result<(), ReportError> {
         let size = (self.pixmap.width(), self.pixmap.height());
-        let pixels = self.pixmap.data().as_chunks::<4>().0.iter();
-        let rgb: Vec<u8> = pixels.flat_map(|p| [p[0], p[1], p[2]]).collect();
+        let pixels = self.pixmap.data().as_chunks::<4>().0;
+        let mut rgb = vec![0; 3 * pixels.len()];
+        for (to, from) in rgb.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
+            *to = [from[0], from[1], from[2]];
+        }
         write_png(path, size, &rgb).map_err(|e| ReportError::Write {
             path: path.to_owned(),
             reason: reason(&e),
@@ -306,6 +315,8 @@ fn write_png(path: &Path, size: (u32, u32), rgb: &[u8]) -> Result<(), png::Encod
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
+    // Differences between rows: choosing among all filters for each row takes longer than the rest and saves a tenth of the size.
+    encoder.set_filter(png::Filter::Up);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgb)?;
     writer.finish()

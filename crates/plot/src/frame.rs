@@ -86,7 +86,7 @@ pub struct Arrow {
 
 /// A picture of the scene at one instant.
 #[derive(Clone, Debug)]
-pub struct Frame<'a> {
+pub struct Frame {
     /// Heading; empty for none.
     pub title: String,
     /// Texts under the heading (time, cycle, friction), on one line if they fit.
@@ -95,19 +95,19 @@ pub struct Frame<'a> {
     /// more if the picture would be too flat.
     pub window: [f64; 4],
     /// First bodies, and grains with corners.
-    pub bodies: &'a [Outline],
+    pub bodies: Vec<Outline>,
     /// Grains, drawn in order.
-    pub disks: &'a [Disk],
+    pub disks: Vec<Disk>,
     /// Interactions, drawn over the grains.
-    pub links: &'a [Link],
+    pub links: Vec<Link>,
     /// What sticks and slips, drawn over all others.
-    pub zones: &'a [ZoneLine],
+    pub zones: Vec<ZoneLine>,
     /// Loads and motions.
-    pub arrows: &'a [Arrow],
+    pub arrows: Vec<Arrow>,
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
     pub scale: Option<Scale>,
     /// The 3D scene, drawn instead of bodies and disks.
-    pub scene: Option<&'a Scene>,
+    pub scene: Option<Scene>,
     /// Width of the picture in pixels; the height follows from the window.
     pub width_px: u32,
 }
@@ -137,7 +137,7 @@ impl Map {
     }
 }
 
-impl Frame<'_> {
+impl Frame {
     /// Draws the frame to a PNG file.
     pub fn draw(&self, path: &Path) -> Result<(), ReportError> {
         let [xmin, xmax, ymin, ymax] = self.window;
@@ -178,7 +178,7 @@ impl Frame<'_> {
         let mut page = Canvas::new(self.width_px, height.round() as u32)?;
         let mut field = Canvas::new(field_width as u32, field_height as u32)?;
 
-        if let Some(scene) = self.scene {
+        if let Some(scene) = &self.scene {
             let place = Place {
                 corner: [map.left, map.top],
                 scale,
@@ -189,7 +189,7 @@ impl Frame<'_> {
         self.draw_disks(&mut field, &map, u);
         self.draw_links(&mut field, &map, u);
         self.draw_labels(&mut field, &map, u);
-        zone::draw(&mut field, self.zones, |p| map.point(p), u);
+        zone::draw(&mut field, &self.zones, |p| map.point(p), u);
         page.paste(&field, side as usize, top as usize);
         let edge = [side, top, field_width, field_height];
         page.frame(edge, 1.5 * u, STEEL_EDGE);
@@ -209,8 +209,8 @@ impl Frame<'_> {
             paint::scale(&mut page, scale, [side, under + 40.0 * u], 360.0, u)?;
         }
         let closest_point = under + bar + 38.0 * u;
-        let end = furniture::legend(&mut page, self.links, [side, closest_point], u);
-        zone::legend(&mut page, self.zones, [end, closest_point], u);
+        let end = furniture::legend(&mut page, &self.links, [side, closest_point], u);
+        zone::legend(&mut page, &self.zones, [end, closest_point], u);
         let right = side + field_width;
         let row = if self.scale.is_some() {
             under + 40.0 * u
@@ -222,7 +222,7 @@ impl Frame<'_> {
     }
 
     fn draw_bodies(&self, field: &mut Canvas, map: &Map, u: f32) {
-        for body in self.bodies {
+        for body in &self.bodies {
             let polygon = visible(&body.points, field, map);
             let (fill, edge, width) = match body.shade {
                 Some(shade) => (body.paint.colour(shade), GRAIN_EDGE, 1.3 * u),
@@ -247,7 +247,9 @@ impl Frame<'_> {
             let inner = radius - (1.3 * u).min(0.3 * radius);
             field.disk(at, radius, |_, distance| {
                 let t = (distance - inner + 0.5).clamp(0.0, 1.0);
-                [0, 1, 2].map(|i| grain[i] + t * (edge[i] - grain[i]))
+                // Not `map`, which is not inlined.
+                let mixed = |i: usize| grain[i] + t * (edge[i] - grain[i]);
+                [mixed(0), mixed(1), mixed(2)]
             });
             if radius > 6.0 * u {
                 let (sin, cos) = (disk.angle.sin() as f32, disk.angle.cos() as f32);
@@ -289,7 +291,7 @@ impl Frame<'_> {
         let unit = self.line_unit(field, map, u);
         let mut paths: [_; LEVELS + 3] = std::array::from_fn(|_| PathBuilder::new());
         let (right, bottom) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
-        for link in self.links {
+        for link in &self.links {
             let (a, b) = (map.point(link.a), map.point(link.b));
             let out = |i: usize, end: f32| a[i].max(b[i]) < -9.0 || a[i].min(b[i]) > end + 9.0;
             let width = (unit * (1.3 + 1.2 * link.width.clamp(0.0, 4.0) as f32)).max(0.9);
@@ -329,7 +331,7 @@ impl Frame<'_> {
                 field.text(&body.label, [x, y + 9.0 * u], &name.halo(STEEL));
             }
         }
-        for arrow in self.arrows {
+        for arrow in &self.arrows {
             let (from, to) = (map.point(arrow.from), map.point(arrow.to));
             furniture::arrow(field, from, to, &arrow.label, u);
         }
@@ -388,23 +390,23 @@ mod tests {
 
     const UM: f64 = 1e-6;
 
-    fn frame<'a>(bodies: &'a [Outline], disks: &'a [Disk], links: &'a [Link]) -> Frame<'a> {
+    fn frame(bodies: &[Outline], disks: &[Disk], links: &[Link]) -> Frame {
         Frame {
             title: "Field".to_owned(),
             caption: vec!["t = 1 ms".to_owned()],
             window: [0.0, 100.0 * UM, -10.0 * UM, 30.0 * UM],
-            bodies,
-            disks,
-            links,
-            zones: &[],
-            arrows: &[],
+            bodies: bodies.to_vec(),
+            disks: disks.to_vec(),
+            links: links.to_vec(),
+            zones: Vec::new(),
+            arrows: Vec::new(),
             scale: None,
             scene: None,
             width_px: 400,
         }
     }
 
-    fn drawn(frame: &Frame<'_>, name: &str) -> tiny_skia::Pixmap {
+    fn drawn(frame: &Frame, name: &str) -> tiny_skia::Pixmap {
         let name = format!("fretwork-frame-{}-{name}.png", std::process::id());
         let path = std::env::temp_dir().join(name);
         frame.draw(&path).unwrap();
@@ -478,7 +480,7 @@ mod tests {
             }],
             faces: vec![faces(vec![Vec::new()]), faces(vec![vec![corner; 3]])],
         };
-        odd.scene = Some(&scene);
+        odd.scene = Some(scene);
         drawn(&odd, "space");
         odd.window = [0.0, 1e-6, 0.0, 1.0];
         let tall = drawn(&odd, "tall");

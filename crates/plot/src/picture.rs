@@ -166,20 +166,30 @@ impl Camera {
         caption: Vec<String>,
         path: &Path,
     ) -> Result<(), ReportError> {
-        match S::in_dimension(simulation) {
-            InDimension::Dim2(s) => self.draw_in(s, subject, title, caption, path),
-            InDimension::Dim3(s) => self.draw_in(s, subject, title, caption, path),
-        }
+        self.frame(simulation, subject, title, caption).draw(path)
     }
 
-    fn draw_in<S: Space>(
+    /// What a picture of a subject shows, to be drawn later, by any thread.
+    pub fn frame<S: Steps>(
         &self,
         simulation: &Simulation<S>,
         subject: Subject<'_>,
         title: &str,
         caption: Vec<String>,
-        path: &Path,
-    ) -> Result<(), ReportError> {
+    ) -> Frame {
+        match S::in_dimension(simulation) {
+            InDimension::Dim2(s) => self.frame_in(s, subject, title, caption),
+            InDimension::Dim3(s) => self.frame_in(s, subject, title, caption),
+        }
+    }
+
+    fn frame_in<S: Space>(
+        &self,
+        simulation: &Simulation<S>,
+        subject: Subject<'_>,
+        title: &str,
+        caption: Vec<String>,
+    ) -> Frame {
         let made: Vec<Paint>;
         let (paints, scale) = match subject {
             Subject::Scene if self.paints.is_empty() => {
@@ -228,16 +238,15 @@ impl Camera {
             title: title.to_owned(),
             caption,
             window: self.window,
-            bodies: &bodies,
-            disks: &disks,
-            links: &links,
-            zones: &along,
-            arrows: &[],
+            bodies,
+            disks,
+            links,
+            zones: along,
+            arrows: Vec::new(),
             scale,
-            scene: scene.as_ref(),
+            scene,
             width_px: self.width,
         }
-        .draw(path)
     }
 
     /// The contacts drawn as lines for a subject (2D).

@@ -41,33 +41,39 @@ impl Raster {
     /// Draws a lit sphere.
     pub fn sphere(&mut self, [x, y, z]: Corner, radius: f64, base: Rgb) {
         // Light from the upper left in front of the picture; unit length.
-        const LIGHT: [f64; 3] = [-0.45, -0.6, 0.661];
+        const LIGHT: [f32; 3] = [-0.45, -0.6, 0.661];
         // The smallest spheres remain visible.
         let radius = radius.max(0.75);
+        let base = base.map(f32::from);
         for row in self.rows(y - radius, y + radius) {
             let ny = (row as f64 + 0.5 - y) / radius;
             let half = radius * (1.0 - ny * ny).max(0.0).sqrt();
-            for column in span(x - half, x + half, self.width) {
-                let nx = (column as f64 + 0.5 - x) / radius;
-                let inside = 1.0 - nx * nx - ny * ny;
+            let columns = span(x - half, x + half, self.width);
+            let first = ((columns.start as f64 + 0.5 - x) / radius) as f32;
+            let (per_column, across) = ((1.0 / radius) as f32, (1.0 - ny * ny) as f32);
+            let (z, high, ny) = (z as f32, radius as f32, ny as f32);
+            let at = row * self.width;
+            let range = at + columns.start..at + columns.end;
+            let pixels = self.colour[range.clone()].iter_mut();
+            for (k, (pixel, nearest)) in pixels.zip(&mut self.depth[range]).enumerate() {
+                let nx = first + k as f32 * per_column;
+                let inside = across - nx * nx;
                 if inside < 0.0 {
                     continue;
                 }
                 let nz = inside.sqrt();
-                let at = row * self.width + column;
-                let depth = (z + radius * nz) as f32;
-                if depth <= self.depth[at] {
+                let depth = z + high * nz;
+                if depth <= *nearest {
                     continue;
                 }
+                *nearest = depth;
                 let facing = (LIGHT[0] * nx + LIGHT[1] * ny + LIGHT[2] * nz).max(0.0);
                 // The rim is darkened as well, so that equal spheres are distinguishable.
                 let light = (0.5 + 0.54 * facing) * (0.62 + 0.38 * nz.sqrt());
                 let gleam = 36.0 * facing.powi(24);
-                self.depth[at] = depth;
-                // Not `base.map`, which is not inlined.
-                let [red, green, blue] = base;
-                let lit = |c: u8| (light * f64::from(c) + gleam).min(255.0) as u8;
-                self.colour[at] = [lit(red), lit(green), lit(blue)];
+                // Not `map`, which is not inlined.
+                let lit = |c: f32| (light * c + gleam).min(255.0) as u8;
+                *pixel = [lit(base[0]), lit(base[1]), lit(base[2])];
             }
         }
     }
@@ -171,25 +177,26 @@ impl Raster {
         }
     }
 
-    /// Downsamples by a factor `by` in each direction, averaging pixels; rows of red, green and blue.
-    pub fn reduced(&self, by: usize) -> (usize, usize, Vec<Rgb>) {
-        let (width, height) = (self.width / by, self.height / by);
+    /// Halves the resolution, by the mean of four pixels; width, height, and rows of red, green and blue.
+    pub fn halved(&self) -> (usize, usize, Vec<Rgb>) {
+        let (width, height) = (self.width / 2, self.height / 2);
         let mut out = Vec::with_capacity(width * height);
-        for row in 0..height {
-            for column in 0..width {
-                let mut sum = [0u32; 3];
-                for k in 0..by * by {
-                    let at = (row * by + k / by) * self.width + column * by + k % by;
-                    for (s, c) in sum.iter_mut().zip(self.colour[at]) {
-                        *s += u32::from(c);
-                    }
-                }
-                let n = (by * by) as u32;
-                let mean = |s: u32| ((s + n / 2) / n) as u8;
-                out.push([mean(sum[0]), mean(sum[1]), mean(sum[2])]);
-            }
+        for two_rows in self.colour.chunks_exact(2 * self.width).take(height) {
+            let (upper, lower) = two_rows.split_at(self.width);
+            let (upper, lower) = (upper.as_chunks::<2>().0, lower.as_chunks::<2>().0);
+            out.extend(upper.iter().zip(lower).map(|([a, b], [c, d])| {
+                let of = |p: &Rgb, i: usize| u16::from(p[i]);
+                let mean = |i: usize| ((of(a, i) + of(b, i) + of(c, i) + of(d, i) + 2) / 4) as u8;
+                // Not `map`, which is not inlined.
+                [mean(0), mean(1), mean(2)]
+            }));
         }
         (width, height, out)
+    }
+
+    /// Width, height, and rows of red, green and blue.
+    pub fn pixels(self) -> (usize, usize, Vec<Rgb>) {
+        (self.width, self.height, self.colour)
     }
 }
 
@@ -297,7 +304,7 @@ mod tests {
         // An almost horizontal line is complete.
         r.line([1.0, 15.0, 60.0], [39.0, 15.001, 60.0], 2.0, 3.0, BLUE, 1.0);
         assert!((2..38).all(|x| r.colour[15 * 40 + x] == BLUE));
-        let (w, h, pixels) = r.reduced(2);
+        let (w, h, pixels) = r.halved();
         assert_eq!((w, h, pixels.len()), (20, 10, 200));
     }
 }

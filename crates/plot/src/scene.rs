@@ -43,9 +43,7 @@ pub struct Scene {
     pub faces: Vec<Faces>,
 }
 
-/// Supersampling factor along each side.
-const FINE: usize = 2;
-/// Fields with more pixels are not supersampled.
+/// Fields with more pixels than this are drawn at their own resolution, others at twice that.
 const LARGEST: usize = 6_000_000;
 /// A group of faces is transparent if grains are behind more than this fraction of its pixels.
 const SEEN_THROUGH: f64 = 0.01;
@@ -97,7 +95,7 @@ impl Scene {
             field.pixmap.width() as usize,
             field.pixmap.height() as usize,
         );
-        let fine = if width * height > LARGEST { 1 } else { FINE };
+        let fine = if width * height > LARGEST { 1 } else { 2 };
         let mut raster = Raster::new(width * fine, height * fine, WHITE);
         let scale = place.scale * fine as f64;
         let line = f64::from(u) * fine as f64;
@@ -163,7 +161,11 @@ impl Scene {
         for [a, b] in edges {
             raster.line(a, b, 1.8 * line, 12.0, WALL_EDGE, 0.85);
         }
-        let (across, _, pixels) = raster.reduced(fine);
+        let (across, _, pixels) = if fine == 2 {
+            raster.halved()
+        } else {
+            raster.pixels()
+        };
         field.write(across, &pixels);
     }
 

@@ -11,6 +11,7 @@ use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
 use fretwork_observe::standard::Observed;
+use fretwork_observe::summary::TimeSpent;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::path::Path;
@@ -37,12 +38,15 @@ struct RunLoopState<'a, S: Space> {
     done: u64,
     wall: Duration,
     processor: Duration,
+    time_spent: TimeSpent,
 }
 
 impl<S: Observed> Recorder<'_, S> {
     /// Writes a checkpoint of the current state to the results.
     pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();
+        // A resumed run does not draw again what comes before the checkpoint.
+        self.drawing.wait()?;
         let state = self.state()?;
         self.write_frame(Kind::State, state)?;
         // The other files can be regenerated from the results; this one is for the user to read.
@@ -97,6 +101,7 @@ impl<S: Observed> Recorder<'_, S> {
             done: self.done,
             wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
             processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
+            time_spent: self.summary.time_spent,
         })?)
     }
 
@@ -125,6 +130,7 @@ impl<S: Observed> Recorder<'_, S> {
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();
         self.elapsed_before_resume = (state.wall, state.processor);
+        self.summary.time_spent = state.time_spent;
         self.results.take_over(&stop.results, &state.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();
         // The columns of the statistics are declared first.

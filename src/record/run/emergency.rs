@@ -78,6 +78,7 @@ impl<S: Space> UnsavedOutputs<S> {
 impl<S: Steps> Recorder<'_, S> {
     /// A step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
+        let begun = Instant::now();
         self.observers.before_step(&self.simulation);
         let outputs = UnsavedOutputs {
             table: std::mem::take(&mut self.table),
@@ -99,7 +100,9 @@ impl<S: Steps> Recorder<'_, S> {
         self.results = outputs.results;
         self.observers = outputs.observers;
         self.summary = outputs.summary;
-        report
+        let report = report?;
+        self.add_step(begun, &report);
+        Ok(report)
     }
 
     /// A step, or a part of one where the run chooses how many parts it has.

@@ -15,7 +15,7 @@ use std::time::Duration;
 impl<S: Observed> Recorder<'_, S> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
-        let statistics_read = self.read_statistics();
+        let statistics_read = self.timed(|t| &mut t.files, Self::read_statistics);
         let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
         let mut summary = std::mem::take(&mut self.summary);
         summary.wall_seconds = wall.as_secs_f64();
@@ -61,11 +61,23 @@ impl<S: Observed> Recorder<'_, S> {
 
     /// Writes all other files, each whatever became of the one before it.
     fn files(&mut self, wall: Duration) -> Result<(), RunError> {
-        let table = self.table.flush();
-        let table = table.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e));
-        let outputs = write_outputs(&self.out, &self.observers.files(&self.end(wall)));
-        let results = self.end_results();
-        table.and(results).and(outputs).and(self.draw(wall))
+        let written = self.timed(
+            |t| &mut t.files,
+            |run| {
+                let table = run.table.flush();
+                let table = table.map_err(|e| unwritable(&run.out.join("statistics.csv"), &e));
+                let outputs = write_outputs(&run.out, &run.observers.files(&run.end(wall)));
+                table.and(run.end_results()).and(outputs)
+            },
+        );
+        let drawn = self.timed(
+            |t| &mut t.pictures,
+            |run| {
+                let figures = run.draw(wall);
+                run.drawing.wait().map_err(RunError::from).and(figures)
+            },
+        );
+        written.and(drawn)
     }
 
     /// Whether figures are drawn.

@@ -1,9 +1,10 @@
 //! Pictures of the scene during a run.
 
+use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
-use crate::report::{draw_maps, noted, quantity};
-use fretwork_observe::picture::{Picture, Shows};
+use crate::report::quantity;
+use fretwork_observe::picture::{self, Shows};
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::Observed;
 use std::path::PathBuf;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
 impl<S: Observed> Recorder<'_, S> {
-    /// Draws the pictures of a step.
+    /// Has the pictures of a step drawn, beside the steps that follow.
     pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
@@ -45,6 +46,7 @@ impl<S: Observed> Recorder<'_, S> {
                 .filter_map(|p| Some((p.name, subject::<S>(p)?))),
         );
         let notice = self.notice();
+        let mut shown = Vec::new();
         for picture in &pictures {
             let Shows::Maps(maps) = &picture.shows else {
                 continue;
@@ -53,19 +55,20 @@ impl<S: Observed> Recorder<'_, S> {
             let mut maps = maps.clone();
             maps.iter_mut()
                 .for_each(|m| m.subtitle = Some(heading.join("   ·   ")));
-            let path = self.picture_path(picture.name, step);
-            noted(notice.clone(), || draw_maps(&maps, &path))?;
+            shown.push((picture.name, drawing::Shows::Maps(maps)));
         }
         for (name, subject) in subjects {
-            let path = self.picture_path(name, step);
-            let title = &self.loaded.case.name;
-            let caption = caption.clone();
-            noted(notice.clone(), || {
-                self.camera
-                    .draw(&self.simulation, subject, title, caption, &path)
-            })?;
+            let (title, caption) = (&self.loaded.case.name, caption.clone());
+            let frame = self.camera.frame(&self.simulation, subject, title, caption);
+            shown.push((name, drawing::Shows::Scene(Box::new(frame))));
         }
-        Ok(())
+        let pictures = shown.into_iter().map(|(name, shows)| Picture {
+            shows,
+            path: self.picture_path(name, step),
+            notice: notice.clone(),
+        });
+        let pictures = pictures.collect();
+        Ok(self.drawing.begin(pictures)?)
     }
 
     fn picture_path(&self, name: &str, step: u64) -> PathBuf {
@@ -75,7 +78,7 @@ impl<S: Observed> Recorder<'_, S> {
 }
 
 /// How a picture of an observer is drawn; none where the dimension has no such picture, and of maps, which have a page of their own.
-fn subject<S: Observed>(picture: &Picture) -> Option<Subject<'_>> {
+fn subject<S: Observed>(picture: &picture::Picture) -> Option<Subject<'_>> {
     Some(match &picture.shows {
         Shows::Paints(paints) => Subject::Painted(paints),
         Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),

@@ -2,6 +2,7 @@
 
 mod checkpoints;
 mod clear;
+mod drawing;
 mod dump;
 mod emergency;
 mod end;
@@ -9,10 +10,12 @@ mod error;
 mod frame;
 mod notice;
 mod stamps;
+mod timed;
 
 pub use self::end::write_outputs;
 pub use self::error::RunError;
 
+use self::drawing::Drawing;
 use self::emergency::EmergencySave;
 use self::error::unwritable;
 use self::stamps::{density_of, stamps};
@@ -228,6 +231,7 @@ struct Recorder<'a, S: Space> {
     table: Table,
     results: Results,
     camera: Camera,
+    drawing: Drawing,
     /// Steps written as FCLIB problems, and those that hold what that form does not.
     problems: (u64, u64),
     /// Steps that missed the tolerance.
@@ -296,6 +300,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             parts: None,
             done: 0,
             camera: Camera::new(&simulation, &case.output),
+            drawing: Drawing::default(),
             out: options.out.clone(),
             table: Table::new(columns),
             results,
@@ -333,8 +338,8 @@ impl<'a, S: Observed> Recorder<'a, S> {
     /// Steps to the end or until a stop is requested; returns the reason of the stop.
     fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
         if self.simulation.state.steps == 0 {
-            self.record_state()?;
-            self.draw_pictures(0)?;
+            self.timed(|t| &mut t.files, Self::record_state)?;
+            self.timed(|t| &mut t.pictures, |run| run.draw_pictures(0))?;
         }
         for step in self.done + 1..=self.total {
             let phase = self.simulation.state.control.phase();
@@ -357,12 +362,12 @@ impl<'a, S: Observed> Recorder<'a, S> {
                 break;
             }
             if let ControlFlow::Break(reason) = wish {
-                self.write_checkpoint()?;
+                self.timed(|t| &mut t.files, Self::write_checkpoint)?;
                 let total = self.total;
                 return Ok(Some(format!("{reason} after step {step} of {total}")));
             }
             if self.checkpoint_writer.due(step) {
-                self.write_checkpoint()?;
+                self.timed(|t| &mut t.files, Self::write_checkpoint)?;
             }
         }
         Ok(None)
@@ -374,7 +379,10 @@ impl<'a, S: Observed> Recorder<'a, S> {
             let report = self.step()?;
             self.unconverged += u64::from(!report.solver.converged);
             self.estimate.after_step(&self.simulation, &report);
-            self.observers.after_step(&self.simulation, &report);
+            self.timed(
+                |t| &mut t.observers,
+                |run| run.observers.after_step(&run.simulation, &report),
+            );
             // What the run loop does after a step of the case stands for its last part.
             if self.parts.is_none() {
                 return Ok(report);
@@ -407,32 +415,40 @@ impl<'a, S: Observed> Recorder<'a, S> {
             self.results.append_event(&event)?;
         }
         if output.fclib > 0 && step.is_multiple_of(output.fclib) {
-            self.write_problem(step, report)?;
+            self.timed(|t| &mut t.files, |run| run.write_problem(step, report))?;
         }
         if step.is_multiple_of(output.every) || last {
             self.record_row()?;
         }
         if due(step, self.spread, output.views) || finished {
-            self.record_state()?;
+            self.timed(|t| &mut t.files, Self::record_state)?;
         }
         if due(step, self.spread, output.frames) || finished || turned {
-            self.draw_pictures(step)?;
+            self.timed(|t| &mut t.pictures, |run| run.draw_pictures(step))?;
         }
         Ok(())
     }
 
     /// Writes a row of the statistics.
     fn record_row(&mut self) -> Result<(), RunError> {
-        let row = self.observers.sample(&self.simulation);
+        let row = self.timed(
+            |t| &mut t.observers,
+            |run| run.observers.sample(&run.simulation),
+        );
         if row.len() != self.table.columns.len() {
             return Err(RunError::Row {
                 values: row.len(),
                 columns: self.table.columns.len(),
             });
         }
-        let written = self.table.push(&row);
-        written.map_err(|e| unwritable(&self.out.join("statistics.csv"), &e))?;
-        Ok(self.results.append_statistics(&row)?)
+        self.timed(
+            |t| &mut t.files,
+            |run| {
+                let written = run.table.push(&row);
+                written.map_err(|e| unwritable(&run.out.join("statistics.csv"), &e))?;
+                Ok(run.results.append_statistics(&row)?)
+            },
+        )
     }
 
     /// Writes the current state.

@@ -50,6 +50,7 @@ impl Summary {
                 quantity(self.cpu_seconds, "s")
             ),
         );
+        self.time_spent.line(lines);
     }
 
     /// The repeated steps from which the error is estimated.

@@ -5,10 +5,12 @@ mod details;
 mod estimate;
 mod fracture;
 mod text;
+mod time_spent;
 
 pub use self::circuit::{Base, CircuitSummary, Rates};
 pub use self::estimate::{Estimate, Uncertainty};
 pub use self::fracture::{BondEnergies, FractureSummary, Reference};
+pub use self::time_spent::TimeSpent;
 
 use crate::accuracy::AccuracyReport;
 use crate::biaxial::Outcome;
@@ -83,9 +85,10 @@ impl Wear {
 
 /// JSON pointers to the values that may differ between the summaries of two runs of a case: wall and
 /// processor times, and the number of threads. All others are bit-identical, see `docs/checkpoints.md`.
-pub const FROM_THE_CLOCK: [&str; 4] = [
+pub const FROM_THE_CLOCK: [&str; 5] = [
     "/wall_seconds",
     "/cpu_seconds",
+    "/time_spent",
     "/threads",
     "/circuit/cost_share",
 ];
@@ -114,6 +117,8 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Processor time of all threads (s), which depends little on other programs.
     pub cpu_seconds: f64,
+    /// What the wall time was spent on.
+    pub time_spent: TimeSpent,
     /// Number of bodies.
     pub bodies: usize,
     /// Number of contacts at the end.

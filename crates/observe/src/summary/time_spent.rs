@@ -1,0 +1,76 @@
+//! What the wall time of a run was spent on.
+
+use super::text::Lines;
+use crate::quantity::quantity;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+
+/// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and the report page are not part of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TimeSpent {
+    /// Detection of contacts, in the steps.
+    pub detection: f64,
+    /// Laws.
+    pub laws: f64,
+    /// The solver.
+    pub solver: f64,
+    /// Everything else in a step: motion, energy ledger, processes, and steps repeated to estimate an error.
+    pub rest_of_steps: f64,
+    /// Observers: statistics, tests and measures.
+    pub observers: f64,
+    /// Writing `results.h5`, `statistics.csv`, checkpoints and tables.
+    pub files: f64,
+    /// Drawing and writing frames and figures.
+    pub pictures: f64,
+}
+
+impl TimeSpent {
+    /// Adds steps that took a wall time, of which detection, laws and solver had theirs.
+    pub fn add_steps(&mut self, all: Duration, [detection, laws, solver]: [Duration; 3]) {
+        self.detection += detection.as_secs_f64();
+        self.laws += laws.as_secs_f64();
+        self.solver += solver.as_secs_f64();
+        let rest = all.saturating_sub(detection + laws + solver);
+        self.rest_of_steps += rest.as_secs_f64();
+    }
+
+    fn parts(&self) -> [(&'static str, f64); 7] {
+        [
+            ("detection", self.detection),
+            ("laws", self.laws),
+            ("solver", self.solver),
+            ("rest of the steps", self.rest_of_steps),
+            ("statistics and measures", self.observers),
+            ("files", self.files),
+            ("pictures", self.pictures),
+        ]
+    }
+
+    /// Adds the line of the text of a summary.
+    pub(super) fn line(&self, lines: &mut Lines) {
+        let parts = self.parts();
+        let sum: f64 = parts.iter().map(|p| p.1).sum();
+        if sum == 0.0 {
+            return;
+        }
+        let shares = parts.map(|(name, s)| format!("{name} {:.1} %", 100.0 * s / sum));
+        let text = format!("{} of {}", shares.join(", "), quantity(sum, "s"));
+        lines.add("time spent", text);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::TimeSpent;
+    use std::time::Duration;
+
+    #[test]
+    fn the_rest_is_what_the_stages_leave() {
+        let mut spent = TimeSpent::default();
+        let ms = Duration::from_millis;
+        spent.add_steps(ms(10), [ms(1), ms(2), ms(4)]);
+        assert!((spent.rest_of_steps - 3e-3).abs() < 1e-12, "{spent:?}");
+        let sum: f64 = spent.parts().iter().map(|p| p.1).sum();
+        assert!((sum - 0.01).abs() < 1e-12, "{spent:?}");
+    }
+}

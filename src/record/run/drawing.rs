@@ -1,0 +1,76 @@
+//! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go on.
+
+use crate::report::{Frame, ReportError, draw_maps, noted};
+use fretwork_observe::map::Map;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::thread::{Builder, JoinHandle};
+
+/// A picture to be drawn.
+#[derive(Debug)]
+pub(super) struct Picture {
+    pub shows: Shows,
+    pub path: PathBuf,
+    /// Text of the band above it.
+    pub notice: Option<String>,
+}
+
+#[derive(Debug)]
+pub(super) enum Shows {
+    Scene(Box<Frame>),
+    Maps(Vec<Map>),
+}
+
+impl Picture {
+    fn draw(&self) -> Result<(), ReportError> {
+        noted(self.notice.clone(), || match &self.shows {
+            Shows::Scene(frame) => frame.draw(&self.path),
+            Shows::Maps(maps) => draw_maps(maps, &self.path),
+        })
+    }
+}
+
+/// The thread that draws, if there is one at the moment.
+#[derive(Debug, Default)]
+pub(super) struct Drawing {
+    thread: Option<JoinHandle<Result<(), ReportError>>>,
+}
+
+impl Drawing {
+    /// Begins to draw pictures, once those before are drawn.
+    ///
+    /// # Errors
+    /// One of those could not be written.
+    pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), ReportError> {
+        self.wait()?;
+        let pictures = Arc::new(pictures);
+        let theirs = Arc::clone(&pictures);
+        let draw = move || theirs.iter().try_for_each(Picture::draw);
+        match Builder::new().name("pictures".to_owned()).spawn(draw) {
+            Ok(thread) => self.thread = Some(thread),
+            // The system has no more threads.
+            Err(_) => pictures.iter().try_for_each(Picture::draw)?,
+        }
+        Ok(())
+    }
+
+    /// Waits until all pictures are on disk.
+    ///
+    /// # Errors
+    /// One could not be written.
+    pub fn wait(&mut self) -> Result<(), ReportError> {
+        match self.thread.take().map(JoinHandle::join) {
+            None => Ok(()),
+            Some(Ok(drawn)) => drawn,
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+        }
+    }
+}
+
+impl Drop for Drawing {
+    fn drop(&mut self) {
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
