@@ -109,15 +109,18 @@ fn check<S: Space>(grains: Grains, sets: &[&str]) -> [usize; 2] {
     let made = bonds && !sets.iter().any(|s| s.contains("Never"));
     let sort = Problem::<S>::BYTES_TO_SORT;
     let row = match (grains, bonds) {
-        (Grains::Bricks, true) => bonded + sort[3],
-        (Grains::Bricks, false) => levers + sort[2],
-        (Grains::Balls, true) => full + sort[1],
-        (Grains::Balls, false) => plain + sort[0],
+        (Grains::Bricks, true) => bonded,
+        (Grains::Bricks, false) => levers,
+        (Grains::Balls, true) => full,
+        (Grains::Balls, false) => plain,
     };
     let beside = Simulation::<S>::BYTES_A_CONTACT;
     let bond = if made { size_of::<Bond<S>>() } else { 0 };
     let state = Bodies::<S>::BYTES + size_of::<Ball<S>>() + size_of::<S::Vector>();
-    [state + Problem::<S>::BYTES_A_BODY, row + beside + bond]
+    [
+        state + Problem::<S>::BYTES_A_BODY,
+        row + sort + beside + bond,
+    ]
 }
 
 const RADIUS: f64 = 1e-3;

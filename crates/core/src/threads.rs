@@ -107,13 +107,62 @@ pub fn fill<T: Send>(
     count: usize,
     of: impl Fn(usize) -> T + Sync + Send,
 ) {
+    empty(list, count);
     if divide {
         let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
         items.map(of).collect_into_vec(list);
     } else {
-        list.clear();
         list.extend((0..count).map(of));
     }
+}
+
+/// Empties a list that will have `count` items: with room for some more, but not for twice as many as lists that grow by
+/// doubling have.
+fn empty<T>(list: &mut Vec<T>, count: usize) {
+    list.clear();
+    let capacity = list.capacity();
+    if capacity < count || capacity > count + count / 2 + 64 {
+        // The old memory goes before the new one comes.
+        *list = Vec::new();
+        list.reserve_exact(count + count / 16);
+    }
+}
+
+/// Replaces the items of a list: that with index `places[k]` is what `of` gives for k. Items are made in the order of k, so that what
+/// they are made of is read in order.
+///
+/// # Safety
+/// `places` has each index below its length once.
+pub unsafe fn fill_places<T: Send>(
+    divide: bool,
+    list: &mut Vec<T>,
+    places: &[u32],
+    of: impl Fn(usize) -> T + Sync + Send,
+) {
+    struct Spread<T>(*mut T);
+    // SAFETY: each place is written by one thread.
+    unsafe impl<T: Send> Sync for Spread<T> {}
+    impl<T> Spread<T> {
+        /// # Safety
+        /// The place is in the allocation, and nobody else uses it.
+        unsafe fn put(&self, place: u32, item: T) {
+            // SAFETY: as above.
+            unsafe { self.0.add(place as usize).write(item) }
+        }
+    }
+    let count = places.len();
+    empty(list, count);
+    let spread = Spread(list.as_mut_ptr());
+    // SAFETY: places are below the capacity, and each is written once.
+    let one = |k: usize| unsafe { spread.put(places[k], of(k)) };
+    if divide {
+        let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
+        items.for_each(one);
+    } else {
+        (0..count).for_each(one);
+    }
+    // SAFETY: all are written.
+    unsafe { list.set_len(count) };
 }
 
 /// Returns what `of` gives for each of some tasks, in their order.

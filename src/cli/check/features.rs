@@ -316,14 +316,7 @@ pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
         let levers = if bonded { bonded_levers } else { levers };
         rows.push(format!("{levers} where it has levers"));
     }
-    let [plain, full, levers, bonded_levers] = Problem::<S>::BYTES_TO_SORT;
-    let sorted = match (central, bonded) {
-        (true, false) => plain,
-        (true, true) => full,
-        (false, false) => levers,
-        (false, true) => bonded_levers,
-    };
-    let beside = Simulation::<S>::BYTES_A_CONTACT + sorted;
+    let beside = Simulation::<S>::BYTES_A_CONTACT + Problem::<S>::BYTES_TO_SORT;
     [
         format!(
             "{} bytes: {kept} of state, {line} in the solver",

@@ -102,7 +102,9 @@ impl<S: Space> Problem<S> {
     /// Adds all contacts to a problem that has none, in the order of the iteration.
     pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
         debug_assert!(self.places.is_empty());
-        let mut of_kind: [Vec<u32>; 4] = Default::default();
+        let mut of_kind = std::mem::take(&mut self.of_kind);
+        of_kind.iter_mut().for_each(Vec::clear);
+        self.places.reserve_exact(contacts.len());
         for (k, contact) in contacts.iter().enumerate() {
             let list = &mut of_kind[kind(contact) as usize];
             self.places.push(match kind(contact) {
@@ -130,6 +132,7 @@ impl<S: Space> Problem<S> {
             self.lever_row(c)
         });
         self.bonded_levers = rows;
+        self.of_kind = of_kind;
         self.place_in_order();
     }
 

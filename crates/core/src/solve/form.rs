@@ -236,6 +236,8 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
+    /// Contacts of each kind between rigid bodies, as they are added.
+    pub(super) of_kind: [Vec<u32>; 4],
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -254,6 +256,7 @@ impl<S: Space> Default for Problem<S> {
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
+            of_kind: Default::default(),
         }
     }
 }
@@ -273,12 +276,9 @@ impl<S: Space> Problem<S> {
         size_of::<LeverRow<S, Bonded<S>>>(),
     ];
 
-    /// Bytes per contact for the order of the iteration: its index as pushed and in that order, bodies, sequence and place, and for
-    /// contacts of two balls without a bond the row before it is sorted.
-    pub const BYTES_TO_SORT: [usize; 4] = {
-        let place = size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
-        [place + size_of::<PlainRow<S>>(), place, place, place]
-    };
+    /// Bytes per contact for the order of the iteration: its index as pushed, bodies, sequence and places.
+    pub const BYTES_TO_SORT: usize =
+        size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
 
     /// Clears the problem, keeping its buffers.
     pub fn clear(&mut self) {

@@ -5,7 +5,7 @@ use super::error::{Scale, Sums};
 use super::form::ContactForm;
 use super::row::{Free, Load, Measure, Row, SolverBodies, Update, Visit, visit};
 use crate::geometry::space::Space;
-use crate::threads::{fill, map_ranges, pays};
+use crate::threads::{fill_places, map_ranges, pays};
 
 /// Contacts per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 512;
@@ -23,8 +23,6 @@ pub(super) struct Rows<R> {
     order: Order,
     /// Whether the rows are in that order.
     sorted: bool,
-    /// Small rows before they are sorted.
-    made: Vec<R>,
 }
 
 impl<R> Default for Rows<R> {
@@ -33,7 +31,6 @@ impl<R> Default for Rows<R> {
             rows: Vec::new(),
             order: Order::default(),
             sorted: true,
-            made: Vec::new(),
         }
     }
 }
@@ -107,18 +104,13 @@ impl<R> Rows<R> {
     {
         let bodies = of.iter().map(|k| contacts[*k as usize].bodies);
         self.order.update(bodies, movable);
-        let (sequence, count) = (self.order.sequence(), of.len());
-        let divide = pays(parallel, count, MAKE);
-        // Reading from all over a list costs by the bytes of its items: small rows are made in order and then sorted.
-        if 2 * size_of::<R>() <= size_of::<ContactForm<S>>() {
-            let made = &mut self.made;
-            fill(divide, made, count, |k| row(&contacts[of[k] as usize]));
-            fill(divide, &mut self.rows, count, |k| {
-                made[sequence[k] as usize].clone()
-            });
-        } else {
-            fill(divide, &mut self.rows, count, |k| {
-                row(&contacts[of[sequence[k] as usize] as usize])
+        let places = self.order.places();
+        assert_eq!(places.len(), of.len(), "one place for each contact");
+        let divide = pays(parallel, places.len(), MAKE);
+        // SAFETY: the places of an order are a permutation.
+        unsafe {
+            fill_places(divide, &mut self.rows, places, |k| {
+                row(&contacts[of[k] as usize])
             });
         }
         self.sorted = true;

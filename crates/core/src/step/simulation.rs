@@ -67,13 +67,13 @@ impl<S: Steps> Simulation<S> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Bytes per contact in addition to the solver's rows and the bond: this step's and the last step's
-    /// contact, its pair in the neighbour list, its form, and its results.
-    pub const BYTES_A_CONTACT: usize = 2 * size_of::<Contact<S>>()
+    /// Bytes per contact in addition to the solver's rows and the bond: the contact, its pair in the neighbour list, its form, its
+    /// results, and its relative velocities before and after.
+    pub const BYTES_A_CONTACT: usize = size_of::<Contact<S>>()
         + size_of::<(u32, u32)>()
         + size_of::<ContactForm<S>>()
         + size_of::<ContactStep<S>>()
-        + size_of::<S::Vector>();
+        + 2 * size_of::<S::Vector>();
 
     /// The options of the solver, with the tolerance that the current phase has set, if any.
     pub fn solver_in_force(&self) -> solve::Options {
