@@ -102,13 +102,6 @@ pub enum BondState {
     Broken,
 }
 
-/// Openings, rotations and energy histories of all slots.
-#[derive(Debug)]
-pub struct Openings<S: Space> {
-    openings: Vec<(f64, S::Tangent, Life)>,
-    rotations: Vec<S::Spin>,
-}
-
 /// The bonds of one interface law and the internal variables of its plugins.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
@@ -187,26 +180,6 @@ impl<S: Space> Memory<S> {
             self.rotations[slot] = S::Spin::zero();
         }
         self.made += 1;
-    }
-
-    /// Copies openings, rotations and energy histories, to be restored after a trial.
-    pub fn clone_openings(&self) -> Openings<S> {
-        Openings {
-            openings: self
-                .bonds
-                .iter()
-                .map(|b| (b.opening_n, b.opening_t, b.life))
-                .collect(),
-            rotations: self.rotations.clone(),
-        }
-    }
-
-    /// Restores what was copied.
-    pub fn restore_openings(&mut self, before: Openings<S>) {
-        for (bond, (n, t, life)) in self.bonds.iter_mut().zip(before.openings) {
-            (bond.opening_n, bond.opening_t, bond.life) = (n, t, life);
-        }
-        self.rotations = before.rotations;
     }
 
     /// Frees a slot.

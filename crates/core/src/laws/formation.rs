@@ -1,14 +1,17 @@
 //! Formation of bonds, and memory for the internal variables of new contacts.
 
+use super::batch::{BATCH, Batch, locate};
 use super::columns::StepInfo;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::gather::{Source, store_states};
 use super::history::LawHistory;
-use super::interface::{BondOpening, Interface};
+use super::interface::{BondOpening, Interface, Loaded};
 use super::library::Call;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
+use crate::threads::any_size;
 
 impl LawEvaluator {
     /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
@@ -36,8 +39,7 @@ impl LawEvaluator {
             }
             let initial = law.initial();
             let memory = &mut network.memory[index];
-            self.members.clear();
-            let mut stretched = Vec::new();
+            let (mut new, mut stretched) = (Vec::new(), Vec::new());
             for (k, contact) in network.contacts.iter_mut().enumerate() {
                 if contact.law as usize != index {
                     continue;
@@ -70,7 +72,7 @@ impl LawEvaluator {
                     }
                     None if bonds || remembers => {
                         contact.slot = memory.allocate(bonds, filled, area, &initial);
-                        self.members.push(k);
+                        new.push(k);
                     }
                     _ => {}
                 }
@@ -86,8 +88,8 @@ impl LawEvaluator {
                     network.broken_pairs.remove(&contact.key.pair());
                 }
             }
-            self.initialise(index, law, history, network, info)?;
-            self.store_initial_energy(law, stretched, history, network, info)?;
+            self.initialise(index, law, new, history, network, info)?;
+            self.store_initial_energy(index, law, stretched, history, network, info)?;
         }
         Ok(())
     }
@@ -95,6 +97,7 @@ impl LawEvaluator {
     /// Gives bonds that begin open the energy of their opening, which counts as negative fracture energy.
     fn store_initial_energy<S: Space>(
         &mut self,
+        index: usize,
         law: &Interface,
         stretched: Vec<usize>,
         history: &mut LawHistory,
@@ -104,14 +107,23 @@ impl LawEvaluator {
         let Some(cohesion) = law.cohesion().filter(|_| !stretched.is_empty()) else {
             return Ok(());
         };
-        self.members = stretched;
         let still = Velocities::still(&network.contacts);
-        self.gather(law, network, &still, info);
-        self.columns.damage.fill(0.0);
-        self.columns.size_outputs();
-        self.run(cohesion, history, info, 0.0, Call::Energy)
-            .map_err(|e| self.locate(law, network, e))?;
-        for (at, energy) in self.members.iter().zip(&self.columns.out.energy) {
+        let source = Source {
+            law,
+            index,
+            network: &*network,
+            info,
+        };
+        let batches = stretched.chunks(any_size(BATCH)).collect();
+        let of = |batch: &mut Batch, members: &mut &[usize]| {
+            batch.gather_before(&source, members, &still, &[cohesion]);
+            batch.columns.damage.fill(0.0);
+            let run = batch.run_afresh(cohesion, info, 0.0, Call::Energy);
+            run.map_err(|e| locate(law, source.network, members, e))?;
+            Ok(batch.columns.out.energy.clone())
+        };
+        let energies = self.pool.evaluate(false, &mut history.largest, batches, of)?;
+        for (at, energy) in stretched.iter().zip(energies.into_iter().flatten()) {
             let contact = &network.contacts[*at];
             let Some(slot) = contact.memory() else {
                 continue;
@@ -125,26 +137,40 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// Calls the laws that initialise internal variables, for new contacts given as members.
+    /// Calls the laws that initialise internal variables, for new contacts.
     fn initialise<S: Space>(
         &mut self,
         index: usize,
         law: &Interface,
+        new: Vec<usize>,
         history: &mut LawHistory,
         network: &mut Network<S>,
         info: &StepInfo,
     ) -> Result<(), LawError> {
-        if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
+        if new.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
         let still = Velocities::still(&network.contacts);
-        self.gather(law, network, &still, info);
-        self.columns.size_outputs();
-        for loaded in law.loaded() {
-            self.run(loaded, history, info, 0.0, Call::Initialise)
-                .map_err(|e| self.locate(law, network, e))?;
+        let laws: Vec<&Loaded> = law.loaded().collect();
+        let source = Source {
+            law,
+            index,
+            network: &*network,
+            info,
+        };
+        let batches = new.chunks(any_size(BATCH)).collect();
+        let of = |batch: &mut Batch, members: &mut &[usize]| {
+            batch.gather_before(&source, members, &still, &laws);
+            for loaded in &laws {
+                let run = batch.run_afresh(loaded, info, 0.0, Call::Initialise);
+                run.map_err(|e| locate(law, source.network, members, e))?;
+            }
+            Ok(batch.new_states(&laws))
+        };
+        let states = self.pool.evaluate(false, &mut history.largest, batches, of)?;
+        for (members, states) in new.chunks(any_size(BATCH)).zip(&states) {
+            store_states(network, index, &laws, members, states);
         }
-        self.store_variables(index, network);
         Ok(())
     }
 }

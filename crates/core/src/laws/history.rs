@@ -3,15 +3,19 @@
 use super::range::Largest;
 use crate::contact::Contact;
 use crate::geometry::space::Space;
+use foldhash::fast::FixedState;
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, HashMap};
+
+/// By pair. It is looked up for every contact: the default hasher would take longer than the law.
+pub(super) type Debts = HashMap<(u32, u32), f64, FixedState>;
 
 /// What laws have to know of earlier steps, beyond what contacts remember.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LawHistory {
     /// Negative friction work of pairs, deferred to later steps of the wear laws (J).
     #[serde(serialize_with = "in_order")]
-    pub(super) negative_friction_work: HashMap<(u32, u32), f64>,
+    pub(super) negative_friction_work: Debts,
     /// Interfaces whose bonds have been formed.
     pub(super) bonded: Vec<bool>,
     /// Largest value of each output, the reference for its rounding errors.
@@ -30,6 +34,6 @@ impl LawHistory {
 }
 
 /// Sorted, so that equal maps are serialised to equal bytes.
-fn in_order<T: Serializer>(map: &HashMap<(u32, u32), f64>, to: T) -> Result<T::Ok, T::Error> {
+fn in_order<T: Serializer>(map: &Debts, to: T) -> Result<T::Ok, T::Error> {
     map.iter().collect::<BTreeMap<_, _>>().serialize(to)
 }

@@ -31,6 +31,10 @@ impl<S: Space> Simulation<S> {
         let mut coupling = Progress::new(&self.options.coupling);
         let options = self.solver_in_force();
         self.workspace.solved.predicted = self.options.coupling == Coupling::Midpoint;
+        let clock = Instant::now();
+        let evaluator = &mut self.workspace.evaluator;
+        evaluator.select(&self.laws, &self.state.network);
+        report.timing.laws += clock.elapsed();
         if self.workspace.solved.predicted {
             let clock = Instant::now();
             let predicted = self.workspace.evaluator.predict_damage(
@@ -72,7 +76,7 @@ impl<S: Space> Simulation<S> {
             let change = self.workspace.evaluator.trial_damage(
                 &self.laws,
                 &mut self.state.law_history,
-                &mut self.state.network,
+                &self.state.network,
                 &self.workspace.solved.step(info),
             );
             let change = change.map_err(|e| self.law_error(e))?;
