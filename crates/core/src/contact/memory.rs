@@ -4,10 +4,13 @@ use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// A bond: a contact with an opening and a damage.
+/// A bond: a contact with an opening and a damage. What laws see of it is in one line of the cache in two dimensions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
+#[repr(C, align(64))]
 pub struct Bond<S: Space> {
+    /// Whether this slot is in use.
+    pub live: bool,
     /// Normal elongation (m), integrated with u_th so that its work is exact at theta = 1/2.
     pub opening_n: f64,
     /// Tangential opening (m).
@@ -25,8 +28,6 @@ pub struct Bond<S: Space> {
     pub energy: f64,
     /// Energy history.
     pub life: Life,
-    /// Whether this slot is in use.
-    pub live: bool,
 }
 
 impl<S: Space> Bond<S> {

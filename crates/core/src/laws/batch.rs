@@ -15,6 +15,9 @@ use std::sync::{Mutex, PoisonError};
 /// Contacts of a batch: few enough that its columns stay in a cache. It does not depend on the number of threads.
 pub(super) const BATCH: usize = 512;
 
+/// Batches that are evaluated before what they give is stored, per thread.
+const TASKS_PER_THREAD: usize = 4;
+
 /// The working memory of a batch; nothing in it outlasts the batch.
 #[derive(Debug, Default)]
 pub(super) struct Batch {
@@ -120,9 +123,10 @@ impl Batch {
         let surveys: Vec<Survey> = outputs.iter().map(|o| Survey::of(o.values)).collect();
         let moved = matches!(call, Call::Commit | Call::Initialise);
         let states = self.columns.state_next.iter();
-        let states = states
-            .skip(loaded.first_variable)
-            .take(if moved { loaded.variables() } else { 0 });
+        let states =
+            states
+                .skip(loaded.first_variable)
+                .take(if moved { loaded.variables() } else { 0 });
         let first = |column: &[f64]| column.iter().position(|x| !x.is_finite());
         if !surveys.iter().all(|s| s.finite) || !states.clone().all(|c| Survey::of(c).finite) {
             let in_outputs = outputs.iter().filter_map(|o| first(o.values)).min();
@@ -182,39 +186,63 @@ impl Pool {
         result
     }
 
-    /// Evaluates batches, on several threads if `divide` (the plugin interface allows calls on any thread, in any order), and returns
-    /// their results in order.
+    /// Evaluates batches, on several threads if `divide` (the plugin interface allows calls on any thread, in any order): `of` reads what they
+    /// share, and `take` stores what it gives, in the order of the batches, some of them at a time while they are in a cache. What a batch gives
+    /// does not depend on what others store.
     ///
-    /// Rounding errors are judged by the largest values of all batches: one that has a value out of range by its own, and by those of
-    /// earlier evaluations, is evaluated again when all are known.
+    /// Rounding errors are judged by the largest values of all batches: one that has a value out of range by those known so far is
+    /// evaluated again when all are known.
     ///
     /// # Errors
     /// The error of the first batch that has one.
-    pub fn evaluate<T: Send, R: Send>(
+    pub fn evaluate<X: Sync, T: Send, R: Send>(
         &self,
         divide: bool,
         largest: &mut Largest,
+        shared: &mut X,
         mut tasks: Vec<T>,
-        of: impl Fn(&mut Batch, &mut T) -> Result<R, LawError> + Send + Sync,
-    ) -> Result<Vec<R>, LawError> {
-        let one = |task: &mut T, largest: &Largest| {
+        of: impl Fn(&X, &mut Batch, &mut T) -> Result<R, LawError> + Send + Sync,
+        mut take: impl FnMut(&mut X, &T, R),
+    ) -> Result<(), LawError> {
+        let one = |shared: &X, task: &mut T, mut largest: Largest| {
             self.with(|batch| {
-                batch.largest.clone_from(largest);
-                let result = of(batch, task);
+                std::mem::swap(&mut batch.largest, &mut largest);
+                let result = of(shared, batch, task);
                 (result, std::mem::take(&mut batch.largest))
             })
         };
-        let known = largest.clone();
-        let results = map_tasks(divide, tasks.iter_mut().collect(), |task| one(task, &known));
-        for (_, found) in &results {
-            largest.raise(found);
+        let at_once = if divide {
+            TASKS_PER_THREAD * rayon::current_num_threads()
+        } else {
+            1
+        };
+        let mut tasks = &mut tasks[..];
+        while !tasks.is_empty() {
+            let (now, later) = tasks.split_at_mut(at_once.min(tasks.len()));
+            let known = std::mem::take(largest);
+            let mut results = if let [task] = &mut *now {
+                vec![one(shared, task, known)]
+            } else {
+                map_tasks(true, now.iter_mut().collect(), |task| {
+                    one(shared, task, known.clone())
+                })
+            };
+            for (_, found) in &mut results {
+                largest.raise(found);
+            }
+            for ((mut result, _), task) in results.into_iter().zip(now) {
+                if result.as_ref().is_err_and(LawError::out_of_range) {
+                    for task in &mut *later {
+                        let (_, found) = one(shared, task, largest.clone());
+                        largest.raise(&found);
+                    }
+                    (result, _) = one(shared, task, largest.clone());
+                }
+                take(shared, task, result?);
+            }
+            tasks = later;
         }
-        let both = results.into_iter().zip(&mut tasks);
-        both.map(|((result, _), task)| match result {
-            Err(e) if e.out_of_range() => one(task, largest).0,
-            result => result,
-        })
-        .collect()
+        Ok(())
     }
 }
 
@@ -227,7 +255,7 @@ mod tests {
     /// A value below zero by round-off of the largest one, which is in another batch, on any number of threads.
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
-        let judge = |batch: &mut Batch, column: &mut Vec<f64>| {
+        let judge = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {
             let surveys = [Survey::of(column)];
             let mut outputs = [Output::ranged(("strength", column, Range::NotNegative))];
             match settle(&mut outputs, &surveys, Kind::CONTACT, &mut batch.largest) {
@@ -248,10 +276,14 @@ mod tests {
                 let columns = [vec![-1e-7], vec![1e6]];
                 let tasks = order.map(|k| columns[k].clone()).to_vec();
                 let (pool, mut largest) = (Pool::default(), Largest::default());
-                let given = pool.evaluate(divide, &mut largest, tasks, judge).unwrap();
+                let mut given = Vec::new();
+                let mut take = |(): &mut (), _: &Vec<f64>, x| given.push(x);
+                let judged = pool.evaluate(divide, &mut largest, &mut (), tasks, judge, &mut take);
+                judged.unwrap();
                 assert_eq!(order.map(|k| [0.0, 1e6][k]).to_vec(), given);
                 let tasks = vec![vec![-1e-7], vec![-1e-3]];
-                let wrong = pool.evaluate(divide, &mut largest, tasks, judge);
+                let wrong =
+                    pool.evaluate(divide, &mut largest, &mut (), tasks, judge, |(), _, _| ());
                 assert!(wrong.unwrap_err().out_of_range());
             }
         }

@@ -5,10 +5,10 @@ pub mod fracture;
 pub mod scale;
 pub mod spring;
 
+use super::batch::{Batch, CallChecks};
 use super::bonds::BondStep;
 use super::columns::StepInfo;
 use super::error::LawError;
-use super::batch::{Batch, CallChecks};
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
 use super::library::Call;
@@ -240,8 +240,7 @@ impl Bench {
     ) -> Result<(), LawError> {
         self.fill(states, motions, info, false);
         let contact = self.law.contact().clone();
-        self.batch
-            .run(&contact, info, 0.0, Call::Prepare)?;
+        self.batch.run(&contact, info, 0.0, Call::Prepare)?;
         let out = &self.batch.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.mu = out.friction[k];
@@ -261,8 +260,7 @@ impl Bench {
         let mut bond_step = BondStep::default();
         if self.law.opens() {
             self.fill(states, motions, info, true);
-            self.batch
-                .update_damage(&self.law, info, &mut bond_step)?;
+            self.batch.update_damage(&self.law, info, &mut bond_step)?;
             self.said.clone_from(&self.batch.columns.out.damage);
             self.keep(states);
         }
@@ -285,8 +283,7 @@ impl Bench {
         if opens {
             self.batch.columns.damage.clone_from(&bond_step.damage);
         }
-        self.batch
-            .run(&cohesion, info, 0.0, Call::Prepare)?;
+        self.batch.run(&cohesion, info, 0.0, Call::Prepare)?;
         let out = &self.batch.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.strength[0] += out.tension_strength[k];
@@ -333,8 +330,7 @@ impl Bench {
             if !answers_first {
                 self.slide(motions, info, damage, answers);
             }
-            self.batch
-                .run(&loaded, info, 0.0, Call::Commit)?;
+            self.batch.run(&loaded, info, 0.0, Call::Commit)?;
             if loaded.plugin.kind == Kind::WEAR {
                 for (answer, volume) in answers.iter_mut().zip(&self.batch.columns.out.volume) {
                     answer.worn = *volume;

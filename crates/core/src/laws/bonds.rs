@@ -93,7 +93,13 @@ impl<S: Space> Opening<'_, S> {
 
     /// The bond of a contact at the end of the step, with the damage at its start, for laws.
     #[inline]
-    fn after(&self, at: usize, normal: &S::Vector, bond: &Bond<S>, rotation: S::Spin) -> BondAfter<S> {
+    fn after(
+        &self,
+        at: usize,
+        normal: &S::Vector,
+        bond: &Bond<S>,
+        rotation: S::Spin,
+    ) -> BondAfter<S> {
         let h = self.source.info.h;
         let average = self.motion.average(at);
         let (un, ut) = (normal.dot(&average), S::tangential(normal, &average));
@@ -173,21 +179,23 @@ impl LawEvaluator {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         self.place_moments(index, network, step);
-        let opening = Opening {
-            source: Source {
-                law,
-                index,
-                network: &*network,
-                info: step.info,
-            },
-            motion: Motion::Solved(step),
-            moment_places: &self.moment_places,
-        };
+        let moment_places = &self.moment_places;
         let laws: Vec<&Loaded> = law.cohesion().into_iter().chain(law.damage()).collect();
         let members = &self.members[index].bonded;
         let divide = self.divides(members.len(), BOND);
         let batches = members.chunks(any_size(BATCH)).collect();
-        let of = |batch: &mut Batch, members: &mut &[usize]| {
+        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info: step.info,
+            };
+            let opening = Opening {
+                source,
+                motion: Motion::Solved(step),
+                moment_places,
+            };
             let mut ends = Vec::with_capacity(members.len());
             batch.open_bonds(&opening, members, |at, normal, before, after| {
                 ends.push(opening.end(step, at, normal, before, after));
@@ -198,17 +206,18 @@ impl LawEvaluator {
             }
             Ok((ends, batch.new_states(&laws)))
         };
-        let largest = &mut history.largest;
-        let ends = self.pool.evaluate(divide, largest, batches, of)?;
-        for (members, (ends, states)) in members.chunks(any_size(BATCH)).zip(ends) {
+        let take = |network: &mut _, members: &&[usize], (ends, states): (Vec<_>, Vec<_>)| {
             store_states(network, index, &laws, members, &states);
             store_bonds(index, law, network, members, ends, step.predicted, totals);
-        }
-        Ok(())
+        };
+        let largest = &mut history.largest;
+        self.pool
+            .evaluate(divide, largest, network, batches, of, take)
     }
 
     /// Returns the largest increase from the damage used in the step's impulses to the damage that the
-    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve.
+    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve. Contacts are as at the last
+    /// [`Self::select`].
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -216,79 +225,42 @@ impl LawEvaluator {
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
-        network: &Network<S>,
-        step: &SolvedStep<'_, S>,
-    ) -> Result<f64, LawError> {
-        let motion = || Motion::Solved(step);
-        self.try_damage(laws, history, network, step.info, motion, |s, index| {
-            s.place_moments(index, network, step);
-        })
-    }
-
-    /// Uses in the step, for every intact bond, the mean of its damage and of the damage that the law gives for the opening
-    /// which the motion at the start of the step leads to.
-    ///
-    /// # Errors
-    /// The law's error, with the contact.
-    pub fn predict_damage<S: Space>(
-        &mut self,
-        laws: &[Interface],
-        history: &mut LawHistory,
         network: &mut Network<S>,
-        before: &Velocities<S>,
-        info: &StepInfo,
-    ) -> Result<(), LawError> {
-        let motion = || Motion::Continued(before);
-        self.try_damage(laws, history, network, info, motion, |_, _| ())?;
-        for (index, slot, damage) in self.trials.drain(..) {
-            let bond = &mut network.memory[index].bonds[slot];
-            bond.step_damage = 0.5 * (bond.damage + damage);
-        }
-        Ok(())
-    }
-
-    /// Fills the trials by what contacts do, and returns the largest increase of damage.
-    fn try_damage<'a, S: Space>(
-        &mut self,
-        laws: &[Interface],
-        history: &mut LawHistory,
-        network: &'a Network<S>,
-        info: &'a StepInfo,
-        motion: impl Fn() -> Motion<'a, S>,
-        begin: impl Fn(&mut Self, usize),
+        step: &SolvedStep<'_, S>,
     ) -> Result<f64, LawError> {
         let mut worst = 0.0f64;
         self.trials.clear();
         for (index, law) in laws.iter().enumerate().filter(|(_, l)| l.damages()) {
-            begin(self, index);
-            let opening = Opening {
-                source: Source {
+            self.place_moments(index, network, step);
+            let moment_places = &self.moment_places;
+            let members = &self.members[index].bonded;
+            let divide = self.divides(members.len(), BOND);
+            let trials = &mut self.trials;
+            let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+                let source = Source {
                     law,
                     index,
                     network,
-                    info,
-                },
-                motion: motion(),
-                moment_places: &self.moment_places,
+                    info: step.info,
+                };
+                let opening = Opening {
+                    source,
+                    motion: Motion::Solved(step),
+                    moment_places,
+                };
+                batch.try_damage(&opening, members)
             };
-            let members = &self.members[index].bonded;
-            let divide = self.divides(members.len(), BOND);
-            let of = |batch: &mut Batch, members: &mut &[usize]| {
-                batch.open_bonds(&opening, members, |_, _, _, _| ())?;
-                let slots = batch.slots.iter().map(|slot| *slot as usize);
-                Ok(slots.zip(batch.bond_step.damage.iter().copied()).collect::<Vec<_>>())
+            let take = |network: &mut Network<S>, _: &_, tried: Vec<(u32, f64)>| {
+                for (slot, change) in tried {
+                    let used = network.memory[index].bonds[slot as usize].step_damage;
+                    worst = worst.max(change);
+                    trials.push((index, slot as usize, used + change));
+                }
             };
             let batches = members.chunks(any_size(BATCH)).collect();
             let largest = &mut history.largest;
-            let tried = self.pool.evaluate(divide, largest, batches, of)?;
-            for (slot, damage) in tried.into_iter().flatten() {
-                let used = network.memory[index].bonds[slot].step_damage;
-                // Damage does not decrease within a step either, so that the iteration is monotonic and
-                // ends.
-                let change = (damage - used).max(0.0);
-                worst = worst.max(change);
-                self.trials.push((index, slot, used + change));
-            }
+            self.pool
+                .evaluate(divide, largest, network, batches, of, take)?;
         }
         Ok(worst)
     }
@@ -319,6 +291,40 @@ impl LawEvaluator {
 }
 
 impl Batch {
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch if the motion at the start of the step
+    /// goes on through it, by the place in memory.
+    pub(super) fn predict_damage<S: Space>(
+        &mut self,
+        source: &Source<'_, S>,
+        members: &[usize],
+        before: &Velocities<S>,
+    ) -> Result<Vec<(u32, f64)>, LawError> {
+        let opening = Opening {
+            source: *source,
+            motion: Motion::Continued(before),
+            moment_places: &[],
+        };
+        self.try_damage(&opening, members)
+    }
+
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch, by the place in memory. Damage does
+    /// not decrease within a step either, so that an iteration is monotonic and ends.
+    fn try_damage<S: Space>(
+        &mut self,
+        opening: &Opening<'_, S>,
+        members: &[usize],
+    ) -> Result<Vec<(u32, f64)>, LawError> {
+        let mut tried = Vec::with_capacity(members.len());
+        self.open_bonds(opening, members, |_, _, bond, _| {
+            tried.push((0, bond.step_damage));
+        })?;
+        let given = self.slots.iter().zip(&self.bond_step.damage);
+        for (place, (slot, damage)) in tried.iter_mut().zip(given) {
+            *place = (*slot, (damage - place.1).max(0.0));
+        }
+        Ok(tried)
+    }
+
     /// Computes the damage of the bonds of a batch at their openings at the end of the step; `each` is given the contact, its normal and its
     /// bond before and after.
     fn open_bonds<S: Space>(
@@ -435,8 +441,7 @@ fn store_bonds<S: Space>(
             damage = damage.max(bond.step_damage);
         }
         if network.cycle_multiplier != 1.0 {
-            damage =
-                (bond.damage + network.cycle_multiplier * (damage - bond.damage)).min(1.0);
+            damage = (bond.damage + network.cycle_multiplier * (damage - bond.damage)).min(1.0);
         }
         let intact = end.intact * bond.area;
         // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end

@@ -114,13 +114,13 @@ impl LawEvaluator {
             }
         }
         let size = any_size(BATCH);
-        let source = Source {
-            law,
-            index,
-            network: &*network,
-            info: step.info,
-        };
-        let of = |batch: &mut Batch, (first, members): &mut (usize, &[usize])| {
+        let of = |network: &_, batch: &mut Batch, (first, members): &mut (usize, &[usize])| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info: step.info,
+            };
             batch.gather_after(&source, members, &Motion::Solved(step), slots);
             let here = *first..*first + members.len();
             let mut answers = Vec::with_capacity(slots.len());
@@ -138,33 +138,41 @@ impl LawEvaluator {
                 }
                 batch
                     .run_afresh(loaded, step.info, 0.0, Call::Commit)
-                    .map_err(|e| locate(law, source.network, members, e))?;
+                    .map_err(|e| locate(law, network, members, e))?;
                 let outputs = loaded.plugin.kind.spec().outputs;
                 let outputs = outputs(&mut batch.columns.out, Call::Commit);
-                let outputs: Vec<Vec<f64>> = outputs.iter().map(|o| o.values.clone()).collect();
-                answers.push((outputs, batch.new_states(&[loaded])));
+                answers.extend(outputs.iter().map(|o| o.values.clone()));
             }
-            Ok(answers)
+            Ok((answers, batch.new_states(slots)))
+        };
+        let mut outputs: Vec<Outputs> = slots.iter().map(|_| Outputs::default()).collect();
+        let take = |network: &mut _,
+                    (_, members): &(usize, &[usize]),
+                    (answers, states): (Vec<Vec<f64>>, Vec<f64>)| {
+            store_states(network, index, slots, members, &states);
+            let columns = slots
+                .iter()
+                .zip(&mut outputs)
+                .flat_map(|(loaded, outputs)| {
+                    (loaded.plugin.kind.spec().outputs)(outputs, Call::Commit)
+                });
+            for (column, answer) in columns.zip(answers) {
+                column.values.extend_from_slice(&answer);
+            }
         };
         let batches = group.members.chunks(size).enumerate();
         let batches: Vec<_> = batches.map(|(k, m)| (k * size, m)).collect();
         let divide = self.divides(group.members.len(), COMMIT_LAW * slots.len() as f64);
         let largest = &mut history.largest;
-        let answers = self.pool.evaluate(divide, largest, batches, of);
+        let done = self
+            .pool
+            .evaluate(divide, largest, network, batches, of, take);
         self.slides = slides;
-        let answers = answers?;
-        for (s, loaded) in slots.iter().enumerate() {
-            let spec = loaded.plugin.kind.spec();
-            let Some(commit) = spec.commit.of::<S>() else {
+        done?;
+        for (loaded, outputs) in slots.iter().zip(&outputs) {
+            let Some(commit) = loaded.plugin.kind.spec().commit.of::<S>() else {
                 continue;
             };
-            let mut outputs = Outputs::default();
-            let columns = (spec.outputs)(&mut outputs, Call::Commit);
-            for (place, column) in columns.into_iter().enumerate() {
-                let parts = answers.iter().map(|batch| &batch[s].0[place]);
-                parts.for_each(|part| column.values.extend_from_slice(part));
-            }
-            let states: Vec<&[f64]> = answers.iter().map(|batch| &batch[s].1[..]).collect();
             commit(&mut SlotCommit {
                 interface: law,
                 law: loaded,
@@ -172,9 +180,7 @@ impl LawEvaluator {
                 step,
                 totals,
                 members: group.members,
-                outputs: &outputs,
-                states: &states,
-                index,
+                outputs,
             })?;
         }
         Ok(())
@@ -222,25 +228,9 @@ fn pay_debts<S: Space>(
     members: &[usize],
 ) -> Vec<f64> {
     history.forget_separated(&network.contacts);
-    let debts = &mut history.negative_friction_work;
-    let pay = |(at, (_, work)): (&usize, &(f64, f64))| {
-        let mut work = *work;
-        if work >= 0.0 && debts.is_empty() {
-            return work;
-        }
-        let pair = network.contacts[*at].key.pair();
-        let owed = if debts.is_empty() {
-            0.0
-        } else {
-            debts.remove(&pair).unwrap_or(0.0)
-        };
-        work += owed;
-        if work < 0.0 {
-            debts.insert(pair, work);
-        }
-        work.max(0.0)
-    };
-    members.iter().zip(slides).map(pay).collect()
+    let pairs = members.iter().map(|at| network.contacts[*at].key.pair());
+    let works = pairs.zip(slides.iter().map(|slide| slide.1));
+    history.negative_friction_work.pay(works)
 }
 
 /// Stores the impulses of the contacts, and books what they dissipated.
@@ -399,9 +389,6 @@ pub struct SlotCommit<'a, S: Space> {
     pub totals: &'a mut Totals,
     pub(super) members: &'a [usize],
     pub(super) outputs: &'a Outputs,
-    /// New internal variables by batch.
-    states: &'a [&'a [f64]],
-    index: usize,
 }
 
 impl<S: Space> SlotCommit<'_, S> {
@@ -413,13 +400,5 @@ impl<S: Space> SlotCommit<'_, S> {
     /// What the law wrote: the columns that its kind names as outputs of a commit; the others are empty.
     pub fn outputs(&self) -> &Outputs {
         self.outputs
-    }
-
-    /// Stores the new internal variables.
-    pub fn store_variables(&mut self) {
-        let batches = self.members.chunks(any_size(BATCH));
-        for (members, states) in batches.zip(self.states) {
-            store_states(self.network, self.index, &[self.law], members, states);
-        }
     }
 }

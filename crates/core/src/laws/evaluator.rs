@@ -1,6 +1,7 @@
 //! Evaluation of the laws in a step: which contacts they act on, in batches on one or several threads.
 
 use super::batch::{BATCH, Pool};
+use super::gather::{AHEAD, prefetch_bond};
 use super::interface::Interface;
 use crate::contact::Network;
 use crate::geometry::space::Space;
@@ -111,7 +112,11 @@ fn select<S: Space>(
     range: std::ops::Range<usize>,
     members: &mut [Members],
 ) {
-    for (contact, k) in network.contacts[range.clone()].iter().zip(range) {
+    let contacts = &network.contacts[range.clone()];
+    for (contact, k) in contacts.iter().zip(range.clone()) {
+        if let Some(ahead) = contacts.get(k - range.start + AHEAD) {
+            prefetch_bond(&network.memory[ahead.law as usize], ahead);
+        }
         let index = contact.law as usize;
         let members = &mut members[index];
         members.all.push(k);

@@ -14,7 +14,7 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentForm;
 use crate::solve::form::{ContactForm, Elastic};
-use crate::threads::{any_size, map_chunks_mut, map_chunks_of_two, pays};
+use crate::threads::{any_size, map_chunks_mut, pays};
 
 /// Contacts of a task.
 const CHUNK: usize = 1024;
@@ -94,10 +94,14 @@ fn tasks<'a, S: Space>(
 
 /// What the laws of an interface are asked for.
 struct Asked<'a, S: Space> {
-    source: Source<'a, S>,
+    law: &'a Interface,
+    index: usize,
+    info: &'a StepInfo,
     before: &'a Velocities<S>,
     contact: ContactAsked,
     cohesion: Option<&'a Loaded>,
+    /// Whether the damage at the middle of the step is predicted.
+    predicts: bool,
 }
 
 /// Where friction and restitution come from.
@@ -114,10 +118,15 @@ enum ContactAsked {
 struct Prepared<S: Space> {
     moments: Vec<MomentForm<S>>,
     held_back: Vec<usize>,
+    /// Predicted damage by the place in memory.
+    predicted: Vec<(u32, f64)>,
 }
 
 impl LawEvaluator {
     /// Completes the geometric forms of the contacts with the outputs of the laws. Contacts are as at the last [`Self::select`].
+    ///
+    /// If `predicts`, the impulses of every intact bond are those of the mean of its damage and of the damage that the law gives for the
+    /// opening which the motion at the start of the step leads to.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -126,15 +135,19 @@ impl LawEvaluator {
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
-        network: &Network<S>,
+        network: &mut Network<S>,
         before: &Velocities<S>,
         info: &StepInfo,
+        predicts: bool,
         forms: &mut [ContactForm<S>],
         springs: &mut Vec<Option<SpringForm<S>>>,
         moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
         moments.clear();
-        springs.clear();
+        // Where all contacts are springs, all are set below.
+        if !laws.iter().all(Interface::compliant) || springs.len() != forms.len() {
+            springs.clear();
+        }
         if laws.iter().any(Interface::compliant) {
             springs.resize(forms.len(), None);
         }
@@ -151,23 +164,22 @@ impl LawEvaluator {
                 false => (members.near(), &members.beyond[..]),
             };
             let mut asked = Asked {
-                source: Source {
-                    law,
-                    index,
-                    network,
-                    info,
-                },
+                law,
+                index,
+                info,
                 before,
                 contact: ContactAsked::Each,
                 cohesion: law.cohesion(),
+                predicts: predicts && law.opens() && law.damages(),
             };
             if law.constant_contact() {
                 // One answer for all contacts, and then cohesion adds to it.
-                let friction = self.constant_friction(&asked.source, history)?;
+                let friction = self.constant_friction(law, info, history)?;
                 asked.contact = if law.rotates() || friction.rotates() {
                     ContactAsked::Constant(friction)
                 } else {
-                    let held_back = apply_constant(&asked, &friction, forms, self.parallel);
+                    let held_back =
+                        apply_constant(&asked, network, &friction, forms, self.parallel);
                     self.held_back.extend(held_back);
                     ContactAsked::Done
                 };
@@ -179,60 +191,70 @@ impl LawEvaluator {
                 }
                 let divide = self.divides(members.len(), PREPARE);
                 let tasks = tasks(members, forms, springs);
-                let of = |batch: &mut Batch, task: &mut Task<S>| batch.prepare(&asked, task);
-                let prepared = self.pool.evaluate(divide, largest, tasks, of)?;
-                for mut part in prepared {
+                let of = |network: &_, batch: &mut Batch, task: &mut Task<S>| {
+                    batch.prepare(&asked, network, task)
+                };
+                let held_back = &mut self.held_back;
+                let take = |network: &mut Network<S>, _: &_, mut part: Prepared<S>| {
                     moments.append(&mut part.moments);
-                    self.held_back.append(&mut part.held_back);
-                }
-                asked.cohesion = None;
+                    held_back.append(&mut part.held_back);
+                    for (slot, damage) in part.predicted {
+                        network.memory[index].bonds[slot as usize].step_damage = damage;
+                    }
+                };
+                self.pool
+                    .evaluate(divide, largest, network, tasks, of, take)?;
+                (asked.cohesion, asked.predicts) = (None, false);
             }
         }
-        // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
-        let divide = pays(self.parallel, springs.len(), APPLY);
-        let forms = &mut forms[..springs.len()];
-        map_chunks_of_two(divide, CHUNK, (forms, springs), |_, forms, springs| {
-            for (form, spring) in forms.iter_mut().zip(springs) {
-                if spring.is_some() {
-                    form.shift_n += form.compliance[0] * form.tension;
-                }
-            }
-        });
         Ok(())
     }
 
     /// Friction and restitution of a law that gives the same for all contacts.
-    fn constant_friction<S: Space>(
+    fn constant_friction(
         &self,
-        source: &Source<'_, S>,
+        law: &Interface,
+        info: &StepInfo,
         history: &mut LawHistory,
     ) -> Result<Friction, LawError> {
-        let of = |batch: &mut Batch, (): &mut ()| {
+        let of = |_: &Friction, batch: &mut Batch, (): &mut ()| {
             batch.columns.clear();
             batch.columns.n = 1;
-            let run = batch.run_afresh(source.law.contact(), source.info, 0.0, Call::Prepare);
-            run.map_err(|e| locate(source.law, source.network, &[], e))?;
+            let run = batch.run_afresh(law.contact(), info, 0.0, Call::Prepare);
+            run.map_err(|e| LawError::At {
+                interface: law.name.clone(),
+                bodies: None,
+                source: Box::new(e),
+            })?;
             Ok(Friction::of(&batch.columns.out, 0))
         };
+        let mut given = Friction::default();
         let largest = &mut history.largest;
-        let given = self.pool.evaluate(false, largest, vec![()], of)?;
-        Ok(given[0])
+        self.pool.evaluate(
+            false,
+            largest,
+            &mut given,
+            vec![()],
+            of,
+            |given, (), friction| {
+                *given = friction;
+            },
+        )?;
+        Ok(given)
     }
 }
 
 /// Applies friction and restitution that are the same for all contacts of an interface; returns those held back.
 fn apply_constant<S: Space>(
     asked: &Asked<'_, S>,
+    network: &Network<S>,
     friction: &Friction,
     forms: &mut [ContactForm<S>],
     parallel: bool,
 ) -> Vec<usize> {
-    let Source {
-        law,
-        index,
-        network,
-        info,
-    } = asked.source;
+    let Asked {
+        law, index, info, ..
+    } = *asked;
     let divide = pays(parallel, network.contacts.len(), APPLY);
     let held_back = map_chunks_mut(divide, forms, CHUNK, |first, forms| {
         let mut held_back = Vec::new();
@@ -264,44 +286,84 @@ impl Batch {
     fn prepare<S: Space>(
         &mut self,
         asked: &Asked<'_, S>,
+        network: &Network<S>,
         task: &mut Task<'_, S>,
     ) -> Result<Prepared<S>, LawError> {
         let Asked {
-            source,
+            law,
+            index,
+            info,
             before,
-            contact,
             cohesion,
-        } = asked;
-        let (law, info) = (source.law, source.info);
+            ..
+        } = *asked;
+        let source = Source {
+            law,
+            index,
+            network,
+            info,
+        };
         let mut prepared = Prepared {
             moments: Vec::new(),
             held_back: Vec::new(),
+            predicted: Vec::new(),
         };
+        if asked.predicts {
+            prepared.predicted = self.predict_damage(&source, task.members, before)?;
+            let memory = &network.memory[index];
+            for (slot, damage) in &mut prepared.predicted {
+                let bond = &memory.bonds[*slot as usize];
+                *damage = 0.5 * (bond.damage + (bond.step_damage + *damage));
+            }
+        }
         let mut acting: Vec<&Loaded> = Vec::with_capacity(2);
-        if let ContactAsked::Each = contact {
+        if let ContactAsked::Each = asked.contact {
             acting.push(law.contact());
         }
         acting.extend(cohesion);
-        let at_fault = |e| locate(law, source.network, task.members, e);
         if !acting.is_empty() {
-            self.gather_before(source, task.members, before, &acting);
+            self.gather_before(&source, task.members, before, &acting);
+            let predicted = prepared.predicted.iter().map(|(_, damage)| *damage);
+            let columns = self.columns.damage.iter_mut();
+            columns.zip(predicted).for_each(|(x, damage)| *x = damage);
         }
-        match contact {
+        match &asked.contact {
             ContactAsked::Done => {}
             ContactAsked::Constant(friction) => {
-                self.apply_contact(asked, Some(friction), task, &mut prepared);
+                self.apply_contact(asked, network, Some(friction), task, &mut prepared);
             }
             ContactAsked::Each => {
                 self.run_afresh(law.contact(), info, 0.0, Call::Prepare)
-                    .map_err(at_fault)?;
-                self.apply_contact(asked, None, task, &mut prepared);
+                    .map_err(|e| locate(law, network, task.members, e))?;
+                self.apply_contact(asked, network, None, task, &mut prepared);
             }
         }
-        let Some(cohesion) = cohesion else {
-            return Ok(prepared);
-        };
-        self.run_afresh(cohesion, info, 0.0, Call::Prepare)
-            .map_err(|e| locate(law, source.network, task.members, e))?;
+        if let Some(cohesion) = cohesion {
+            self.run_afresh(cohesion, info, 0.0, Call::Prepare)
+                .map_err(|e| locate(law, network, task.members, e))?;
+            self.apply_cohesions(asked, network, task, &mut prepared);
+        }
+        if law.compliant() {
+            // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
+            for at in task.members {
+                let form = &mut task.forms[at - task.first];
+                form.shift_n += form.compliance[0] * form.tension;
+            }
+        }
+        Ok(prepared)
+    }
+
+    /// Applies what the cohesion law gave to the forms of a batch.
+    fn apply_cohesions<S: Space>(
+        &self,
+        asked: &Asked<'_, S>,
+        network: &Network<S>,
+        task: &mut Task<'_, S>,
+        prepared: &mut Prepared<S>,
+    ) {
+        let Asked {
+            law, info, before, ..
+        } = *asked;
         for (k, at) in task.members.iter().enumerate() {
             let form = &mut task.forms[at - task.first];
             self.apply_cohesion(law, k, &before.relative[*at], info, form);
@@ -309,24 +371,22 @@ impl Batch {
         if law.rotates() {
             for (k, form) in prepared.moments.iter_mut().enumerate() {
                 let at = form.contact as usize;
-                let normal = &source.network.contacts[at].normal;
+                let normal = &network.contacts[at].normal;
                 self.apply_bending(k, normal, &before.turning[at], info, form);
             }
         }
-        Ok(prepared)
     }
 
     /// Applies what the contact law gave, or the same to all, to the forms of a batch.
     fn apply_contact<S: Space>(
         &self,
         asked: &Asked<'_, S>,
+        network: &Network<S>,
         constant: Option<&Friction>,
         task: &mut Task<'_, S>,
         prepared: &mut Prepared<S>,
     ) {
-        let Source {
-            law, network, info, ..
-        } = asked.source;
+        let Asked { law, info, .. } = *asked;
         let (rotates, compliant) = (law.rotates(), law.compliant());
         let gathered = constant.is_none() || asked.cohesion.is_some();
         for (k, at) in task.members.iter().enumerate() {

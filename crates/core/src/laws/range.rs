@@ -62,7 +62,11 @@ pub(super) struct Survey {
 impl Survey {
     pub fn of(column: &[f64]) -> Self {
         const LANES: usize = 8;
-        let mut lanes = ([0.0; LANES], [f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        let mut lanes = (
+            [0.0; LANES],
+            [f64::INFINITY; LANES],
+            [f64::NEG_INFINITY; LANES],
+        );
         let mut see = |values: &[f64]| {
             let places = lanes.0.iter_mut().zip(&mut lanes.1).zip(&mut lanes.2);
             for (((other, least), most), x) in places.zip(values) {

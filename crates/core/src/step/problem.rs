@@ -35,26 +35,15 @@ impl<S: Space> Simulation<S> {
         let evaluator = &mut self.workspace.evaluator;
         evaluator.select(&self.laws, &self.state.network);
         report.timing.laws += clock.elapsed();
-        if self.workspace.solved.predicted {
-            let clock = Instant::now();
-            let predicted = self.workspace.evaluator.predict_damage(
-                &self.laws,
-                &mut self.state.law_history,
-                &mut self.state.network,
-                &self.workspace.solved.before,
-                info,
-            );
-            predicted.map_err(|e| self.law_error(e))?;
-            report.timing.laws += clock.elapsed();
-        }
         loop {
             let clock = Instant::now();
             let prepared = self.workspace.evaluator.prepare(
                 &self.laws,
                 &mut self.state.law_history,
-                &self.state.network,
+                &mut self.state.network,
                 &self.workspace.solved.before,
                 info,
+                self.workspace.solved.predicted,
                 &mut self.workspace.forms,
                 &mut self.workspace.springs,
                 &mut self.workspace.moments,
@@ -76,7 +65,7 @@ impl<S: Space> Simulation<S> {
             let change = self.workspace.evaluator.trial_damage(
                 &self.laws,
                 &mut self.state.law_history,
-                &self.state.network,
+                &mut self.state.network,
                 &self.workspace.solved.step(info),
             );
             let change = change.map_err(|e| self.law_error(e))?;

@@ -41,8 +41,7 @@ impl Bench {
         };
         self.fill(&[state], &[motion], &info, false);
         let contact = self.law.contact().clone();
-        self.batch
-            .run(&contact, &info, 0.0, Call::Prepare)?;
+        self.batch.run(&contact, &info, 0.0, Call::Prepare)?;
         let out = &self.batch.columns.out;
         Ok(Some(SpringAnswer {
             force: out.contact_force[0][0],

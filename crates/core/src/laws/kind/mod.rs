@@ -185,13 +185,12 @@ pub fn no_outputs(_: &mut Outputs, _: Call) -> Vec<Output<'_>> {
     Vec::new()
 }
 
-/// Stores the new internal variables of a law: all there is to do with laws whose answers the host takes at the start of a step,
-/// and with those that only watch contacts.
+/// For laws of which the host needs nothing but their new internal variables, which are stored: those whose answers it takes at the start
+/// of a step, and those that only watch contacts.
 ///
 /// # Errors
 /// Never.
-pub fn commit_record<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    slot.store_variables();
+pub fn commit_record<S: Space>(_: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
     Ok(())
 }
 

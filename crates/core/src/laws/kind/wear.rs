@@ -64,6 +64,5 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
             slot.totals.worn_third += volume;
         }
     }
-    slot.store_variables();
     Ok(())
 }
