@@ -173,7 +173,7 @@ pub(super) fn locate<S: Space>(
 
 /// Working memory for as many batches as are evaluated at the same time.
 #[derive(Debug, Default)]
-pub(super) struct Pool(Mutex<Vec<Box<Batch>>>);
+pub(super) struct Pool(Mutex<Vec<Batch>>);
 
 impl Pool {
     /// Lends out the memory of a batch.
