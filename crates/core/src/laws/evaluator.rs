@@ -12,6 +12,10 @@ const CHUNK: usize = 4096;
 /// About what that takes for each (ns).
 const SELECT: f64 = 10.0;
 
+/// How many times more work than for a plain loop makes dividing batches pay: an interface is evaluated in several regions, between which one
+/// thread stores. On scenes of 5,000 to 6,000 contacts, which are below it, two threads were slower than one.
+const OVERHEAD: f64 = 8.0;
+
 /// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a step.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
@@ -102,7 +106,7 @@ impl LawEvaluator {
 
     /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds, among threads.
     pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
-        contacts > any_size(BATCH) && pays(self.parallel, contacts, each)
+        contacts > any_size(BATCH) && pays(self.parallel, contacts, each / OVERHEAD)
     }
 }
 
