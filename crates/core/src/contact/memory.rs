@@ -4,10 +4,13 @@ use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// A bond: a contact with an opening and a damage.
+/// A bond: a contact with an opening and a damage. What laws see of it is in one line of the cache in two dimensions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
+#[repr(C, align(64))]
 pub struct Bond<S: Space> {
+    /// Whether this slot is in use.
+    pub live: bool,
     /// Normal elongation (m), integrated with u_th so that its work is exact at theta = 1/2.
     pub opening_n: f64,
     /// Tangential opening (m).
@@ -25,8 +28,6 @@ pub struct Bond<S: Space> {
     pub energy: f64,
     /// Energy history.
     pub life: Life,
-    /// Whether this slot is in use.
-    pub live: bool,
 }
 
 impl<S: Space> Bond<S> {
@@ -100,13 +101,6 @@ pub enum BondState {
     },
     /// It broke.
     Broken,
-}
-
-/// Openings, rotations and energy histories of all slots.
-#[derive(Debug)]
-pub struct Openings<S: Space> {
-    openings: Vec<(f64, S::Tangent, Life)>,
-    rotations: Vec<S::Spin>,
 }
 
 /// The bonds of one interface law and the internal variables of its plugins.
@@ -187,26 +181,6 @@ impl<S: Space> Memory<S> {
             self.rotations[slot] = S::Spin::zero();
         }
         self.made += 1;
-    }
-
-    /// Copies openings, rotations and energy histories, to be restored after a trial.
-    pub fn clone_openings(&self) -> Openings<S> {
-        Openings {
-            openings: self
-                .bonds
-                .iter()
-                .map(|b| (b.opening_n, b.opening_t, b.life))
-                .collect(),
-            rotations: self.rotations.clone(),
-        }
-    }
-
-    /// Restores what was copied.
-    pub fn restore_openings(&mut self, before: Openings<S>) {
-        for (bond, (n, t, life)) in self.bonds.iter_mut().zip(before.openings) {
-            (bond.opening_n, bond.opening_t, bond.life) = (n, t, life);
-        }
-        self.rotations = before.rotations;
     }
 
     /// Frees a slot.

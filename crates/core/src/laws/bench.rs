@@ -5,11 +5,10 @@ pub mod fracture;
 pub mod scale;
 pub mod spring;
 
+use super::batch::{Batch, CallChecks};
 use super::bonds::BondStep;
 use super::columns::StepInfo;
 use super::error::LawError;
-use super::evaluator::{CallChecks, LawEvaluator};
-use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::kind::Kind;
 use super::library::Call;
@@ -77,8 +76,7 @@ pub struct Bench {
     dimension: u32,
     area: f64,
     radius: f64,
-    evaluator: LawEvaluator,
-    history: LawHistory,
+    batch: Batch,
     said: Vec<f64>,
 }
 
@@ -91,8 +89,7 @@ impl Bench {
             dimension,
             area,
             radius,
-            evaluator: LawEvaluator::default(),
-            history: LawHistory::default(),
+            batch: Batch::default(),
             said: Vec::new(),
         }
     }
@@ -100,21 +97,21 @@ impl Bench {
     /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
     #[must_use]
     pub fn lenient(mut self) -> Self {
-        self.evaluator.checks = CallChecks::Lenient;
+        self.batch.checks = CallChecks::Lenient;
         self
     }
 
     /// Makes every law call twice in guarded memory, so that every invalid write is detected; slow.
     #[must_use]
     pub fn guarded(mut self) -> Self {
-        self.evaluator.checks = CallChecks::Guarded(Box::default());
+        self.batch.checks = CallChecks::Guarded(Box::default());
         self
     }
 
     /// Repeats every law call and compares the outputs, to detect data races between threads.
     #[must_use]
     pub fn repeating(mut self) -> Self {
-        self.evaluator.checks = CallChecks::Repeated;
+        self.batch.checks = CallChecks::Repeated;
         self
     }
 
@@ -187,7 +184,7 @@ impl Bench {
 
     /// Fills the input columns of the laws with the openings at the start or the end of the step.
     fn fill(&mut self, states: &[State], motions: &[Motion], info: &StepInfo, end: bool) {
-        let c = &mut self.evaluator.columns;
+        let c = &mut self.batch.columns;
         c.clear();
         c.n = states.len();
         let rotates = self.law.rotates();
@@ -227,7 +224,7 @@ impl Bench {
     }
 
     fn keep(&self, states: &mut [State]) {
-        for (v, column) in self.evaluator.columns.state_next.iter().enumerate() {
+        for (v, column) in self.batch.columns.state_next.iter().enumerate() {
             for (state, value) in states.iter_mut().zip(column) {
                 state.variables[v] = *value;
             }
@@ -243,9 +240,8 @@ impl Bench {
     ) -> Result<(), LawError> {
         self.fill(states, motions, info, false);
         let contact = self.law.contact().clone();
-        self.evaluator
-            .run(&contact, &mut self.history, info, 0.0, Call::Prepare)?;
-        let out = &self.evaluator.columns.out;
+        self.batch.run(&contact, info, 0.0, Call::Prepare)?;
+        let out = &self.batch.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.mu = out.friction[k];
             answer.restitution = [out.restitution_n[k], out.restitution_t[k]];
@@ -264,9 +260,8 @@ impl Bench {
         let mut bond_step = BondStep::default();
         if self.law.opens() {
             self.fill(states, motions, info, true);
-            self.evaluator
-                .update_damage(&self.law, &mut self.history, info, &mut bond_step)?;
-            self.said.clone_from(&self.evaluator.columns.out.damage);
+            self.batch.update_damage(&self.law, info, &mut bond_step)?;
+            self.said.clone_from(&self.batch.columns.out.damage);
             self.keep(states);
         }
         Ok(bond_step)
@@ -286,11 +281,10 @@ impl Bench {
         self.fill(states, motions, info, true);
         let opens = self.law.opens();
         if opens {
-            self.evaluator.columns.damage.clone_from(&bond_step.damage);
+            self.batch.columns.damage.clone_from(&bond_step.damage);
         }
-        self.evaluator
-            .run(&cohesion, &mut self.history, info, 0.0, Call::Prepare)?;
-        let out = &self.evaluator.columns.out;
+        self.batch.run(&cohesion, info, 0.0, Call::Prepare)?;
+        let out = &self.batch.columns.out;
         for (k, answer) in answers.iter_mut().enumerate() {
             answer.strength[0] += out.tension_strength[k];
             answer.strength[1] += out.shear_cohesion[k];
@@ -336,10 +330,9 @@ impl Bench {
             if !answers_first {
                 self.slide(motions, info, damage, answers);
             }
-            self.evaluator
-                .run(&loaded, &mut self.history, info, 0.0, Call::Commit)?;
+            self.batch.run(&loaded, info, 0.0, Call::Commit)?;
             if loaded.plugin.kind == Kind::WEAR {
-                for (answer, volume) in answers.iter_mut().zip(&self.evaluator.columns.out.volume) {
+                for (answer, volume) in answers.iter_mut().zip(&self.batch.columns.out.volume) {
                     answer.worn = *volume;
                 }
             }
@@ -350,7 +343,7 @@ impl Bench {
 
     /// Damage, slip and friction work at the end of a step.
     fn slide(&mut self, motions: &[Motion], info: &StepInfo, damage: &[f64], answers: &[Answer]) {
-        let c = &mut self.evaluator.columns;
+        let c = &mut self.batch.columns;
         c.damage.copy_from_slice(damage);
         for (k, answer) in answers.iter().enumerate() {
             let slip = info.h * c.velocity[1][k].hypot(c.velocity[2][k]);

@@ -1,26 +1,24 @@
 //! Commit of bonds: updates openings, damage and energies, and breaks bonds.
 
+use super::batch::{BATCH, Batch, locate};
 use super::columns::StepInfo;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::gather::{BondAfter, Motion, Source, store_states};
 use super::history::LawHistory;
-use super::interface::Interface;
+use super::interface::{Interface, Loaded};
 use super::library::Call;
-use super::step_result::{SolvedStep, Totals, Velocities};
-use crate::contact::{Contact, Memory, Network};
+use super::step_result::{MomentStep, SolvedStep, Totals, Velocities};
+use crate::contact::{Bond, Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads::any_size;
 
-/// State of the bonds after a step, in the order of the batch members.
+/// About what the laws of a bond take (ns).
+const BOND: f64 = 100.0;
+
+/// What laws give for the bonds of a batch at their new openings, in the order of the members.
 #[derive(Debug, Default)]
 pub(super) struct BondStep {
-    /// Work done by the bond's impulse over the step (J).
-    work: Vec<f64>,
-    /// Part of it dissipated by damping and by the time scheme (J).
-    lost: Vec<f64>,
-    /// Whether the tension-only normal part was switched on or off within the step.
-    turned: Vec<bool>,
-    /// Length of the change of the opening (m).
-    slide: Vec<f64>,
     /// Energy of the undamaged bond per area at the new opening (J/m^2).
     intact: Vec<f64>,
     /// The new damage.
@@ -40,8 +38,137 @@ impl BondStep {
     }
 }
 
+/// A bond at the end of a step.
+struct BondEnd<S: Space> {
+    opening: (f64, S::Tangent),
+    rotation: S::Spin,
+    /// Work done on it by opening, by sliding and by rotation (J).
+    work: [f64; 3],
+    /// Work that its impulse did (J).
+    given: f64,
+    /// Part of it dissipated by damping and by the time scheme (J).
+    lost: f64,
+    /// Dissipated by friction against sliding and against rotation (J).
+    friction: [f64; 2],
+    /// Whether the tension-only normal part was switched on or off within the step.
+    turned: bool,
+    /// Length of the change of the opening (m).
+    slide: f64,
+    /// Energy of the undamaged bond per area (J/m^2).
+    intact: f64,
+    /// The new damage.
+    damage: f64,
+}
+
+/// The bonds of an interface, and what their contacts do.
+struct Opening<'a, S: Space> {
+    source: Source<'a, S>,
+    motion: Motion<'a, S>,
+    /// Places of the moments of contacts, where the step is solved and bonds resist rotation.
+    moment_places: &'a [u32],
+}
+
+impl<S: Space> Opening<'_, S> {
+    /// The laws that act on bonds.
+    fn laws(&self) -> Vec<&Loaded> {
+        let law = self.source.law;
+        law.cohesion().into_iter().chain(law.damage()).collect()
+    }
+
+    /// What a contact that resists rotation did.
+    fn moment(&self, at: usize) -> Option<&MomentStep<S>> {
+        match &self.motion {
+            Motion::Continued(_) => None,
+            Motion::Solved(step) => step.moments.get(*self.moment_places.get(at)? as usize),
+        }
+    }
+
+    /// The spin of a contact that resists rotation, averaged over the step (rad/s).
+    fn spin(&self, at: usize) -> Option<S::Spin> {
+        match &self.motion {
+            Motion::Continued(before) => before.turning.get(at).copied(),
+            Motion::Solved(_) => self.moment(at).map(|m| m.spin),
+        }
+    }
+
+    /// The bond of a contact at the end of the step, with the damage at its start, for laws.
+    #[inline]
+    fn after(
+        &self,
+        at: usize,
+        normal: &S::Vector,
+        bond: &Bond<S>,
+        rotation: S::Spin,
+    ) -> BondAfter<S> {
+        let h = self.source.info.h;
+        let average = self.motion.average(at);
+        let (un, ut) = (normal.dot(&average), S::tangential(normal, &average));
+        let mut turned = rotation;
+        if self.source.law.rotates()
+            && let Some(spin) = self.spin(at)
+        {
+            turned += spin * h;
+        }
+        let mut opening = (bond.opening_n, bond.opening_t);
+        opening.0 += h * un;
+        opening.1 += ut * h;
+        BondAfter {
+            opening,
+            rotation: turned,
+            damage: bond.damage,
+        }
+    }
+
+    /// The bond of a contact at the end of a solved step. Work of the bond's impulse that is not stored is damping.
+    #[inline]
+    fn end(
+        &self,
+        step: &SolvedStep<'_, S>,
+        at: usize,
+        normal: &S::Vector,
+        before: &Bond<S>,
+        after: &BondAfter<S>,
+    ) -> BondEnd<S> {
+        let contact_step = &step.contacts[at];
+        let average = &contact_step.average;
+        let (un, ut) = (normal.dot(average), S::tangential(normal, average));
+        let s = &contact_step.solution;
+        let (en, et) = (
+            normal.dot(&s.impulse) - s.unilateral_n,
+            S::tangential(normal, &s.impulse) - s.unilateral_t,
+        );
+        let (opens, shears) = (en * un, et.dot(&ut));
+        let slips = match step.spring(at) {
+            Some(spring) => spring.friction,
+            None => -s.unilateral_t.dot(&ut),
+        };
+        let mut end = BondEnd {
+            opening: after.opening,
+            rotation: after.rotation,
+            work: [opens, shears, 0.0],
+            given: opens + shears,
+            lost: contact_step.lost,
+            friction: [slips, 0.0],
+            // A tension-only bond is not linear across zero opening; its energy there depends on the step.
+            turned: self.source.law.tension_only()
+                && (before.opening_n > 0.0) != (after.opening.0 > 0.0),
+            slide: step.info.h * un.hypot(ut.norm()),
+            intact: 0.0,
+            damage: 0.0,
+        };
+        if let Some(moment_step) = self.moment(at) {
+            let moment = &moment_step.moment;
+            end.work[2] = (moment.moment - moment.friction).dot(&moment_step.spin);
+            end.friction[1] = moment.friction.dot(&moment_step.spin);
+            end.given += end.work[2];
+            end.lost += moment_step.lost;
+        }
+        end
+    }
+}
+
 impl LawEvaluator {
-    /// Completes the step of the intact bonds of one interface, given as members.
+    /// Completes the step of the intact bonds of one interface.
     pub(super) fn commit_bonds<S: Space>(
         &mut self,
         index: usize,
@@ -51,25 +178,46 @@ impl LawEvaluator {
         step: &SolvedStep<'_, S>,
         totals: &mut Totals,
     ) -> Result<(), LawError> {
-        let mut bond_step = self.open_bonds(index, law, history, network, step)?;
-        for (at, damage) in self.members.iter().zip(&mut bond_step.damage) {
-            let bond = network.bond(&network.contacts[*at]);
-            let (before, used) = bond.map_or((0.0, 0.0), |b| (b.damage, b.step_damage));
-            if !step.predicted {
-                *damage = damage.max(used);
+        self.place_moments(index, network, step);
+        let moment_places = &self.moment_places;
+        let laws: Vec<&Loaded> = law.cohesion().into_iter().chain(law.damage()).collect();
+        let members = &self.members[index].bonded;
+        let divide = self.divides(members.len(), BOND);
+        let batches = members.chunks(any_size(BATCH)).collect();
+        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info: step.info,
+            };
+            let opening = Opening {
+                source,
+                motion: Motion::Solved(step),
+                moment_places,
+            };
+            let mut ends = Vec::with_capacity(members.len());
+            batch.open_bonds(&opening, members, |at, normal, before, after| {
+                ends.push(opening.end(step, at, normal, before, after));
+            })?;
+            let given = batch.bond_step.intact.iter().zip(&batch.bond_step.damage);
+            for (end, (intact, damage)) in ends.iter_mut().zip(given) {
+                (end.intact, end.damage) = (*intact, *damage);
             }
-            if network.cycle_multiplier != 1.0 {
-                *damage = (before + network.cycle_multiplier * (*damage - before)).min(1.0);
-            }
-        }
-        self.store_variables(index, network);
-        self.store_damage(index, law, network, &bond_step, totals);
-        self.bond_step = bond_step;
-        Ok(())
+            Ok((ends, batch.new_states(&laws)))
+        };
+        let take = |network: &mut _, members: &&[usize], (ends, states): (Vec<_>, Vec<_>)| {
+            store_states(network, index, &laws, members, &states);
+            store_bonds(index, law, network, members, ends, step.predicted, totals);
+        };
+        let largest = &mut history.largest;
+        self.pool
+            .evaluate(divide, largest, network, batches, of, take)
     }
 
     /// Returns the largest increase from the damage used in the step's impulses to the damage that the
-    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve.
+    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve. Contacts are as at the last
+    /// [`Self::select`].
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -83,67 +231,38 @@ impl LawEvaluator {
         let mut worst = 0.0f64;
         self.trials.clear();
         for (index, law) in laws.iter().enumerate().filter(|(_, l)| l.damages()) {
-            self.select(network, |c| {
-                c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
-            });
-            if self.members.is_empty() {
-                continue;
-            }
-            let before = network.memory[index].clone_openings();
             self.place_moments(index, network, step);
-            let tried = self.in_batches(|batch| {
-                let bond_step = batch.open_bonds(index, law, history, network, step)?;
-                for (k, at) in batch.members.iter().enumerate() {
-                    let Some(slot) = network.contacts[*at].memory() else {
-                        continue;
-                    };
-                    let bond = &network.memory[index].bonds[slot];
-                    // Damage does not decrease within a step either, so that the iteration is monotonic and
-                    // ends.
-                    let change = (bond_step.damage[k] - bond.step_damage).max(0.0);
+            let moment_places = &self.moment_places;
+            let members = &self.members[index].bonded;
+            let divide = self.divides(members.len(), BOND);
+            let trials = &mut self.trials;
+            let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+                let source = Source {
+                    law,
+                    index,
+                    network,
+                    info: step.info,
+                };
+                let opening = Opening {
+                    source,
+                    motion: Motion::Solved(step),
+                    moment_places,
+                };
+                batch.try_damage(&opening, members)
+            };
+            let take = |network: &mut Network<S>, _: &_, tried: Vec<(u32, f64)>| {
+                for (slot, change) in tried {
+                    let used = network.memory[index].bonds[slot as usize].step_damage;
                     worst = worst.max(change);
-                    let next = bond.step_damage + change;
-                    batch.trials.push((index, slot, next));
+                    trials.push((index, slot as usize, used + change));
                 }
-                batch.bond_step = bond_step;
-                Ok(())
-            });
-            network.memory[index].restore_openings(before);
-            tried?;
+            };
+            let batches = members.chunks(any_size(BATCH)).collect();
+            let largest = &mut history.largest;
+            self.pool
+                .evaluate(divide, largest, network, batches, of, take)?;
         }
         Ok(worst)
-    }
-
-    /// Uses in the step, for every intact bond, the mean of its damage and of the damage that the law gives for the opening
-    /// which the motion at the start of the step leads to.
-    ///
-    /// # Errors
-    /// The law's error, with the contact.
-    pub fn predict_damage<S: Space>(
-        &mut self,
-        laws: &[Interface],
-        history: &mut LawHistory,
-        network: &mut Network<S>,
-        before: &Velocities<S>,
-        info: &StepInfo,
-    ) -> Result<(), LawError> {
-        if !laws.iter().any(Interface::damages) {
-            return Ok(());
-        }
-        let (contacts, moments) = before.continued();
-        let step = SolvedStep {
-            contacts: &contacts,
-            springs: &[],
-            moments: &moments,
-            info,
-            predicted: true,
-        };
-        self.trial_damage(laws, history, network, &step)?;
-        for (index, slot, damage) in self.trials.drain(..) {
-            let bond = &mut network.memory[index].bonds[slot];
-            bond.step_damage = 0.5 * (bond.damage + damage);
-        }
-        Ok(())
     }
 
     /// Uses the damage of the last trial in the impulses of the next solve.
@@ -153,8 +272,8 @@ impl LawEvaluator {
         }
     }
 
-    /// Finds the moments of each contact, for [`Self::open_bonds`].
-    pub(super) fn place_moments<S: Space>(
+    /// Finds the moments of each contact, for [`Opening`].
+    fn place_moments<S: Space>(
         &mut self,
         index: usize,
         network: &Network<S>,
@@ -169,22 +288,75 @@ impl LawEvaluator {
             self.moment_places[moment_step.moment.contact as usize] = k as u32;
         }
     }
+}
 
-    /// Updates the openings of the bonds of one interface with the motion of the step, and computes the damage that they give.
+impl Batch {
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch if the motion at the start of the step
+    /// goes on through it, by the place in memory.
+    pub(super) fn predict_damage<S: Space>(
+        &mut self,
+        source: &Source<'_, S>,
+        members: &[usize],
+        before: &Velocities<S>,
+    ) -> Result<Vec<(u32, f64)>, LawError> {
+        let opening = Opening {
+            source: *source,
+            motion: Motion::Continued(before),
+            moment_places: &[],
+        };
+        self.try_damage(&opening, members)
+    }
+
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch, by the place in memory. Damage does
+    /// not decrease within a step either, so that an iteration is monotonic and ends.
+    fn try_damage<S: Space>(
+        &mut self,
+        opening: &Opening<'_, S>,
+        members: &[usize],
+    ) -> Result<Vec<(u32, f64)>, LawError> {
+        let mut tried = Vec::with_capacity(members.len());
+        self.open_bonds(opening, members, |_, _, bond, _| {
+            tried.push((0, bond.step_damage));
+        })?;
+        let given = self.slots.iter().zip(&self.bond_step.damage);
+        for (place, (slot, damage)) in tried.iter_mut().zip(given) {
+            *place = (*slot, (damage - place.1).max(0.0));
+        }
+        Ok(tried)
+    }
+
+    /// Computes the damage of the bonds of a batch at their openings at the end of the step; `each` is given the contact, its normal and its
+    /// bond before and after.
     fn open_bonds<S: Space>(
         &mut self,
-        index: usize,
-        law: &Interface,
-        history: &mut LawHistory,
-        network: &mut Network<S>,
-        step: &SolvedStep<'_, S>,
-    ) -> Result<BondStep, LawError> {
+        opening: &Opening<'_, S>,
+        members: &[usize],
+        mut each: impl FnMut(usize, &S::Vector, &Bond<S>, &BondAfter<S>),
+    ) -> Result<(), LawError> {
+        let Source {
+            law, network, info, ..
+        } = opening.source;
+        self.fill(
+            &opening.source,
+            members,
+            &opening.laws(),
+            true,
+            |at, contact, bond, rotation| {
+                let after = match bond {
+                    Some(bond) => {
+                        let after = opening.after(at, &contact.normal, bond, rotation);
+                        each(at, &contact.normal, bond, &after);
+                        after
+                    }
+                    None => BondAfter::of(None, rotation),
+                };
+                opening.motion.after(at, contact, after)
+            },
+        );
         let mut bond_step = std::mem::take(&mut self.bond_step);
-        self.update_openings(index, law, network, step, &mut bond_step);
-        self.gather_after(law, network, step);
-        self.update_damage(law, history, step.info, &mut bond_step)
-            .map_err(|e| self.locate(law, network, e))?;
-        Ok(bond_step)
+        let updated = self.update_damage(law, info, &mut bond_step);
+        self.bond_step = bond_step;
+        updated.map_err(|e| locate(law, network, members, e))
     }
 
     /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
@@ -192,204 +364,130 @@ impl LawEvaluator {
     pub(super) fn update_damage(
         &mut self,
         law: &Interface,
-        history: &mut LawHistory,
         info: &StepInfo,
         bond_step: &mut BondStep,
     ) -> Result<(), LawError> {
         let Some(cohesion) = law.cohesion() else {
             return Ok(());
         };
-        self.columns.size_outputs();
         bond_step.damage.clone_from(&self.columns.damage);
         let m = cohesion.plugin.degradation;
         // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the undamaged one.
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
-        self.run(cohesion, history, info, 0.0, Call::Energy)?;
+        self.run_afresh(cohesion, info, 0.0, Call::Energy)?;
         bond_step.intact.clone_from(&self.columns.out.energy);
         if law.damage().is_some() {
-            self.run(cohesion, history, info, 0.0, Call::Prepare)?;
+            self.run_afresh(cohesion, info, 0.0, Call::Prepare)?;
         }
         self.columns.damage.clone_from(&bond_step.damage);
         if cohesion.plugin.commits() {
             self.columns.out.damage.clone_from(&bond_step.damage);
-            self.run(cohesion, history, info, 0.0, Call::Commit)?;
+            self.run(cohesion, info, 0.0, Call::Commit)?;
             if law.damages() {
                 raise(&mut bond_step.damage, &self.columns.out.damage);
             }
+        } else {
+            self.columns.out.damage.fill(0.0);
         }
         if let Some(damage) = law.damage() {
             // The damage law sees what the undamaged bond would carry and store.
             self.columns.expose_intact();
-            self.run(damage, history, info, m, Call::Commit)?;
+            self.run(damage, info, m, Call::Commit)?;
             raise(&mut bond_step.damage, &self.columns.out.damage);
         }
         Ok(())
     }
+}
 
-    /// Updates the openings. Work of the bond's impulse that is not stored is damping.
-    fn update_openings<S: Space>(
-        &self,
-        index: usize,
-        law: &Interface,
-        network: &mut Network<S>,
-        step: &SolvedStep<'_, S>,
-        bond_step: &mut BondStep,
-    ) {
-        let (works, lost, turned, slides) = (
-            &mut bond_step.work,
-            &mut bond_step.lost,
-            &mut bond_step.turned,
-            &mut bond_step.slide,
-        );
-        works.clear();
-        lost.clear();
-        turned.clear();
-        slides.clear();
-        let Network {
-            contacts, memory, ..
-        } = network;
-        let memory = &mut memory[index];
-        for at in &self.members {
-            let (contact, contact_step) = (&contacts[*at], &step.contacts[*at]);
-            let Some(slot) = contact.memory() else {
-                works.push(0.0);
-                lost.push(0.0);
-                turned.push(false);
-                slides.push(0.0);
-                continue;
-            };
-            let bond = &mut memory.bonds[slot];
-            let n = &contact.normal;
-            let (un, ut) = (
-                n.dot(&contact_step.average),
-                S::tangential(n, &contact_step.average),
-            );
-            let before = bond.opening_n;
-            bond.opening_n += step.info.h * un;
-            // A tension-only bond is not linear across zero opening; its energy there depends on the step.
-            turned.push(law.tension_only() && (before > 0.0) != (bond.opening_n > 0.0));
-            lost.push(contact_step.lost);
-            bond.opening_t += ut * step.info.h;
-            slides.push(step.info.h * un.hypot(ut.norm()));
-            let s = &contact_step.solution;
-            let (en, et) = (
-                n.dot(&s.impulse) - s.unilateral_n,
-                S::tangential(n, &s.impulse) - s.unilateral_t,
-            );
-            let (opens, shears) = (en * un, et.dot(&ut));
-            bond.life.work[0] -= opens;
-            bond.life.work[1] -= shears;
-            bond.life.friction += match step.spring(*at) {
-                Some(spring) => spring.friction,
-                None => -s.unilateral_t.dot(&ut),
-            };
-            works.push(opens + shears);
+/// Stores openings, damage and energies of bonds; breaks fully damaged ones.
+fn store_bonds<S: Space>(
+    index: usize,
+    law: &Interface,
+    network: &mut Network<S>,
+    members: &[usize],
+    ends: Vec<BondEnd<S>>,
+    predicted: bool,
+    totals: &mut Totals,
+) {
+    let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
+    let damages = law.damages();
+    let share = |damage: f64| {
+        if damages {
+            degradation_factor(damage, m)
+        } else {
+            1.0
         }
-        if memory.rotates {
-            self.update_rotations(contacts, memory, step, works, lost);
-        }
-    }
-
-    /// Updates the rotations of the bonds of one interface, and adds the work of their moments.
-    fn update_rotations<S: Space>(
-        &self,
-        contacts: &[Contact<S>],
-        memory: &mut Memory<S>,
-        step: &SolvedStep<'_, S>,
-        works: &mut [f64],
-        lost: &mut [f64],
-    ) {
-        for (at, (work, lost)) in self.members.iter().zip(works.iter_mut().zip(lost)) {
-            let (Some(moment_step), Some(slot)) = (
-                step.moments.get(self.moment_places[*at] as usize),
-                contacts[*at].memory(),
-            ) else {
-                continue;
-            };
-            memory.rotations[slot] += moment_step.spin * step.info.h;
-            let turned =
-                (moment_step.moment.moment - moment_step.moment.friction).dot(&moment_step.spin);
-            let life = &mut memory.bonds[slot].life;
-            life.work[2] -= turned;
-            life.friction -= moment_step.moment.friction.dot(&moment_step.spin);
-            *work += turned;
-            *lost += moment_step.lost;
-        }
-    }
-
-    /// Stores damage and energy; breaks fully damaged bonds.
-    fn store_damage<S: Space>(
-        &self,
-        index: usize,
-        law: &Interface,
-        network: &mut Network<S>,
-        bond_step: &BondStep,
-        totals: &mut Totals,
-    ) {
-        let m = law.cohesion().map_or(0.0, |c| c.plugin.degradation);
-        let damages = law.damages();
-        let share = |damage: f64| {
-            if damages {
-                degradation_factor(damage, m)
-            } else {
-                1.0
-            }
+    };
+    for (at, end) in members.iter().zip(ends) {
+        let contact = &mut network.contacts[*at];
+        let Some(slot) = contact.memory() else {
+            continue;
         };
-        for (k, at) in self.members.iter().enumerate() {
-            let contact = &mut network.contacts[*at];
-            let Some(slot) = contact.memory() else {
-                continue;
-            };
-            let memory = &mut network.memory[index];
-            let bond = &mut memory.bonds[slot];
-            let intact = bond_step.intact[k] * bond.area;
-            // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end
-            // of the step.
-            let (start, end) = if bond.step_damage == bond.damage {
-                (bond.energy, intact * share(bond.damage))
-            } else {
-                let ratio = share(bond.step_damage) / share(bond.damage);
-                (bond.energy * ratio, intact * share(bond.step_damage))
-            };
-            // Where the energy is defined by the law, any imbalance appears in the residual.
-            let viscous = if bond_step.turned[k] {
-                -bond_step.work[k] - (end - start)
-            } else {
-                bond_step.lost[k]
-            };
-            let kept = if bond_step.damage[k] >= 1.0 {
-                0.0
-            } else {
-                intact * share(bond_step.damage[k])
-            };
-            let fracture = (bond.energy - start) + (end - kept);
-            totals.viscous += viscous;
-            totals.fracture += fracture;
-            bond.life.viscous += viscous;
-            bond.life.fracture += fracture;
-            if let Some(dissipation) = &mut network.dissipation {
-                dissipation[*at].viscous += viscous;
-                dissipation[*at].fracture += fracture;
-            }
-            let damage_before = bond.damage;
-            bond.energy = kept;
-            bond.damage = bond_step.damage[k];
-            bond.step_damage = bond.damage;
-            memory.slides.add(bond_step.slide[k], fracture);
-            if bond_step.damage[k] >= 1.0 {
-                totals.broken += 1;
-                memory.broken += 1;
-                contact.broken = true;
-                contact.compression_time = 0.0;
-                network.broken_pairs.insert(contact.key.pair());
-                let contact = contact.clone();
-                network.record_break(&contact, damage_before);
-                if law.variables() == 0 {
-                    network.memory[index].release(slot as u32);
-                    network.contacts[*at].slot = Contact::<S>::NO_MEMORY;
-                }
+        let memory = &mut network.memory[index];
+        let bond = &mut memory.bonds[slot];
+        (bond.opening_n, bond.opening_t) = end.opening;
+        bond.life.work[0] -= end.work[0];
+        bond.life.work[1] -= end.work[1];
+        bond.life.friction += end.friction[0];
+        if memory.rotates {
+            memory.rotations[slot] = end.rotation;
+            bond.life.work[2] -= end.work[2];
+            bond.life.friction -= end.friction[1];
+        }
+        let mut damage = end.damage;
+        if !predicted {
+            damage = damage.max(bond.step_damage);
+        }
+        if network.cycle_multiplier != 1.0 {
+            damage = (bond.damage + network.cycle_multiplier * (damage - bond.damage)).min(1.0);
+        }
+        let intact = end.intact * bond.area;
+        // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end
+        // of the step.
+        let (start, stop) = if bond.step_damage == bond.damage {
+            (bond.energy, intact * share(bond.damage))
+        } else {
+            let ratio = share(bond.step_damage) / share(bond.damage);
+            (bond.energy * ratio, intact * share(bond.step_damage))
+        };
+        // Where the energy is defined by the law, any imbalance appears in the residual.
+        let viscous = if end.turned {
+            -end.given - (stop - start)
+        } else {
+            end.lost
+        };
+        let kept = if damage >= 1.0 {
+            0.0
+        } else {
+            intact * share(damage)
+        };
+        let fracture = (bond.energy - start) + (stop - kept);
+        totals.viscous += viscous;
+        totals.fracture += fracture;
+        bond.life.viscous += viscous;
+        bond.life.fracture += fracture;
+        if let Some(dissipation) = &mut network.dissipation {
+            dissipation[*at].viscous += viscous;
+            dissipation[*at].fracture += fracture;
+        }
+        let damage_before = bond.damage;
+        bond.energy = kept;
+        bond.damage = damage;
+        bond.step_damage = damage;
+        memory.slides.add(end.slide, fracture);
+        if damage >= 1.0 {
+            totals.broken += 1;
+            memory.broken += 1;
+            contact.broken = true;
+            contact.compression_time = 0.0;
+            network.broken_pairs.insert(contact.key.pair());
+            let contact = contact.clone();
+            network.record_break(&contact, damage_before);
+            if law.variables() == 0 {
+                network.memory[index].release(slot as u32);
+                network.contacts[*at].slot = Contact::<S>::NO_MEMORY;
             }
         }
     }

@@ -1,7 +1,8 @@
 //! The columns of a batch: collected from the network, passed to plugins, read back.
 
 use super::interface::Loaded;
-use super::kind::Output;
+use super::kind::Kind;
+use super::library::Call;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
 
@@ -176,18 +177,24 @@ impl Outputs {
     }
 }
 
-/// The first contact for which a call gave a value that is not finite.
-pub(super) fn not_finite(outputs: &[Output<'_>]) -> Option<usize> {
-    let columns = outputs.iter();
-    columns.filter_map(|o| first_not_finite(o.values)).min()
+/// Sizes a column, of which all values are to be set.
+fn fit(column: &mut Vec<f64>, n: usize) {
+    if column.len() != n {
+        column.resize(n, 0.0);
+    }
 }
 
-/// Almost always `None`: all values are tested without branches before the first is searched for.
-fn first_not_finite(column: &[f64]) -> Option<usize> {
-    if column.iter().fold(true, |all, x| all & x.is_finite()) {
-        return None;
-    }
-    column.iter().position(|x| !x.is_finite())
+/// Which columns a batch has, beside those of every batch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contents {
+    /// Those along t2, in three dimensions.
+    pub spatial: bool,
+    /// Rotations of bonds.
+    pub rotates: bool,
+    /// Those of compliant contacts.
+    pub compliant: bool,
+    /// Springs at the start of the step, beside those at its end.
+    pub after: bool,
 }
 
 /// Turns columns into the pointers of a batch: null for columns that are not in use.
@@ -259,12 +266,6 @@ impl Columns {
         all.chain(&mut self.spring).chain(&mut self.spring_before)
     }
 
-    /// Returns the index of the first contact with a new internal variable that is not finite.
-    pub fn state_not_finite(&self) -> Option<usize> {
-        let columns = self.state_next.iter();
-        columns.filter_map(|column| first_not_finite(column)).min()
-    }
-
     /// Clears the inputs.
     pub fn clear(&mut self) {
         self.n = 0;
@@ -273,12 +274,52 @@ impl Columns {
         self.state_next.clear();
     }
 
-    /// Keeps the first `n` contacts.
-    pub fn truncate(&mut self, n: usize) {
+    /// Sizes the inputs that a gather sets for `n` contacts, and empties the others; internal variables and outputs have their own.
+    pub(super) fn begin(&mut self, n: usize, contents: Contents) {
         self.n = n;
-        self.inputs().for_each(|column| column.truncate(n));
-        let states = self.state.iter_mut().chain(&mut self.state_next);
-        states.for_each(|column| column.truncate(n));
+        let count = |used: bool| if used { n } else { 0 };
+        for column in [
+            &mut self.gap,
+            &mut self.area,
+            &mut self.radius,
+            &mut self.age,
+            &mut self.pressed,
+            &mut self.damage,
+        ] {
+            fit(column, n);
+        }
+        for triple in [&mut self.opening, &mut self.velocity, &mut self.impulse] {
+            fit(&mut triple[0], n);
+            fit(&mut triple[1], n);
+            fit(&mut triple[2], count(contents.spatial));
+        }
+        for column in &mut self.rotation {
+            fit(column, count(contents.rotates));
+        }
+        let springs = [&mut self.overlap, &mut self.effective_mass];
+        for column in springs.into_iter().chain(&mut self.spring) {
+            fit(column, count(contents.compliant));
+        }
+        for column in &mut self.spring_before {
+            fit(column, count(contents.compliant && contents.after));
+        }
+        let given = [
+            &mut self.energy_intact,
+            &mut self.slip,
+            &mut self.friction_work,
+        ];
+        let intact = self.intact.iter_mut().chain(&mut self.intact_moment);
+        given.into_iter().chain(intact).for_each(Vec::clear);
+    }
+
+    /// Sizes the columns of an internal variable, at the start and at the end of the step, and returns them.
+    pub(super) fn fit_state(&mut self, variable: usize) -> [&mut [f64]; 2] {
+        let count = self.state.len().max(variable + 1);
+        [&mut self.state, &mut self.state_next].map(|columns| {
+            columns.resize_with(count, Vec::new);
+            fit(&mut columns[variable], self.n);
+            &mut columns[variable][..]
+        })
     }
 
     /// Copies the cohesion law's outputs for the undamaged bond to the inputs of the damage law.
@@ -290,6 +331,21 @@ impl Columns {
         self.out.energy.resize(self.n, 0.0);
         for column in self.out.traction.iter_mut().chain(&mut self.out.moment) {
             column.resize(self.n, 0.0);
+        }
+    }
+
+    /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`] follows.
+    pub(super) fn fit_outputs(&mut self) {
+        let (all, springs) = self.out.groups();
+        all.into_iter().for_each(|column| fit(column, self.n));
+        let n = self.overlap.len();
+        springs.into_iter().for_each(|column| fit(column, n));
+    }
+
+    /// Sets to zero what a call of a law writes.
+    pub(super) fn clear_outputs(&mut self, kind: Kind, call: Call) {
+        for output in (kind.spec().outputs)(&mut self.out, call) {
+            output.values.fill(0.0);
         }
     }
 

@@ -1,25 +1,31 @@
 //! Commit: the laws' update at the end of a solved step.
 
-use super::columns::Columns;
+use super::batch::{BATCH, Batch, locate};
+use super::columns::Outputs;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::gather::{Motion, Source, store_states};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
-use super::kind::Domain;
+use super::kind::{Domain, Kind};
 use super::library::Call;
 use super::spring::SpringStep;
 use super::step_result::{ContactStep, MomentStep, SolvedStep, Totals};
 use crate::contact::{Contact, ContactDissipation, Network};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{map_chunks_mut, map_chunks_of_two, pays};
+use crate::threads::{any_size, fill, map_chunks_mut, map_chunks_of_two, pays};
 
 /// Contacts of a task; sums are formed per chunk and added in order.
 const CHUNK: usize = 1024;
 /// About what it takes to store the impulse of a contact (ns).
 const COMMIT: f64 = 15.0;
+/// About what it takes to find the slip of a contact (ns).
+const SLIDE: f64 = 5.0;
+/// About what a law takes for a contact (ns).
+const COMMIT_LAW: f64 = 40.0;
 
 impl LawEvaluator {
-    /// Completes the step.
+    /// Completes the step. Contacts and bonds are as at the last [`Self::select`].
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -38,51 +44,193 @@ impl LawEvaluator {
         commit_moments(network, step.moments, &mut totals);
         for (index, law) in laws.iter().enumerate() {
             if law.opens() {
-                self.select(network, |c| {
-                    c.law as usize == index && network.bond(c).is_some_and(|b| b.intact())
-                });
-                self.place_moments(index, network, step);
-                self.in_batches(|batch| {
-                    batch.commit_bonds(index, law, history, network, step, &mut totals)
-                })?;
+                self.commit_bonds(index, law, history, network, step, &mut totals)?;
             }
-            for loaded in law.loaded().filter(|l| !law.acts_on_bonds(l)) {
-                let spec = loaded.plugin.kind.spec();
-                let Some(commit) = spec.commit.of::<S>() else {
-                    continue;
-                };
-                let all = spec.domain == Domain::All;
-                self.select(network, |c| c.law as usize == index && (all || !c.beyond));
-                self.in_batches(|batch| {
-                    commit(&mut SlotCommit {
-                        interface: law,
-                        law: loaded,
-                        network,
-                        step,
-                        totals: &mut totals,
-                        evaluator: batch,
-                        history,
-                        index,
-                    })
-                })?;
-            }
+            self.commit_slots(index, law, history, network, step, &mut totals)?;
         }
         totals.fracture += std::mem::take(&mut network.torn_energy);
         Ok(totals)
     }
 
-    /// Stores the new internal variables of the members.
-    pub(super) fn store_variables<S: Space>(&self, index: usize, network: &mut Network<S>) {
-        for (k, at) in self.members.iter().enumerate() {
-            let Some(slot) = network.contacts[*at].memory() else {
-                continue;
+    /// Calls the laws of an interface that act on contacts, and has the host take their answers.
+    fn commit_slots<S: Space>(
+        &mut self,
+        index: usize,
+        law: &Interface,
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        step: &SolvedStep<'_, S>,
+        totals: &mut Totals,
+    ) -> Result<(), LawError> {
+        let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
+        let slots: Vec<&Loaded> = slots
+            .filter(|l| sees_slip(l) || l.variables() > 0)
+            .collect();
+        let all = |l: &&Loaded| l.plugin.kind.spec().domain == Domain::All;
+        let (of_all, of_near): (Vec<_>, Vec<_>) = slots.into_iter().partition(all);
+        let members = std::mem::take(&mut self.members[index]);
+        // Laws of the same contacts share the columns.
+        let groups = if members.beyond.is_empty() {
+            vec![(&members.all[..], [of_all, of_near].concat())]
+        } else {
+            vec![(&members.all[..], of_all), (members.near(), of_near)]
+        };
+        let done = groups.into_iter().try_for_each(|(members, slots)| {
+            if members.is_empty() || slots.is_empty() {
+                return Ok(());
+            }
+            let group = Group {
+                law,
+                index,
+                slots: &slots,
+                members,
             };
-            let columns = &mut network.memory[index].variables;
-            for (column, next) in columns.iter_mut().zip(&self.columns.state_next) {
-                column[slot] = next[k];
+            self.commit_group(&group, history, network, step, totals)
+        });
+        self.members[index] = members;
+        done
+    }
+
+    /// Calls laws that act on the same contacts.
+    fn commit_group<S: Space>(
+        &mut self,
+        group: &Group<'_>,
+        history: &mut LawHistory,
+        network: &mut Network<S>,
+        step: &SolvedStep<'_, S>,
+        totals: &mut Totals,
+    ) -> Result<(), LawError> {
+        let (law, index, slots) = (group.law, group.index, group.slots);
+        let mut slides = std::mem::take(&mut self.slides);
+        let mut paid = Vec::new();
+        slides.clear();
+        if slots.iter().any(|l| sees_slip(l)) {
+            let divide = self.divides(group.members.len(), SLIDE);
+            fill(divide, &mut slides, group.members.len(), |k| {
+                slide(network, step, group.members[k])
+            });
+            if slots.iter().any(|l| is_paid(l)) {
+                paid = pay_debts(&slides, network, history, group.members);
             }
         }
+        let size = any_size(BATCH);
+        let of = |network: &_, batch: &mut Batch, (first, members): &mut (usize, &[usize])| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info: step.info,
+            };
+            batch.gather_after(&source, members, &Motion::Solved(step), slots);
+            let here = *first..*first + members.len();
+            let mut answers = Vec::with_capacity(slots.len());
+            for loaded in slots {
+                let columns = &mut batch.columns;
+                columns.slip.clear();
+                columns.friction_work.clear();
+                if sees_slip(loaded) {
+                    let here = &slides[here.clone()];
+                    columns.slip.extend(here.iter().map(|s| s.0));
+                    columns.friction_work.extend(here.iter().map(|s| s.1));
+                }
+                if is_paid(loaded) {
+                    columns.friction_work.copy_from_slice(&paid[here.clone()]);
+                }
+                batch
+                    .run_afresh(loaded, step.info, 0.0, Call::Commit)
+                    .map_err(|e| locate(law, network, members, e))?;
+                let outputs = loaded.plugin.kind.spec().outputs;
+                let outputs = outputs(&mut batch.columns.out, Call::Commit);
+                answers.extend(outputs.iter().map(|o| o.values.clone()));
+            }
+            Ok((answers, batch.new_states(slots)))
+        };
+        let mut outputs: Vec<Outputs> = slots.iter().map(|_| Outputs::default()).collect();
+        let take = |network: &mut _,
+                    (_, members): &(usize, &[usize]),
+                    (answers, states): (Vec<Vec<f64>>, Vec<f64>)| {
+            store_states(network, index, slots, members, &states);
+            let columns = slots
+                .iter()
+                .zip(&mut outputs)
+                .flat_map(|(loaded, outputs)| {
+                    (loaded.plugin.kind.spec().outputs)(outputs, Call::Commit)
+                });
+            for (column, answer) in columns.zip(answers) {
+                column.values.extend_from_slice(&answer);
+            }
+        };
+        let batches = group.members.chunks(size).enumerate();
+        let batches: Vec<_> = batches.map(|(k, m)| (k * size, m)).collect();
+        let divide = self.divides(group.members.len(), COMMIT_LAW * slots.len() as f64);
+        let largest = &mut history.largest;
+        let done = self
+            .pool
+            .evaluate(divide, largest, network, batches, of, take);
+        self.slides = slides;
+        done?;
+        for (loaded, outputs) in slots.iter().zip(&outputs) {
+            let Some(commit) = loaded.plugin.kind.spec().commit.of::<S>() else {
+                continue;
+            };
+            commit(&mut SlotCommit {
+                interface: law,
+                law: loaded,
+                network,
+                step,
+                totals,
+                members: group.members,
+                outputs,
+            })?;
+        }
+        Ok(())
     }
+}
+
+/// Laws of an interface that act on the same contacts.
+struct Group<'a> {
+    law: &'a Interface,
+    index: usize,
+    slots: &'a [&'a Loaded],
+    members: &'a [usize],
+}
+
+/// Whether a law is given slip and friction work: the host does not take its answers at the start of a step.
+fn sees_slip(law: &Loaded) -> bool {
+    !law.plugin.kind.spec().functions.contains(&Call::Prepare)
+}
+
+/// Whether a law is given friction work that is not negative: where the velocity turns within a step, friction gives work back, and later
+/// steps owe it to the law.
+fn is_paid(law: &Loaded) -> bool {
+    law.plugin.kind == Kind::WEAR
+}
+
+/// Slip (m) and friction work (J) of a contact over the step, the latter negative where friction gave back.
+#[inline]
+fn slide<S: Space>(network: &Network<S>, step: &SolvedStep<'_, S>, at: usize) -> (f64, f64) {
+    let contact_step = &step.contacts[at];
+    match step.spring(at) {
+        Some(spring) => (spring.slip.norm(), spring.friction),
+        None => {
+            let ut = S::tangential(&network.contacts[at].normal, &contact_step.average);
+            let work = -contact_step.solution.unilateral_t.dot(&ut);
+            (step.info.h * ut.norm(), work)
+        }
+    }
+}
+
+/// The friction work of contacts less what their pairs owe, and not negative: the rest they owe to later steps.
+fn pay_debts<S: Space>(
+    slides: &[(f64, f64)],
+    network: &Network<S>,
+    history: &mut LawHistory,
+    members: &[usize],
+) -> Vec<f64> {
+    history.forget_separated(&network.contacts);
+    let pairs = members.iter().map(|at| network.contacts[*at].key.pair());
+    let works = pairs.zip(slides.iter().map(|slide| slide.1));
+    history.negative_friction_work.pay(works)
 }
 
 /// Stores the impulses of the contacts, and books what they dissipated.
@@ -226,7 +374,7 @@ fn commit_moments<S: Space>(
 }
 
 /// The end of a step for one law of an interface that acts on contacts: what a [`CommitHook`](super::kind::CommitHook) works
-/// on.
+/// on, after the law was called.
 #[derive(Debug)]
 pub struct SlotCommit<'a, S: Space> {
     /// The interface.
@@ -239,89 +387,18 @@ pub struct SlotCommit<'a, S: Space> {
     pub step: &'a SolvedStep<'a, S>,
     /// Energies and volumes of the step.
     pub totals: &'a mut Totals,
-    pub(super) evaluator: &'a mut LawEvaluator,
-    history: &'a mut LawHistory,
-    index: usize,
+    pub(super) members: &'a [usize],
+    pub(super) outputs: &'a Outputs,
 }
 
 impl<S: Space> SlotCommit<'_, S> {
-    /// Contacts that the law acts on, as places in the network; values of columns are in their order. Where the law acts on many, the hook is
-    /// called for some at a time, several times in a step.
+    /// Contacts that the law acts on, as places in the network; values of outputs are in their order.
     pub fn contacts(&self) -> &[usize] {
-        &self.evaluator.members
+        self.members
     }
 
-    /// The columns, as the last call left them.
-    pub fn columns(&self) -> &Columns {
-        &self.evaluator.columns
-    }
-
-    /// Fills the columns by the end of the step.
-    pub fn gather(&mut self) {
-        let Self { evaluator, .. } = self;
-        evaluator.gather_after(self.interface, self.network, self.step);
-        evaluator.columns.size_outputs();
-    }
-
-    /// Adds the columns of slip (m) and friction work (J) over the step, negative where friction gave back.
-    pub fn add_slip(&mut self) {
-        let Self {
-            evaluator, step, ..
-        } = self;
-        for at in &evaluator.members {
-            let contact_step = &step.contacts[*at];
-            let (slip, work) = match step.spring(*at) {
-                Some(spring) => (spring.slip.norm(), spring.friction),
-                None => {
-                    let normal = &self.network.contacts[*at].normal;
-                    let ut = S::tangential(normal, &contact_step.average);
-                    let work = -contact_step.solution.unilateral_t.dot(&ut);
-                    (step.info.h * ut.norm(), work)
-                }
-            };
-            evaluator.columns.slip.push(slip);
-            evaluator.columns.friction_work.push(work);
-        }
-    }
-
-    /// The same with friction work that is not negative: where the velocity turns within a step, friction gives work back,
-    /// and later steps owe it to the law.
-    pub(super) fn add_slip_and_owed_work(&mut self) {
-        self.history.forget_separated(&self.network.contacts);
-        self.add_slip();
-        let Self { evaluator, .. } = self;
-        let works = &mut evaluator.columns.friction_work;
-        for (at, work) in evaluator.members.iter().zip(works) {
-            let pair = self.network.contacts[*at].key.pair();
-            let owed = match self.history.negative_friction_work.is_empty() {
-                true => 0.0,
-                false => self
-                    .history
-                    .negative_friction_work
-                    .remove(&pair)
-                    .unwrap_or(0.0),
-            };
-            *work += owed;
-            if *work < 0.0 {
-                self.history.negative_friction_work.insert(pair, *work);
-            }
-            *work = work.max(0.0);
-        }
-    }
-
-    /// Calls the law.
-    ///
-    /// # Errors
-    /// Its own error, with the contact at fault.
-    pub fn call(&mut self) -> Result<(), LawError> {
-        let called = self
-            .evaluator
-            .run(self.law, self.history, self.step.info, 0.0, Call::Commit);
-        called.map_err(|e| self.evaluator.locate(self.interface, self.network, e))
-    }
-
-    /// Stores the new internal variables.
-    pub fn store_variables(&mut self) {
-        self.evaluator.store_variables(self.index, self.network);
+    /// What the law wrote: the columns that its kind names as outputs of a commit; the others are empty.
+    pub fn outputs(&self) -> &Outputs {
+        self.outputs
     }
 }

@@ -194,6 +194,14 @@ impl LawError {
         }
     }
 
+    /// Whether an output was out of its range, also as the source of the error of an interface.
+    pub(super) fn out_of_range(&self) -> bool {
+        match self {
+            Self::At { source, .. } => source.out_of_range(),
+            _ => matches!(self, Self::OutOfRange { .. }),
+        }
+    }
+
     /// Returns the contact with the error, as an index in the batch.
     pub(super) fn contact(&self) -> Option<usize> {
         match self {

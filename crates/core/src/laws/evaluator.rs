@@ -1,22 +1,27 @@
-//! Evaluation of the laws in a step: batches of contacts, calls of the plugins, and checks of what they return.
+//! Evaluation of the laws in a step: which contacts they act on, in batches on one or several threads.
 
-use super::bonds::BondStep;
-use super::columns::{Columns, StepInfo, not_finite};
-use super::error::LawError;
-use super::guarded::{self, Guarded};
-use super::history::LawHistory;
-use super::interface::{Interface, Loaded};
-use super::library::{Call, Plugin};
-use super::range::settle;
-use crate::contact::{Contact, Network};
+use super::batch::{BATCH, Pool};
+use super::gather::{AHEAD, prefetch_bond};
+use super::interface::Interface;
+use crate::contact::Network;
 use crate::geometry::space::Space;
+use crate::threads::{any_size, map_chunks, pays};
+
+/// Contacts of a task that looks to which interface they belong.
+const CHUNK: usize = 4096;
+/// About what that takes for each (ns).
+const SELECT: f64 = 10.0;
+
+/// How many times more work than for a plain loop makes dividing batches pay: an interface is evaluated in several regions, between which one
+/// thread stores. On scenes of 5,000 to 6,000 contacts, which are below it, two threads were slower than one.
+const OVERHEAD: f64 = 8.0;
 
 /// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a step.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
-    pub(super) columns: Columns,
-    pub(super) members: Vec<usize>,
-    pub(super) bond_step: BondStep,
+    pub(super) pool: Pool,
+    /// The contacts of each interface in this step.
+    pub(super) members: Vec<Members>,
     /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.
     pub(super) trials: Vec<(usize, usize, f64)>,
     /// Contacts of the last solve that close within the step and were kept from closing although their law
@@ -24,180 +29,110 @@ pub struct LawEvaluator {
     pub(crate) held_back: Vec<usize>,
     /// Place of the moments of each contact in the step, while bonds that resist rotation are committed.
     pub(super) moment_places: Vec<u32>,
-    /// Which checks are made on law calls.
-    pub(super) checks: CallChecks,
+    /// Slip (m) and friction work (J) of contacts.
+    pub(super) slides: Vec<(f64, f64)>,
     /// Whether passes over contacts may be divided among threads.
     pub parallel: bool,
 }
 
-/// Contacts of a batch: few enough that its columns stay in a cache.
-const BATCH: usize = 512;
-
-/// Checks made on the outputs of law calls.
+/// The contacts of an interface, as places in the network in ascending order.
 #[derive(Debug, Default)]
-pub(super) enum CallChecks {
-    /// Errors for values that are not finite or out of range, and for writes just beyond a column.
-    #[default]
-    Run,
-    /// As `Run`, but without the range check, which certification makes itself.
-    Lenient,
-    /// As `Run`; in addition every call is made twice in guarded memory.
-    Guarded(Box<Guarded>),
-    /// As `Lenient`; in addition every call is repeated.
-    Repeated,
+pub(super) struct Members {
+    /// All.
+    pub all: Vec<usize>,
+    /// Those with an intact bond, where the interface makes bonds.
+    pub bonded: Vec<usize>,
+    /// The others, where the interface makes bonds.
+    pub loose: Vec<usize>,
+    /// Those within the alert distance or held by a bond, if that is not all.
+    near: Vec<usize>,
+    /// The others.
+    pub beyond: Vec<usize>,
+}
+
+impl Members {
+    /// Those within the alert distance or held by a bond.
+    pub fn near(&self) -> &[usize] {
+        if self.beyond.is_empty() {
+            &self.all
+        } else {
+            &self.near
+        }
+    }
+
+    fn lists(&mut self) -> [&mut Vec<usize>; 5] {
+        [
+            &mut self.all,
+            &mut self.bonded,
+            &mut self.loose,
+            &mut self.near,
+            &mut self.beyond,
+        ]
+    }
 }
 
 impl LawEvaluator {
-    /// Makes the contacts that a test accepts the members of the batch.
-    pub(super) fn select<S: Space>(
-        &mut self,
-        network: &Network<S>,
-        keep: impl Fn(&Contact<S>) -> bool,
-    ) {
-        self.members.clear();
-        self.select_more(network, keep);
+    /// Finds the contacts of each interface. It comes before the other calls of a step, until whose end the contacts and their bonds
+    /// stay.
+    pub fn select<S: Space>(&mut self, laws: &[Interface], network: &Network<S>) {
+        self.members.resize_with(laws.len(), Members::default);
+        for list in self.members.iter_mut().flat_map(Members::lists) {
+            list.clear();
+        }
+        if !pays(self.parallel, network.contacts.len(), SELECT) {
+            let whole = 0..network.contacts.len();
+            select(laws, network, whole, &mut self.members);
+        } else {
+            let parts = map_chunks(true, &network.contacts, any_size(CHUNK), |first, chunk| {
+                let mut members = Vec::new();
+                members.resize_with(laws.len(), Members::default);
+                let range = first..first + chunk.len();
+                select(laws, network, range, &mut members);
+                members
+            });
+            for mut part in parts {
+                for (to, from) in self.members.iter_mut().zip(&mut part) {
+                    for (to, from) in to.lists().into_iter().zip(from.lists()) {
+                        to.append(from);
+                    }
+                }
+            }
+        }
+        for members in self.members.iter_mut().filter(|m| !m.beyond.is_empty()) {
+            let near = |at: &&usize| !network.contacts[**at].beyond;
+            members.near.extend(members.all.iter().filter(near));
+        }
     }
 
-    /// Adds the contacts that a test accepts to the members.
-    pub(super) fn select_more<S: Space>(
-        &mut self,
-        network: &Network<S>,
-        keep: impl Fn(&Contact<S>) -> bool,
-    ) {
-        let contacts = network.contacts.iter().enumerate();
-        self.members
-            .extend(contacts.filter(|(_, c)| keep(c)).map(|(k, _)| k));
+    /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds, among threads.
+    pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
+        contacts > any_size(BATCH) && pays(self.parallel, contacts, each / OVERHEAD)
     }
+}
 
-    /// Does something for the members in batches, one after the other; those of a batch are the members meanwhile.
-    pub(super) fn in_batches(
-        &mut self,
-        mut each: impl FnMut(&mut Self) -> Result<(), LawError>,
-    ) -> Result<(), LawError> {
-        if self.members.len() <= BATCH {
-            return if self.members.is_empty() {
-                Ok(())
+fn select<S: Space>(
+    laws: &[Interface],
+    network: &Network<S>,
+    range: std::ops::Range<usize>,
+    members: &mut [Members],
+) {
+    let contacts = &network.contacts[range.clone()];
+    for (contact, k) in contacts.iter().zip(range.clone()) {
+        if let Some(ahead) = contacts.get(k - range.start + AHEAD) {
+            prefetch_bond(&network.memory[ahead.law as usize], ahead);
+        }
+        let index = contact.law as usize;
+        let members = &mut members[index];
+        members.all.push(k);
+        if contact.beyond {
+            members.beyond.push(k);
+        }
+        if laws[index].opens() {
+            if network.bond(contact).is_some_and(|b| b.intact()) {
+                members.bonded.push(k);
             } else {
-                each(self)
-            };
-        }
-        let all = std::mem::take(&mut self.members);
-        let mut done = Ok(());
-        for batch in all.chunks(BATCH) {
-            self.members.clear();
-            self.members.extend_from_slice(batch);
-            done = each(self);
-            if done.is_err() {
-                break;
+                members.loose.push(k);
             }
-        }
-        self.members = all;
-        done
-    }
-
-    /// Calls a function of a law with the columns, and checks what it wrote.
-    pub(super) fn run(
-        &mut self,
-        loaded: &Loaded,
-        history: &mut LawHistory,
-        info: &StepInfo,
-        degradation: f64,
-        call: Call,
-    ) -> Result<(), LawError> {
-        let plugin = &loaded.plugin;
-        let (columns, checks) = (&mut self.columns, &mut self.checks);
-        let mut wrong = None;
-        let called = columns.with_batch(loaded, info, degradation, |batch| match checks {
-            CallChecks::Guarded(guarded) => {
-                let (parameters, variables) = (loaded.parameters.len(), loaded.variables());
-                // SAFETY: as below, and copies of the columns are as long as they.
-                let (called, what) =
-                    unsafe { guarded.call(batch, parameters, variables, |b| plugin.call(call, b)) };
-                wrong = what;
-                called
-            }
-            CallChecks::Repeated => {
-                // SAFETY: as below.
-                let (called, what) =
-                    unsafe { guarded::repeat(batch, loaded.variables(), |b| plugin.call(call, b)) };
-                wrong = what;
-                called
-            }
-            // SAFETY: columns of the batch have `n` values or are null, and live in `self`.
-            _ => unsafe { plugin.call(call, batch) },
-        });
-        if let Some(what) = wrong {
-            return Err(LawError::Trespass {
-                kind: plugin.kind,
-                name: plugin.name.clone(),
-                call,
-                what,
-            });
-        }
-        if self.columns.overrun {
-            let name = plugin.name.clone();
-            return Err(LawError::Overrun {
-                kind: plugin.kind,
-                name,
-                call,
-            });
-        }
-        called?;
-        self.check_outputs(plugin, history, call)
-    }
-
-    /// Checks that all that a call wrote is finite and in its range.
-    fn check_outputs(
-        &mut self,
-        plugin: &Plugin,
-        history: &mut LawHistory,
-        call: Call,
-    ) -> Result<(), LawError> {
-        let state = match call {
-            Call::Commit | Call::Initialise => self.columns.state_not_finite(),
-            _ => None,
-        };
-        let mut outputs = (plugin.kind.spec().outputs)(&mut self.columns.out, call);
-        if let Some(contact) = not_finite(&outputs).or(state) {
-            return Err(LawError::NotFinite {
-                kind: plugin.kind,
-                name: plugin.name.clone(),
-                call,
-                contact: Some(contact),
-            });
-        }
-        if matches!(self.checks, CallChecks::Lenient | CallChecks::Repeated) {
-            return Ok(());
-        }
-        match settle(&mut outputs, plugin.kind, &mut history.largest) {
-            None => Ok(()),
-            Some(outside) => Err(LawError::OutOfRange {
-                kind: plugin.kind,
-                name: plugin.name.clone(),
-                call,
-                contact: Some(outside.contact),
-                column: outside.column,
-                value: outside.value,
-                range: outside.range,
-            }),
-        }
-    }
-
-    /// Adds the interface and the contact, one of the members, to an error of a law.
-    pub(super) fn locate<S: Space>(
-        &self,
-        law: &Interface,
-        network: &Network<S>,
-        source: LawError,
-    ) -> LawError {
-        // A single result for all contacts belongs to no particular contact.
-        let single = self.columns.n == self.members.len();
-        let member = source.contact().filter(|_| single);
-        let contact = member.and_then(|k| network.contacts.get(*self.members.get(k)?));
-        LawError::At {
-            interface: law.name.clone(),
-            bodies: contact.map(|c| c.bodies),
-            source: Box::new(source),
         }
     }
 }

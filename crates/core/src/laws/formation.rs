@@ -1,14 +1,22 @@
 //! Formation of bonds, and memory for the internal variables of new contacts.
 
+use super::batch::{BATCH, Batch, locate};
 use super::columns::StepInfo;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
+use super::gather::{Source, store_states};
 use super::history::LawHistory;
-use super::interface::{BondOpening, Interface};
+use super::interface::{BondOpening, Interface, Loaded};
 use super::library::Call;
 use super::step_result::Velocities;
 use crate::contact::Network;
 use crate::geometry::space::Space;
+use crate::threads::{any_size, map_chunks, pays};
+
+/// Contacts of a task.
+const CHUNK: usize = 4096;
+/// About what it takes to look whether a contact is new (ns).
+const LOOK: f64 = 4.0;
 
 impl LawEvaluator {
     /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
@@ -24,24 +32,27 @@ impl LawEvaluator {
         info: &StepInfo,
     ) -> Result<(), LawError> {
         history.bonded.resize(laws.len(), false);
+        // Times are sums of steps, so that comparing at half a step is safe from rounding.
+        let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
+        let due = |index: usize| {
+            let time = laws[index].bonding_time();
+            !history.bonded[index] && time.is_some_and(|t| reached(info.time, t))
+        };
+        let due: Vec<bool> = (0..laws.len()).map(due).collect();
+        let concerned = self.find_concerned(laws, &due, network);
         for (index, law) in laws.iter().enumerate() {
-            // Times are sums of steps, so that comparing at half a step is safe from rounding.
-            let reached = |now: f64, time: f64| now > time - 0.5 * info.h;
-            let due =
-                !history.bonded[index] && law.bonding_time().is_some_and(|t| reached(info.time, t));
+            let due = due[index];
             history.bonded[index] |= due;
-            let remembers = law.variables_of_contacts() > 0;
-            if !due && !remembers && law.healing.is_none() {
+            let concerned = &concerned[index];
+            if concerned.is_empty() {
                 continue;
             }
+            let remembers = law.variables_of_contacts() > 0;
             let initial = law.initial();
             let memory = &mut network.memory[index];
-            self.members.clear();
-            let mut stretched = Vec::new();
-            for (k, contact) in network.contacts.iter_mut().enumerate() {
-                if contact.law as usize != index {
-                    continue;
-                }
+            let (mut new, mut stretched) = (Vec::new(), Vec::new());
+            for &k in concerned {
+                let contact = &mut network.contacts[k];
                 let area = law.area.area(S::D, contact.radius);
                 let held = |slot: usize| memory.bonds[slot].intact();
                 let intact = contact.memory().is_some_and(held);
@@ -70,7 +81,7 @@ impl LawEvaluator {
                     }
                     None if bonds || remembers => {
                         contact.slot = memory.allocate(bonds, filled, area, &initial);
-                        self.members.push(k);
+                        new.push(k);
                     }
                     _ => {}
                 }
@@ -86,15 +97,62 @@ impl LawEvaluator {
                     network.broken_pairs.remove(&contact.key.pair());
                 }
             }
-            self.initialise(index, law, history, network, info)?;
-            self.store_initial_energy(law, stretched, history, network, info)?;
+            self.initialise(index, law, new, history, network, info)?;
+            self.store_initial_energy(index, law, stretched, history, network, info)?;
         }
         Ok(())
+    }
+
+    /// The contacts of each interface that may become bonds, and those without memory that have internal variables.
+    fn find_concerned<S: Space>(
+        &self,
+        laws: &[Interface],
+        due: &[bool],
+        network: &Network<S>,
+    ) -> Vec<Vec<usize>> {
+        #[derive(Clone, Copy, PartialEq)]
+        enum Concerned {
+            None,
+            New,
+            All,
+        }
+        let both = laws.iter().zip(due);
+        let of_laws: Vec<Concerned> = both
+            .map(|(law, due)| {
+                if *due || law.healing.is_some() {
+                    Concerned::All
+                } else if law.variables_of_contacts() > 0 {
+                    Concerned::New
+                } else {
+                    Concerned::None
+                }
+            })
+            .collect();
+        let mut concerned = vec![Vec::new(); laws.len()];
+        if of_laws.iter().all(|law| *law == Concerned::None) {
+            return concerned;
+        }
+        let divide = pays(self.parallel, network.contacts.len(), LOOK);
+        let parts = map_chunks(divide, &network.contacts, CHUNK, |first, contacts| {
+            let contacts = contacts.iter().zip(first..);
+            let found = contacts.filter(|(contact, _)| match of_laws[contact.law as usize] {
+                Concerned::None => false,
+                Concerned::New => contact.memory().is_none(),
+                Concerned::All => true,
+            });
+            let found = found.map(|(contact, k)| (contact.law as usize, k));
+            found.collect::<Vec<_>>()
+        });
+        for (law, k) in parts.into_iter().flatten() {
+            concerned[law].push(k);
+        }
+        concerned
     }
 
     /// Gives bonds that begin open the energy of their opening, which counts as negative fracture energy.
     fn store_initial_energy<S: Space>(
         &mut self,
+        index: usize,
         law: &Interface,
         stretched: Vec<usize>,
         history: &mut LawHistory,
@@ -104,47 +162,74 @@ impl LawEvaluator {
         let Some(cohesion) = law.cohesion().filter(|_| !stretched.is_empty()) else {
             return Ok(());
         };
-        self.members = stretched;
         let still = Velocities::still(&network.contacts);
-        self.gather(law, network, &still, info);
-        self.columns.damage.fill(0.0);
-        self.columns.size_outputs();
-        self.run(cohesion, history, info, 0.0, Call::Energy)
-            .map_err(|e| self.locate(law, network, e))?;
-        for (at, energy) in self.members.iter().zip(&self.columns.out.energy) {
-            let contact = &network.contacts[*at];
-            let Some(slot) = contact.memory() else {
-                continue;
+        let batches = stretched.chunks(any_size(BATCH)).collect();
+        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info,
             };
-            let bond = &mut network.memory[usize::from(contact.law)].bonds[slot];
-            bond.energy = energy * bond.area;
-            bond.life.given += bond.energy;
-            bond.life.fracture -= bond.energy;
-            network.torn_energy -= bond.energy;
-        }
-        Ok(())
+            batch.gather_before(&source, members, &still, &[cohesion]);
+            batch.columns.damage.fill(0.0);
+            let run = batch.run_afresh(cohesion, info, 0.0, Call::Energy);
+            run.map_err(|e| locate(law, network, members, e))?;
+            Ok(batch.columns.out.energy.clone())
+        };
+        let take = |network: &mut Network<S>, members: &&[usize], energies: Vec<f64>| {
+            for (at, energy) in members.iter().zip(energies) {
+                let contact = &network.contacts[*at];
+                let Some(slot) = contact.memory() else {
+                    continue;
+                };
+                let bond = &mut network.memory[index].bonds[slot];
+                bond.energy = energy * bond.area;
+                bond.life.given += bond.energy;
+                bond.life.fracture -= bond.energy;
+                network.torn_energy -= bond.energy;
+            }
+        };
+        let largest = &mut history.largest;
+        self.pool
+            .evaluate(false, largest, network, batches, of, take)
     }
 
-    /// Calls the laws that initialise internal variables, for new contacts given as members.
+    /// Calls the laws that initialise internal variables, for new contacts.
     fn initialise<S: Space>(
         &mut self,
         index: usize,
         law: &Interface,
+        new: Vec<usize>,
         history: &mut LawHistory,
         network: &mut Network<S>,
         info: &StepInfo,
     ) -> Result<(), LawError> {
-        if self.members.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
+        if new.is_empty() || !law.loaded().any(|l| l.plugin.initialises()) {
             return Ok(());
         }
         let still = Velocities::still(&network.contacts);
-        self.gather(law, network, &still, info);
-        self.columns.size_outputs();
-        for loaded in law.loaded() {
-            self.run(loaded, history, info, 0.0, Call::Initialise)
-                .map_err(|e| self.locate(law, network, e))?;
-        }
-        self.store_variables(index, network);
-        Ok(())
+        let laws: Vec<&Loaded> = law.loaded().collect();
+        let batches = new.chunks(any_size(BATCH)).collect();
+        let of = |network: &_, batch: &mut Batch, members: &mut &[usize]| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info,
+            };
+            batch.gather_before(&source, members, &still, &laws);
+            for loaded in &laws {
+                let run = batch.run_afresh(loaded, info, 0.0, Call::Initialise);
+                run.map_err(|e| locate(law, network, members, e))?;
+            }
+            Ok(batch.new_states(&laws))
+        };
+        let take = |network: &mut _, members: &&[usize], states: Vec<f64>| {
+            store_states(network, index, &laws, members, &states);
+        };
+        let largest = &mut history.largest;
+        self.pool
+            .evaluate(false, largest, network, batches, of, take)
     }
 }

@@ -1,95 +1,338 @@
 //! Fills the columns of a batch from the network.
 
-use super::columns::{Columns, StepInfo, Triple};
-use super::evaluator::LawEvaluator;
-use super::interface::Interface;
+use super::batch::Batch;
+use super::columns::{Contents, StepInfo};
+use super::interface::{Interface, Loaded};
 use super::step_result::{SolvedStep, Velocities};
-use crate::contact::{Contact, Network, Spring};
+use crate::contact::{Bond, Contact, Memory, Network};
 use crate::geometry::space::{Space, VectorLike};
 
-impl LawEvaluator {
-    /// Fills the columns with the state at the start of the step.
-    pub(super) fn gather<S: Space>(
-        &mut self,
-        law: &Interface,
-        network: &Network<S>,
-        before: &Velocities<S>,
-        info: &StepInfo,
-    ) {
-        self.columns.clear();
-        for at in &self.members {
-            let contact = &network.contacts[*at];
-            gather_contact(
-                &mut self.columns,
-                law,
-                network,
-                contact,
-                &before.relative[*at],
-                info,
-                true,
-            );
-            push_vector::<S>(&mut self.columns.impulse, &contact.normal, &contact.impulse);
-            if law.compliant() {
-                let mass = before.effective_mass[*at];
-                let overlap = before.overlap[*at];
-                push_spring(&mut self.columns, contact, &contact.spring, overlap, mass);
-            }
+/// Contacts of one interface, whose columns are filled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a, S: Space> {
+    pub law: &'a Interface,
+    /// Index of the interface.
+    pub index: usize,
+    pub network: &'a Network<S>,
+    pub info: &'a StepInfo,
+}
+
+/// What contacts do in a step.
+#[derive(Debug)]
+pub(super) enum Motion<'a, S: Space> {
+    /// The motion at the start of the step goes on through it, without impulses.
+    Continued(&'a Velocities<S>),
+    /// As solved.
+    Solved(&'a SolvedStep<'a, S>),
+}
+
+impl<S: Space> Motion<'_, S> {
+    /// Theta-averaged relative velocity of a contact (m/s).
+    #[inline]
+    pub fn average(&self, at: usize) -> S::Vector {
+        match self {
+            Self::Continued(before) => before.relative[at],
+            Self::Solved(step) => step.contacts[at].average,
         }
-        self.gather_state(law, network);
     }
 
-    /// Fills the columns with the state at the end of the step: new openings, u_th, the step's impulses.
+    /// What laws are given of a contact at the end of the step.
+    #[inline]
+    pub fn after(&self, at: usize, contact: &Contact<S>, bond: BondAfter<S>) -> Values<S> {
+        let mut values = Values {
+            velocity: self.average(at),
+            impulse: S::Vector::zero(),
+            opening: bond.opening,
+            rotation: bond.rotation,
+            damage: bond.damage,
+            overlap: contact.spring.overlap,
+            effective_mass: 0.0,
+            spring: contact.spring.force_t,
+            spring_before: contact.spring.force_t,
+        };
+        if let Self::Solved(step) = self {
+            values.impulse = step.contacts[at].solution.impulse;
+            if let Some(step) = step.spring(at) {
+                values.overlap = step.spring.overlap;
+                values.spring = step.spring.force_t;
+                values.spring_before = step.force_before;
+            }
+        }
+        values
+    }
+}
+
+/// A bond at the end of a step; without one zero but for the damage.
+#[derive(Debug)]
+pub(super) struct BondAfter<S: Space> {
+    pub opening: (f64, S::Tangent),
+    pub rotation: S::Spin,
+    pub damage: f64,
+}
+
+impl<S: Space> BondAfter<S> {
+    /// The bond of a contact as it is.
+    #[inline]
+    pub fn of(bond: Option<&Bond<S>>, rotation: S::Spin) -> Self {
+        match bond {
+            Some(bond) => Self {
+                opening: (bond.opening_n, bond.opening_t),
+                rotation,
+                damage: bond.damage,
+            },
+            None => Self {
+                opening: (0.0, S::Tangent::zero()),
+                rotation,
+                damage: 1.0,
+            },
+        }
+    }
+}
+
+/// What the columns show of a contact, beside its geometry and its age.
+#[derive(Debug)]
+pub(super) struct Values<S: Space> {
+    pub velocity: S::Vector,
+    pub impulse: S::Vector,
+    pub opening: (f64, S::Tangent),
+    pub rotation: S::Spin,
+    pub damage: f64,
+    pub overlap: f64,
+    pub effective_mass: f64,
+    pub spring: S::Tangent,
+    pub spring_before: S::Tangent,
+}
+
+/// Contacts ahead of which a bond is prefetched: bonds are in the order in which they formed.
+pub(super) const AHEAD: usize = 8;
+
+/// Prefetches what laws see of the bond of a contact.
+#[inline(always)]
+pub(super) fn prefetch_bond<S: Space>(memory: &Memory<S>, contact: &Contact<S>) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(bond) = memory.bonds.get(contact.slot as usize) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: prefetching has no effect on memory.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(bond).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (memory, contact);
+}
+
+impl Batch {
+    /// Fills the columns with the state at the start of the step: the damage is that of the step's impulses.
+    pub(super) fn gather_before<S: Space>(
+        &mut self,
+        source: &Source<'_, S>,
+        members: &[usize],
+        before: &Velocities<S>,
+        laws: &[&Loaded],
+    ) {
+        let compliant = source.law.compliant();
+        self.fill(
+            source,
+            members,
+            laws,
+            false,
+            |at, contact, bond, rotation| {
+                let bond = BondAfter {
+                    damage: bond.map_or(1.0, |b| b.step_damage),
+                    ..BondAfter::of(bond, rotation)
+                };
+                let of_springs = |list: &[f64]| if compliant { list[at] } else { 0.0 };
+                Values {
+                    velocity: before.relative[at],
+                    impulse: contact.impulse,
+                    opening: bond.opening,
+                    rotation: bond.rotation,
+                    damage: bond.damage,
+                    overlap: of_springs(&before.overlap),
+                    effective_mass: of_springs(&before.effective_mass),
+                    spring: contact.spring.force_t,
+                    spring_before: contact.spring.force_t,
+                }
+            },
+        );
+    }
+
+    /// Fills the columns with the state at the end of the step: u_th, the step's impulses; bonds are as the network has them.
     pub(super) fn gather_after<S: Space>(
         &mut self,
-        law: &Interface,
-        network: &Network<S>,
-        step: &SolvedStep<'_, S>,
+        source: &Source<'_, S>,
+        members: &[usize],
+        motion: &Motion<'_, S>,
+        laws: &[&Loaded],
     ) {
-        self.columns.clear();
-        for at in &self.members {
-            let (contact, contact_step) = (&network.contacts[*at], &step.contacts[*at]);
-            gather_contact(
-                &mut self.columns,
-                law,
-                network,
-                contact,
-                &contact_step.average,
-                step.info,
-                false,
-            );
-            push_vector::<S>(
-                &mut self.columns.impulse,
-                &contact.normal,
-                &contact_step.solution.impulse,
-            );
-            if law.compliant() {
-                let spring = step.spring(*at).map_or(contact.spring, |s| s.spring);
-                push_spring(&mut self.columns, contact, &spring, spring.overlap, 0.0);
-                let before = step.spring(*at).map_or(spring.force_t, |s| s.force_before);
-                let before = S::components(&contact.normal, &before);
-                for (column, x) in self.columns.spring_before.iter_mut().zip(before) {
-                    column.push(x);
+        self.fill(
+            source,
+            members,
+            laws,
+            true,
+            |at, contact, bond, rotation| motion.after(at, contact, BondAfter::of(bond, rotation)),
+        );
+    }
+
+    /// Fills the columns with what `of` gives of each member, its bond and the bond's rotation at the start of the step, and the internal
+    /// variables of some laws.
+    #[inline]
+    pub(super) fn fill<S: Space>(
+        &mut self,
+        source: &Source<'_, S>,
+        members: &[usize],
+        laws: &[&Loaded],
+        after: bool,
+        mut of: impl FnMut(usize, &Contact<S>, Option<&Bond<S>>, S::Spin) -> Values<S>,
+    ) {
+        let Source {
+            law,
+            index,
+            network,
+            info,
+        } = *source;
+        let contents = Contents {
+            spatial: S::D == 3,
+            rotates: law.rotates(),
+            compliant: law.compliant(),
+            after,
+        };
+        let n = members.len();
+        let memory = &network.memory[index];
+        let Self {
+            columns,
+            open_gap,
+            spring_gap,
+            slots,
+            ..
+        } = self;
+        columns.begin(n, contents);
+        open_gap.resize(n, 0.0);
+        spring_gap.resize(n, 0.0);
+        slots.resize(n, 0);
+        let (open_gap, spring_gap, slots) =
+            (&mut open_gap[..n], &mut spring_gap[..n], &mut slots[..n]);
+        let (gap, area, radius) = (
+            &mut columns.gap[..n],
+            &mut columns.area[..n],
+            &mut columns.radius[..n],
+        );
+        let (age, pressed, damage) = (
+            &mut columns.age[..n],
+            &mut columns.pressed[..n],
+            &mut columns.damage[..n],
+        );
+        let [opening_n, opening_t1, opening_t2] = &mut columns.opening;
+        let [velocity_n, velocity_t1, velocity_t2] = &mut columns.velocity;
+        let [impulse_n, impulse_t1, impulse_t2] = &mut columns.impulse;
+        let (opening_n, opening_t1) = (&mut opening_n[..n], &mut opening_t1[..n]);
+        let (velocity_n, velocity_t1) = (&mut velocity_n[..n], &mut velocity_t1[..n]);
+        let (impulse_n, impulse_t1) = (&mut impulse_n[..n], &mut impulse_t1[..n]);
+        for (k, at) in members.iter().enumerate() {
+            if let Some(ahead) = members.get(k + AHEAD) {
+                prefetch_bond(memory, &network.contacts[*ahead]);
+            }
+            let contact = &network.contacts[*at];
+            let (bond, rotation) = match contact.memory() {
+                Some(slot) if contents.rotates => {
+                    (Some(&memory.bonds[slot]), memory.rotations[slot])
+                }
+                Some(slot) => (Some(&memory.bonds[slot]), S::Spin::zero()),
+                None => (None, S::Spin::zero()),
+            };
+            slots[k] = contact.slot;
+            let filled = bond.filter(|b| b.intact()).map_or(0.0, |b| b.gap);
+            open_gap[k] = contact.gap - filled;
+            spring_gap[k] = contact.gap - filled.max(0.0);
+            gap[k] = contact.gap;
+            area[k] = match bond {
+                Some(bond) => bond.area,
+                None => law.area.area(S::D, contact.radius),
+            };
+            radius[k] = contact.radius;
+            age[k] = info.time - contact.formed_at;
+            pressed[k] = contact.compression_time;
+            let values = of(*at, contact, bond, rotation);
+            let n = &contact.normal;
+            damage[k] = values.damage;
+            let [t1, t2] = S::components(n, &values.opening.1);
+            (opening_n[k], opening_t1[k]) = (values.opening.0, t1);
+            let [v1, v2] = S::components(n, &S::tangential(n, &values.velocity));
+            (velocity_n[k], velocity_t1[k]) = (n.dot(&values.velocity), v1);
+            let [p1, p2] = S::components(n, &S::tangential(n, &values.impulse));
+            (impulse_n[k], impulse_t1[k]) = (n.dot(&values.impulse), p1);
+            if S::D == 3 {
+                (opening_t2[k], velocity_t2[k], impulse_t2[k]) = (t2, v2, p2);
+            }
+            if contents.rotates {
+                let rotation = S::spin_components(n, &values.rotation);
+                for (column, x) in columns.rotation.iter_mut().zip(rotation) {
+                    column[k] = x;
+                }
+            }
+            if contents.compliant {
+                columns.overlap[k] = values.overlap;
+                columns.effective_mass[k] = values.effective_mass;
+                let force = S::components(n, &values.spring);
+                for (column, x) in columns.spring.iter_mut().zip(force) {
+                    column[k] = x;
+                }
+                if after {
+                    let force = S::components(n, &values.spring_before);
+                    for (column, x) in columns.spring_before.iter_mut().zip(force) {
+                        column[k] = x;
+                    }
                 }
             }
         }
-        self.gather_state(law, network);
+        for loaded in laws {
+            for v in loaded.first_variable..loaded.first_variable + loaded.variables() {
+                let values = &memory.variables[v];
+                let [state, next] = columns.fit_state(v);
+                for (x, slot) in state.iter_mut().zip(&*slots) {
+                    *x = match *slot {
+                        Contact::<S>::NO_MEMORY => 0.0,
+                        slot => values[slot as usize],
+                    };
+                }
+                next.copy_from_slice(state);
+            }
+        }
     }
 
-    fn gather_state<S: Space>(&mut self, law: &Interface, network: &Network<S>) {
-        self.columns.n = self.members.len();
-        for v in 0..law.variables() {
-            let column: Vec<f64> = match self.members.first() {
-                // Those of a batch belong to one interface.
-                Some(first) => {
-                    let law = network.contacts[*first].law as usize;
-                    let values = &network.memory[law].variables[v];
-                    let slots = self.members.iter().map(|at| network.contacts[*at].memory());
-                    slots.map(|s| s.map_or(0.0, |s| values[s])).collect()
+    /// The new internal variables of some laws, one column after the other.
+    pub(super) fn new_states(&self, laws: &[&Loaded]) -> Vec<f64> {
+        let count: usize = laws.iter().map(|l| l.variables()).sum();
+        let mut states = Vec::with_capacity(count * self.columns.n);
+        for loaded in laws {
+            let columns = self.columns.state_next.iter().skip(loaded.first_variable);
+            for column in columns.take(loaded.variables()) {
+                states.extend_from_slice(column);
+            }
+        }
+        states
+    }
+}
+
+/// Stores the new internal variables of some laws for contacts of one interface, as [`Batch::new_states`] gives them.
+pub(super) fn store_states<S: Space>(
+    network: &mut Network<S>,
+    index: usize,
+    laws: &[&Loaded],
+    members: &[usize],
+    states: &[f64],
+) {
+    let Network {
+        contacts, memory, ..
+    } = network;
+    let mut columns = states.chunks_exact(members.len().max(1));
+    for loaded in laws {
+        for v in loaded.first_variable..loaded.first_variable + loaded.variables() {
+            let Some(column) = columns.next() else { return };
+            let stored = &mut memory[index].variables[v];
+            for (at, x) in members.iter().zip(column) {
+                if let Some(slot) = contacts[*at].memory() {
+                    stored[slot] = *x;
                 }
-                None => Vec::new(),
-            };
-            self.columns.state_next.push(column.clone());
-            self.columns.state.push(column);
+            }
         }
     }
 }
@@ -103,69 +346,5 @@ pub(super) fn contact_area<S: Space>(
     match network.bond(contact) {
         Some(bond) => bond.area,
         None => law.area.area(S::D, contact.radius),
-    }
-}
-
-#[inline]
-fn push_vector<S: Space>(triple: &mut Triple, n: &S::Vector, v: &S::Vector) {
-    let [t1, t2] = S::components(n, &S::tangential(n, v));
-    triple[0].push(n.dot(v));
-    triple[1].push(t1);
-    triple[2].push(t2);
-}
-
-/// Fills the columns of a compliant contact.
-fn push_spring<S: Space>(
-    columns: &mut Columns,
-    contact: &Contact<S>,
-    spring: &Spring<S>,
-    overlap: f64,
-    effective_mass: f64,
-) {
-    columns.overlap.push(overlap);
-    columns.effective_mass.push(effective_mass);
-    let force = S::components(&contact.normal, &spring.force_t);
-    for (column, x) in columns.spring.iter_mut().zip(force) {
-        column.push(x);
-    }
-}
-
-#[inline]
-fn gather_contact<S: Space>(
-    columns: &mut Columns,
-    law: &Interface,
-    network: &Network<S>,
-    contact: &Contact<S>,
-    velocity: &S::Vector,
-    info: &StepInfo,
-    // At the start of a step laws see the damage used in its impulse.
-    start: bool,
-) {
-    columns.gap.push(contact.gap);
-    columns.area.push(contact_area(law, network, contact));
-    columns.radius.push(contact.radius);
-    columns.age.push(info.time - contact.formed_at);
-    columns.pressed.push(contact.compression_time);
-    push_vector::<S>(&mut columns.velocity, &contact.normal, velocity);
-    let (opening, damage) = match network.bond(contact) {
-        Some(bond) => {
-            let [t1, t2] = S::components(&contact.normal, &bond.opening_t);
-            let damage = if start { bond.step_damage } else { bond.damage };
-            ([bond.opening_n, t1, t2], damage)
-        }
-        None => ([0.0; 3], 1.0),
-    };
-    for (column, x) in columns.opening.iter_mut().zip(opening) {
-        column.push(x);
-    }
-    columns.damage.push(damage);
-    if law.rotates() {
-        let memory = &network.memory[contact.law as usize];
-        let rotation = contact.memory().map_or([0.0; 3], |slot| {
-            S::spin_components(&contact.normal, &memory.rotations[slot])
-        });
-        for (column, x) in columns.rotation.iter_mut().zip(rotation) {
-            column.push(x);
-        }
     }
 }

@@ -1,4 +1,5 @@
 //! Interface laws: plugins found by name, combined by the case, and called in batches.
+mod batch;
 pub mod bench;
 mod bonds;
 pub mod built_in;

@@ -1,9 +1,10 @@
 //! Prepare: the laws write friction, cohesion and the linearised bond of every contact into its standard local form.
 
+use super::batch::{BATCH, Batch, locate};
 use super::columns::{Outputs, StepInfo};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
-use super::gather::contact_area;
+use super::gather::{Source, contact_area};
 use super::history::LawHistory;
 use super::interface::{Interface, Loaded};
 use super::library::Call;
@@ -13,12 +14,14 @@ use crate::contact::{Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::solve::MomentForm;
 use crate::solve::form::{ContactForm, Elastic};
-use crate::threads::{map_chunks_mut, pays};
+use crate::threads::{any_size, map_chunks_mut, pays};
 
 /// Contacts of a task.
 const CHUNK: usize = 1024;
 /// About what it takes to apply friction to a contact (ns).
 const APPLY: f64 = 10.0;
+/// About what laws that vary take for a contact (ns).
+const PREPARE: f64 = 80.0;
 
 /// Friction and restitution of one contact.
 #[derive(Clone, Copy, Default)]
@@ -46,20 +49,84 @@ impl Friction {
             spinning: out.spinning[k],
         }
     }
+
+    /// Whether it acts against rotation.
+    #[inline]
+    fn rotates(&self) -> bool {
+        self.rolling > 0.0 || self.spinning > 0.0
+    }
 }
 
-/// The contacts of a step before the solve, and their forms, which the laws complete.
-struct Preparation<'a, S: Space> {
-    network: &'a Network<S>,
-    before: &'a Velocities<S>,
-    info: &'a StepInfo,
+/// Contacts of a batch, and the forms and springs of all contacts from the first of them to the last, which no other batch has.
+struct Task<'a, S: Space> {
+    members: &'a [usize],
+    first: usize,
     forms: &'a mut [ContactForm<S>],
     springs: &'a mut [Option<SpringForm<S>>],
-    moments: &'a mut Vec<MomentForm<S>>,
+}
+
+/// Divides contacts in ascending order into batches, with their forms and springs.
+fn tasks<'a, S: Space>(
+    members: &'a [usize],
+    mut forms: &'a mut [ContactForm<S>],
+    mut springs: &'a mut [Option<SpringForm<S>>],
+) -> Vec<Task<'a, S>> {
+    let mut first = 0;
+    let batches = members.chunks(any_size(BATCH));
+    let task = batches.map(|members| {
+        let count = members.last().map_or(0, |last| last + 1 - first);
+        let (own, rest) = std::mem::take(&mut forms).split_at_mut(count);
+        forms = rest;
+        let springs_of = count.min(springs.len());
+        let (own_springs, rest) = std::mem::take(&mut springs).split_at_mut(springs_of);
+        springs = rest;
+        let task = Task {
+            members,
+            first,
+            forms: own,
+            springs: own_springs,
+        };
+        first += count;
+        task
+    });
+    task.collect()
+}
+
+/// What the laws of an interface are asked for.
+struct Asked<'a, S: Space> {
+    law: &'a Interface,
+    index: usize,
+    info: &'a StepInfo,
+    before: &'a Velocities<S>,
+    contact: ContactAsked,
+    cohesion: Option<&'a Loaded>,
+    /// Whether the damage at the middle of the step is predicted.
+    predicts: bool,
+}
+
+/// Where friction and restitution come from.
+enum ContactAsked {
+    /// They are in the forms.
+    Done,
+    /// The same for all contacts.
+    Constant(Friction),
+    /// The contact law.
+    Each,
+}
+
+/// What a batch gives beside forms and springs.
+struct Prepared<S: Space> {
+    moments: Vec<MomentForm<S>>,
+    held_back: Vec<usize>,
+    /// Predicted damage by the place in memory.
+    predicted: Vec<(u32, f64)>,
 }
 
 impl LawEvaluator {
-    /// Completes the geometric forms of the contacts with the outputs of the laws.
+    /// Completes the geometric forms of the contacts with the outputs of the laws. Contacts are as at the last [`Self::select`].
+    ///
+    /// If `predicts`, the impulses of every intact bond are those of the mean of its damage and of the damage that the law gives for the
+    /// opening which the motion at the start of the step leads to.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -68,143 +135,285 @@ impl LawEvaluator {
         &mut self,
         laws: &[Interface],
         history: &mut LawHistory,
-        network: &Network<S>,
+        network: &mut Network<S>,
         before: &Velocities<S>,
         info: &StepInfo,
+        predicts: bool,
         forms: &mut [ContactForm<S>],
         springs: &mut Vec<Option<SpringForm<S>>>,
         moments: &mut Vec<MomentForm<S>>,
     ) -> Result<(), LawError> {
         moments.clear();
-        springs.clear();
+        // Where all contacts are springs, all are set below.
+        if !laws.iter().all(Interface::compliant) || springs.len() != forms.len() {
+            springs.clear();
+        }
         if laws.iter().any(Interface::compliant) {
             springs.resize(forms.len(), None);
         }
         self.held_back.clear();
-        let mut step = Preparation {
-            network,
-            before,
-            info,
-            forms,
-            springs,
-            moments,
-        };
         for (index, law) in laws.iter().enumerate() {
-            let cohesive = self.select_cohesive_first(index, law, network);
-            if self.members.is_empty() {
+            let members = &self.members[index];
+            if members.all.is_empty() {
                 continue;
             }
-            let cohesion = law.cohesion().filter(|_| cohesive > 0);
+            // Cohesion with an opening acts on intact bonds. Without one it acts on every contact, but not on those that are there for
+            // their speed.
+            let (cohesive, others) = match law.opens() {
+                true => (&members.bonded[..], &members.loose[..]),
+                false => (members.near(), &members.beyond[..]),
+            };
+            let mut asked = Asked {
+                law,
+                index,
+                info,
+                before,
+                contact: ContactAsked::Each,
+                cohesion: law.cohesion(),
+                predicts: predicts && law.opens() && law.damages(),
+            };
             if law.constant_contact() {
                 // One answer for all contacts, and then cohesion adds to it.
-                let mut first_moment = step.moments.len();
-                self.prepare_contact(law, history, &mut step)?;
-                let Some(cohesion) = cohesion else { continue };
-                self.members.truncate(cohesive);
-                self.in_batches(|batch| {
-                    batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)?;
-                    first_moment += batch.members.len();
-                    Ok(())
-                })?;
-                continue;
-            }
-            let rest = self.members.split_off(cohesive);
-            self.in_batches(|batch| {
-                let first_moment = step.moments.len();
-                batch.prepare_contact(law, history, &mut step)?;
-                let Some(cohesion) = cohesion else {
-                    return Ok(());
+                let friction = self.constant_friction(law, info, history)?;
+                asked.contact = if law.rotates() || friction.rotates() {
+                    ContactAsked::Constant(friction)
+                } else {
+                    let held_back =
+                        apply_constant(&asked, network, &friction, forms, self.parallel);
+                    self.held_back.extend(held_back);
+                    ContactAsked::Done
                 };
-                batch.prepare_cohesion(law, cohesion, history, &mut step, first_moment)
-            })?;
-            self.members = rest;
-            self.in_batches(|batch| batch.prepare_contact(law, history, &mut step))?;
-        }
-        // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
-        for (form, _) in step
-            .forms
-            .iter_mut()
-            .zip(step.springs.iter())
-            .filter(|(_, s)| s.is_some())
-        {
-            form.shift_n += form.compliance[0] * form.tension;
+            }
+            let largest = &mut history.largest;
+            for members in [cohesive, others] {
+                if asked.idle() {
+                    continue;
+                }
+                let divide = self.divides(members.len(), PREPARE);
+                let tasks = tasks(members, forms, springs);
+                let of = |network: &_, batch: &mut Batch, task: &mut Task<S>| {
+                    batch.prepare(&asked, network, task)
+                };
+                let held_back = &mut self.held_back;
+                let take = |network: &mut Network<S>, _: &_, mut part: Prepared<S>| {
+                    moments.append(&mut part.moments);
+                    held_back.append(&mut part.held_back);
+                    for (slot, damage) in part.predicted {
+                        network.memory[index].bonds[slot as usize].step_damage = damage;
+                    }
+                };
+                self.pool
+                    .evaluate(divide, largest, network, tasks, of, take)?;
+                (asked.cohesion, asked.predicts) = (None, false);
+            }
         }
         Ok(())
     }
 
-    /// Selects the contacts of an interface, first those on which its cohesion acts; returns their number.
-    fn select_cohesive_first<S: Space>(
-        &mut self,
-        index: usize,
+    /// Friction and restitution of a law that gives the same for all contacts.
+    fn constant_friction(
+        &self,
         law: &Interface,
-        network: &Network<S>,
-    ) -> usize {
-        let of_law = |c: &Contact<S>| c.law as usize == index;
-        if law.opens() {
-            // Cohesion with an opening acts on intact bonds.
-            let bonded = |c: &Contact<S>| network.bond(c).is_some_and(|b| b.intact());
-            self.select(network, |c| of_law(c) && bonded(c));
-            let cohesive = self.members.len();
-            self.select_more(network, |c| of_law(c) && !bonded(c));
-            return cohesive;
+        info: &StepInfo,
+        history: &mut LawHistory,
+    ) -> Result<Friction, LawError> {
+        let of = |_: &Friction, batch: &mut Batch, (): &mut ()| {
+            batch.columns.clear();
+            batch.columns.n = 1;
+            let run = batch.run_afresh(law.contact(), info, 0.0, Call::Prepare);
+            run.map_err(|e| LawError::At {
+                interface: law.name.clone(),
+                bodies: None,
+                source: Box::new(e),
+            })?;
+            Ok(Friction::of(&batch.columns.out, 0))
+        };
+        let mut given = Friction::default();
+        let largest = &mut history.largest;
+        self.pool.evaluate(
+            false,
+            largest,
+            &mut given,
+            vec![()],
+            of,
+            |given, (), friction| {
+                *given = friction;
+            },
+        )?;
+        Ok(given)
+    }
+}
+
+/// Applies friction and restitution that are the same for all contacts of an interface; returns those held back.
+fn apply_constant<S: Space>(
+    asked: &Asked<'_, S>,
+    network: &Network<S>,
+    friction: &Friction,
+    forms: &mut [ContactForm<S>],
+    parallel: bool,
+) -> Vec<usize> {
+    let Asked {
+        law, index, info, ..
+    } = *asked;
+    let divide = pays(parallel, network.contacts.len(), APPLY);
+    let held_back = map_chunks_mut(divide, forms, CHUNK, |first, forms| {
+        let mut held_back = Vec::new();
+        for (form, at) in forms.iter_mut().zip(first..) {
+            let contact = &network.contacts[at];
+            if contact.law as usize != index {
+                continue;
+            }
+            let area = contact_area(law, network, contact);
+            let (gap, before) = (network.open_gap(contact), &asked.before.relative[at]);
+            if apply_friction(form, friction, contact, gap, before, area, info) {
+                held_back.push(at);
+            }
         }
-        self.select(network, |c| of_law(c) && !c.beyond);
-        // Without an opening the cohesion acts on every contact, but not on those that are there for their speed.
-        let cohesive = law.cohesion().map_or(0, |_| self.members.len());
-        self.select_more(network, |c| of_law(c) && c.beyond);
-        cohesive
+        held_back
+    });
+    held_back.into_iter().flatten().collect()
+}
+
+impl<S: Space> Asked<'_, S> {
+    /// Whether there is nothing to ask for.
+    fn idle(&self) -> bool {
+        matches!(self.contact, ContactAsked::Done) && self.cohesion.is_none()
+    }
+}
+
+impl Batch {
+    /// Applies the laws of an interface to the forms of a batch.
+    fn prepare<S: Space>(
+        &mut self,
+        asked: &Asked<'_, S>,
+        network: &Network<S>,
+        task: &mut Task<'_, S>,
+    ) -> Result<Prepared<S>, LawError> {
+        let Asked {
+            law,
+            index,
+            info,
+            before,
+            cohesion,
+            ..
+        } = *asked;
+        let source = Source {
+            law,
+            index,
+            network,
+            info,
+        };
+        let mut prepared = Prepared {
+            moments: Vec::new(),
+            held_back: Vec::new(),
+            predicted: Vec::new(),
+        };
+        if asked.predicts {
+            prepared.predicted = self.predict_damage(&source, task.members, before)?;
+            let memory = &network.memory[index];
+            for (slot, damage) in &mut prepared.predicted {
+                let bond = &memory.bonds[*slot as usize];
+                *damage = 0.5 * (bond.damage + (bond.step_damage + *damage));
+            }
+        }
+        let mut acting: Vec<&Loaded> = Vec::with_capacity(2);
+        if let ContactAsked::Each = asked.contact {
+            acting.push(law.contact());
+        }
+        acting.extend(cohesion);
+        if !acting.is_empty() {
+            self.gather_before(&source, task.members, before, &acting);
+            let predicted = prepared.predicted.iter().map(|(_, damage)| *damage);
+            let columns = self.columns.damage.iter_mut();
+            columns.zip(predicted).for_each(|(x, damage)| *x = damage);
+        }
+        match &asked.contact {
+            ContactAsked::Done => {}
+            ContactAsked::Constant(friction) => {
+                self.apply_contact(asked, network, Some(friction), task, &mut prepared);
+            }
+            ContactAsked::Each => {
+                self.run_afresh(law.contact(), info, 0.0, Call::Prepare)
+                    .map_err(|e| locate(law, network, task.members, e))?;
+                self.apply_contact(asked, network, None, task, &mut prepared);
+            }
+        }
+        if let Some(cohesion) = cohesion {
+            self.run_afresh(cohesion, info, 0.0, Call::Prepare)
+                .map_err(|e| locate(law, network, task.members, e))?;
+            self.apply_cohesions(asked, network, task, &mut prepared);
+        }
+        if law.compliant() {
+            // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
+            for at in task.members {
+                let form = &mut task.forms[at - task.first];
+                form.shift_n += form.compliance[0] * form.tension;
+            }
+        }
+        Ok(prepared)
     }
 
-    /// Applies the contact law of an interface to the members.
-    fn prepare_contact<S: Space>(
-        &mut self,
-        law: &Interface,
-        history: &mut LawHistory,
-        step: &mut Preparation<S>,
-    ) -> Result<(), LawError> {
-        let (network, info) = (step.network, step.info);
-        let constant = law.constant_contact();
-        if constant {
-            self.columns.clear();
-            self.columns.n = 1;
-        } else {
-            self.gather(law, network, step.before, info);
+    /// Applies what the cohesion law gave to the forms of a batch.
+    fn apply_cohesions<S: Space>(
+        &self,
+        asked: &Asked<'_, S>,
+        network: &Network<S>,
+        task: &mut Task<'_, S>,
+        prepared: &mut Prepared<S>,
+    ) {
+        let Asked {
+            law, info, before, ..
+        } = *asked;
+        for (k, at) in task.members.iter().enumerate() {
+            let form = &mut task.forms[at - task.first];
+            self.apply_cohesion(law, k, &before.relative[*at], info, form);
         }
-        self.columns.size_outputs();
-        self.run(law.contact(), history, info, 0.0, Call::Prepare)
-            .map_err(|e| self.locate(law, network, e))?;
-        let (network, before) = (step.network, step.before);
-        if constant && !law.compliant() && !law.rotates() {
-            let friction = Friction::of(&self.columns.out, 0);
-            if friction.rolling == 0.0 && friction.spinning == 0.0 {
-                self.apply_constant(law, &friction, step);
-                return Ok(());
+        if law.rotates() {
+            for (k, form) in prepared.moments.iter_mut().enumerate() {
+                let at = form.contact as usize;
+                let normal = &network.contacts[at].normal;
+                self.apply_bending(k, normal, &before.turning[at], info, form);
             }
         }
-        for (k, at) in self.members.iter().enumerate() {
-            let mut friction = Friction::of(&self.columns.out, if constant { 0 } else { k });
-            let area = contact_area(law, network, &network.contacts[*at]);
-            if law.compliant() {
-                let spring = self.spring(k, &network.contacts[*at], network);
-                spring.apply(info.h, &mut step.forms[*at]);
+    }
+
+    /// Applies what the contact law gave, or the same to all, to the forms of a batch.
+    fn apply_contact<S: Space>(
+        &self,
+        asked: &Asked<'_, S>,
+        network: &Network<S>,
+        constant: Option<&Friction>,
+        task: &mut Task<'_, S>,
+        prepared: &mut Prepared<S>,
+    ) {
+        let Asked { law, info, .. } = *asked;
+        let (rotates, compliant) = (law.rotates(), law.compliant());
+        let gathered = constant.is_none() || asked.cohesion.is_some();
+        for (k, at) in task.members.iter().enumerate() {
+            let (contact, form) = (&network.contacts[*at], &mut task.forms[at - task.first]);
+            let mut friction = match constant {
+                Some(friction) => *friction,
+                None => Friction::of(&self.columns.out, k),
+            };
+            let (area, gap) = if gathered {
+                (self.columns.area[k], self.open_gap[k])
+            } else {
+                let area = contact_area(law, network, contact);
+                (area, network.open_gap(contact))
+            };
+            if compliant {
+                let spring = self.spring(k, contact);
+                spring.apply(info.h, form);
                 // A spring rebounds by its damping.
                 (friction.e_n, friction.e_t) = (0.0, 0.0);
-                step.springs[*at] = Some(spring);
+                task.springs[at - task.first] = Some(spring);
             }
-            let held_back = apply_friction(
-                &mut step.forms[*at],
-                &friction,
-                &network.contacts[*at],
-                network.open_gap(&network.contacts[*at]),
-                &before.relative[*at],
-                area,
-                info,
-            );
-            if held_back {
-                self.held_back.push(*at);
+            let before = &asked.before.relative[*at];
+            if apply_friction(form, &friction, contact, gap, before, area, info) {
+                prepared.held_back.push(*at);
             }
-            if law.rotates() || friction.rolling > 0.0 || friction.spinning > 0.0 {
-                step.moments.push(MomentForm {
+            if rotates || friction.rotates() {
+                prepared.moments.push(MomentForm {
                     contact: *at as u32,
                     rolling: friction.rolling,
                     spinning: friction.spinning,
@@ -213,88 +422,19 @@ impl LawEvaluator {
                     b_bend: 0.0,
                     loss_twist: 0.0,
                     loss_bend: 0.0,
-                    moment: network.contacts[*at].moment,
+                    moment: contact.moment,
                 });
             }
         }
-        Ok(())
-    }
-
-    /// Applies friction and restitution that are the same for all contacts of an interface, which are the members.
-    fn apply_constant<S: Space>(
-        &mut self,
-        law: &Interface,
-        friction: &Friction,
-        step: &mut Preparation<S>,
-    ) {
-        let (network, before, info) = (step.network, step.before, step.info);
-        let index = network.contacts[self.members[0]].law;
-        let divide = pays(self.parallel, network.contacts.len(), APPLY);
-        let held_back = map_chunks_mut(divide, step.forms, CHUNK, |first, forms| {
-            let mut held_back = Vec::new();
-            for (form, at) in forms.iter_mut().zip(first..) {
-                let contact = &network.contacts[at];
-                if contact.law != index {
-                    continue;
-                }
-                let area = contact_area(law, network, contact);
-                let (gap, before) = (network.open_gap(contact), &before.relative[at]);
-                if apply_friction(form, friction, contact, gap, before, area, info) {
-                    held_back.push(at);
-                }
-            }
-            held_back
-        });
-        self.held_back.extend(held_back.into_iter().flatten());
-    }
-
-    /// Applies the cohesion law of an interface to the members, and to the moments from `first_moment` on.
-    fn prepare_cohesion<S: Space>(
-        &mut self,
-        law: &Interface,
-        cohesion: &Loaded,
-        history: &mut LawHistory,
-        step: &mut Preparation<S>,
-        first_moment: usize,
-    ) -> Result<(), LawError> {
-        let (network, info) = (step.network, step.info);
-        let count = self.members.len();
-        if law.constant_contact() {
-            self.gather(law, network, step.before, info);
-        } else {
-            // The members are the first in the columns of the contact law.
-            self.columns.truncate(count);
-        }
-        self.columns.size_outputs();
-        self.run(cohesion, history, info, 0.0, Call::Prepare)
-            .map_err(|e| self.locate(law, network, e))?;
-        for (k, at) in self.members.iter().enumerate() {
-            let before = &step.before.relative[*at];
-            self.apply_cohesion(law, k, before, info, &mut step.forms[*at]);
-        }
-        if law.rotates() {
-            let moments = step.moments.iter_mut().skip(first_moment);
-            for (k, form) in moments.enumerate().take(count) {
-                let at = form.contact as usize;
-                let normal = &network.contacts[at].normal;
-                self.apply_bending(k, normal, &step.before.turning[at], info, form);
-            }
-        }
-        Ok(())
     }
 
     /// The spring of a member, as its law gave it.
-    fn spring<S: Space>(
-        &self,
-        k: usize,
-        contact: &Contact<S>,
-        network: &Network<S>,
-    ) -> SpringForm<S> {
+    fn spring<S: Space>(&self, k: usize, contact: &Contact<S>) -> SpringForm<S> {
         let (columns, out) = (&self.columns, &self.columns.out);
         let [force_n, t1, t2] = &out.contact_force;
         let t2 = if S::D == 3 { t2[k] } else { 0.0 };
         SpringForm {
-            gap: network.spring_gap(contact),
+            gap: self.spring_gap[k],
             overlap: columns.overlap[k],
             force_n: force_n[k],
             stiffness_n: out.contact_stiffness_n[k],

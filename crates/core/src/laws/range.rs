@@ -30,21 +30,61 @@ impl Range {
     }
 
     /// Returns the first value outside the range by more than rounding, and clamps the others to it. Almost
-    /// always there is none: all values are tested without branches before one is searched for.
-    fn settle(self, column: &mut [f64], largest: &mut f64) -> Option<usize> {
+    /// always the survey of the column tells that there is none.
+    fn settle(self, column: &mut [f64], survey: &Survey, largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
-            *largest = column.iter().fold(*largest, |most, x| most.max(*x));
+            *largest = largest.max(survey.most);
         }
         let ([low, high], slack) = self.bounds(*largest);
-        let beyond = |x: f64, by: f64| (x < low - by) | (x > high + by);
-        if !column.iter().fold(false, |any, x| any | beyond(*x, 0.0)) {
+        if survey.least >= low && survey.most <= high {
             return None;
         }
+        let beyond = |x: f64, by: f64| (x < low - by) | (x > high + by);
         let outside = column.iter().position(|x| beyond(*x, slack));
         if outside.is_none() {
             column.iter_mut().for_each(|x| *x = x.clamp(low, high));
         }
         outside
+    }
+}
+
+/// What one pass without branches tells of a column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Survey {
+    /// Whether all values are finite.
+    pub finite: bool,
+    /// Least value; infinity of an empty column. As the largest, it has a meaning if all values are finite.
+    least: f64,
+    /// Largest value.
+    most: f64,
+}
+
+impl Survey {
+    pub fn of(column: &[f64]) -> Self {
+        const LANES: usize = 8;
+        let mut lanes = (
+            [0.0; LANES],
+            [f64::INFINITY; LANES],
+            [f64::NEG_INFINITY; LANES],
+        );
+        let mut see = |values: &[f64]| {
+            let places = lanes.0.iter_mut().zip(&mut lanes.1).zip(&mut lanes.2);
+            for (((other, least), most), x) in places.zip(values) {
+                // Zero for all but infinities and NaN, which make it NaN.
+                *other += x * 0.0;
+                *least = if *x < *least { *x } else { *least };
+                *most = if *x > *most { *x } else { *most };
+            }
+        };
+        let chunks = column.chunks_exact(LANES);
+        let rest = chunks.remainder();
+        chunks.for_each(&mut see);
+        see(rest);
+        Self {
+            finite: lanes.0.iter().sum::<f64>() == 0.0,
+            least: lanes.1.iter().fold(f64::INFINITY, |a, b| a.min(*b)),
+            most: lanes.2.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)),
+        }
     }
 }
 
@@ -54,15 +94,24 @@ impl Range {
 pub(super) struct Largest(Vec<(i32, Vec<f64>)>);
 
 impl Largest {
-    fn of(&mut self, kind: Kind, columns: usize) -> &mut [f64] {
-        let known = self.0.iter().position(|(code, _)| *code == kind.code());
+    fn of(&mut self, kind: i32, columns: usize) -> &mut [f64] {
+        let known = self.0.iter().position(|(code, _)| *code == kind);
         let at = known.unwrap_or_else(|| {
-            self.0.push((kind.code(), Vec::new()));
+            self.0.push((kind, Vec::new()));
             self.0.len() - 1
         });
         let values = &mut self.0[at].1;
         values.resize(values.len().max(columns), 0.0);
         values
+    }
+
+    /// Takes over the larger values of another.
+    pub fn raise(&mut self, other: &Self) {
+        for (code, theirs) in &other.0 {
+            for (ours, theirs) in self.of(*code, theirs.len()).iter_mut().zip(theirs) {
+                *ours = ours.max(*theirs);
+            }
+        }
     }
 }
 
@@ -88,15 +137,16 @@ pub(super) struct Outside {
 /// finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the host holds it up.
 pub(super) fn settle(
     outputs: &mut [Output<'_>],
+    surveys: &[Survey],
     kind: Kind,
     largest: &mut Largest,
 ) -> Option<Outside> {
-    let largest = largest.of(kind, outputs.len());
-    for (output, largest) in outputs.iter_mut().zip(largest) {
+    let largest = largest.of(kind.code(), outputs.len());
+    for ((output, survey), largest) in outputs.iter_mut().zip(surveys).zip(largest) {
         let Some(range) = output.range else {
             continue;
         };
-        if let Some(contact) = range.settle(output.values, largest) {
+        if let Some(contact) = range.settle(output.values, survey, largest) {
             return Some(Outside {
                 contact,
                 column: output.name,
@@ -112,9 +162,30 @@ pub(super) fn settle(
 mod tests {
     use super::*;
 
+    fn settle(range: Range, column: &mut [f64], largest: &mut f64) -> Option<usize> {
+        let survey = Survey::of(column);
+        assert!(survey.finite);
+        range.settle(column, &survey, largest)
+    }
+
+    #[test]
+    fn one_value_that_is_not_finite_is_found_wherever_it_is() {
+        for n in 0..20 {
+            let column: Vec<f64> = (0..n).map(|k| f64::MAX / f64::from(k + 1)).collect();
+            assert!(Survey::of(&column).finite);
+            for k in 0..column.len() {
+                for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+                    let mut column = column.clone();
+                    column[k] = wrong;
+                    assert!(!Survey::of(&column).finite);
+                }
+            }
+        }
+    }
+
     #[test]
     fn the_first_value_outside_is_found_and_round_off_is_not() {
-        let settle = |range: Range, column: &[f64]| range.settle(&mut column.to_vec(), &mut 0.0);
+        let settle = |range, column: &[f64]| settle(range, &mut column.to_vec(), &mut 0.0);
         let share = |column: &[f64]| settle(Range::Share, column);
         assert_eq!(share(&[0.0, 1.0, -0.0, 1.0 + 1e-15]), None);
         assert_eq!(share(&[0.5, 2.0, -3.0]), Some(1));
@@ -130,13 +201,13 @@ mod tests {
         let left = 1e6 * (1.0 - (1.0 + f64::EPSILON));
         assert!(left < 0.0);
         let mut column = vec![1e6, left, 0.5];
-        assert_eq!(Range::NotNegative.settle(&mut column, &mut 0.0), None);
+        assert_eq!(settle(Range::NotNegative, &mut column, &mut 0.0), None);
         assert_eq!(column, [1e6, 0.0, 0.5]);
         // A single bond: its own earlier value is the reference.
         let mut largest = 0.0;
         for (value, found) in [(1e6, None), (left, None), (-1e-3, Some(0))] {
             let mut column = vec![value];
-            assert_eq!(Range::NotNegative.settle(&mut column, &mut largest), found);
+            assert_eq!(settle(Range::NotNegative, &mut column, &mut largest), found);
             assert!(found.is_some() || column[0] >= 0.0);
         }
         assert_eq!(largest, 1e6);

@@ -84,39 +84,6 @@ impl<S: Space> Default for Velocities<S> {
 }
 
 impl<S: Space> Velocities<S> {
-    /// What contacts and moments would do, if the motion at the start of the step went on through it: velocities without
-    /// impulses.
-    pub(super) fn continued(&self) -> (Vec<ContactStep<S>>, Vec<MomentStep<S>>) {
-        let zero = S::Vector::zero();
-        let contacts = self.relative.iter().map(|u| ContactStep {
-            before: *u,
-            average: *u,
-            adheres: false,
-            lost: 0.0,
-            corrected: 0.0,
-            slides: false,
-            solution: ContactSolution {
-                impulse: zero,
-                unilateral_n: 0.0,
-                unilateral_t: S::Tangent::zero(),
-            },
-        });
-        let moments = self
-            .turning
-            .iter()
-            .zip(0..)
-            .map(|(spin, contact)| MomentStep {
-                moment: MomentSolution {
-                    contact,
-                    moment: S::Spin::zero(),
-                    friction: S::Spin::zero(),
-                },
-                spin: *spin,
-                lost: 0.0,
-            });
-        (contacts.collect(), moments.collect())
-    }
-
     /// Contacts at rest, with the overlaps that they have.
     pub(super) fn still(contacts: &[Contact<S>]) -> Self {
         Self {

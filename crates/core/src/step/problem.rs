@@ -31,26 +31,19 @@ impl<S: Space> Simulation<S> {
         let mut coupling = Progress::new(&self.options.coupling);
         let options = self.solver_in_force();
         self.workspace.solved.predicted = self.options.coupling == Coupling::Midpoint;
-        if self.workspace.solved.predicted {
-            let clock = Instant::now();
-            let predicted = self.workspace.evaluator.predict_damage(
-                &self.laws,
-                &mut self.state.law_history,
-                &mut self.state.network,
-                &self.workspace.solved.before,
-                info,
-            );
-            predicted.map_err(|e| self.law_error(e))?;
-            report.timing.laws += clock.elapsed();
-        }
+        let clock = Instant::now();
+        let evaluator = &mut self.workspace.evaluator;
+        evaluator.select(&self.laws, &self.state.network);
+        report.timing.laws += clock.elapsed();
         loop {
             let clock = Instant::now();
             let prepared = self.workspace.evaluator.prepare(
                 &self.laws,
                 &mut self.state.law_history,
-                &self.state.network,
+                &mut self.state.network,
                 &self.workspace.solved.before,
                 info,
+                self.workspace.solved.predicted,
                 &mut self.workspace.forms,
                 &mut self.workspace.springs,
                 &mut self.workspace.moments,

@@ -41,9 +41,8 @@ impl Bench {
         };
         self.fill(&[state], &[motion], &info, false);
         let contact = self.law.contact().clone();
-        self.evaluator
-            .run(&contact, &mut self.history, &info, 0.0, Call::Prepare)?;
-        let out = &self.evaluator.columns.out;
+        self.batch.run(&contact, &info, 0.0, Call::Prepare)?;
+        let out = &self.batch.columns.out;
         Ok(Some(SpringAnswer {
             force: out.contact_force[0][0],
             stiffness: out.contact_stiffness_n[0],

@@ -2,7 +2,7 @@
 //! `laws::bonds`; the others attract at every contact.
 
 use super::{
-    CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_state, fits_always, templates,
+    CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_record, fits_always, templates,
 };
 use crate::laws::columns::Outputs;
 use crate::laws::library::Call;
@@ -17,7 +17,7 @@ pub static SPEC: KindSpec = KindSpec {
     domain: Domain::ByOpening,
     outputs,
     fits: fits_always,
-    commit: crate::commit_hook!(commit_state),
+    commit: crate::commit_hook!(commit_record),
     certificate: CertificateSpec {
         partners: &[&[]],
         checks: CheckSet::Bond,

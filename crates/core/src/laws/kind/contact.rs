@@ -2,7 +2,7 @@
 //! `laws::prepare`.
 
 use super::{
-    CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_state, fits_always, templates,
+    CertificateSpec, CheckSet, Domain, KindSpec, Output, commit_record, fits_always, templates,
 };
 use crate::laws::columns::Outputs;
 use crate::laws::library::Call;
@@ -17,7 +17,7 @@ pub static SPEC: KindSpec = KindSpec {
     domain: Domain::All,
     outputs,
     fits: fits_always,
-    commit: crate::commit_hook!(commit_state),
+    commit: crate::commit_hook!(commit_record),
     certificate: CertificateSpec {
         partners: &[&[]],
         checks: CheckSet::Contact,

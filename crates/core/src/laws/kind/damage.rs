@@ -1,6 +1,6 @@
 //! Damage laws: how a bond weakens. They see what the undamaged bond would carry and store, see `laws::bonds`.
 
-use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_state, templates};
+use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_record, templates};
 use crate::laws::columns::Outputs;
 use crate::laws::error::LawError;
 use crate::laws::interface::Interface;
@@ -17,7 +17,7 @@ pub static SPEC: KindSpec = KindSpec {
     domain: Domain::Bonds,
     outputs,
     fits,
-    commit: crate::commit_hook!(commit_state),
+    commit: crate::commit_hook!(commit_record),
     certificate: CertificateSpec {
         // Energies of both shapes: (1 - D) and (1 - D)^2.
         partners: &[

@@ -43,7 +43,8 @@ pub struct KindSpec {
     pub outputs: for<'a> fn(&'a mut Outputs, Call) -> Vec<Output<'a>>,
     /// What it needs of the other slots of its interface.
     pub fits: fn(&Interface) -> Result<(), LawError>,
-    /// What the host does at the end of a step with a law of this kind that acts on contacts, not on bonds.
+    /// What the host does at the end of a step with the answers of a law of this kind that acts on contacts, not on bonds. Laws without a
+    /// `prepare` are given slip and friction work beside the state of the contacts; the others are called only if they have internal variables.
     pub commit: CommitHook,
     /// How laws of this kind are certified.
     pub certificate: CertificateSpec,
@@ -95,7 +96,7 @@ impl<'a> Output<'a> {
     }
 }
 
-/// What the host does with a law at the end of a step.
+/// What the host does with the answers of a law at the end of a step.
 pub type CommitFn<S> = for<'a, 'b> fn(&'a mut SlotCommit<'b, S>) -> Result<(), LawError>;
 
 /// A [`CommitFn`] for each dimension; made by [`commit_hook!`](crate::commit_hook).
@@ -184,31 +185,12 @@ pub fn no_outputs(_: &mut Outputs, _: Call) -> Vec<Output<'_>> {
     Vec::new()
 }
 
-/// Moves the internal variables of a law, where it has any, by what the contacts did in the step: the commit of laws whose
-/// answers the host takes at the start of a step.
+/// For laws of which the host needs nothing but their new internal variables, which are stored: those whose answers it takes at the start
+/// of a step, and those that only watch contacts.
 ///
 /// # Errors
-/// The law's own.
-pub fn commit_state<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    if slot.law.variables() == 0 {
-        return Ok(());
-    }
-    slot.gather();
-    slot.call()?;
-    slot.store_variables();
-    Ok(())
-}
-
-/// The same with the slip and the friction work of the step, also for laws without internal variables: for kinds that only
-/// watch contacts.
-///
-/// # Errors
-/// The law's own.
-pub fn commit_record<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    slot.gather();
-    slot.add_slip();
-    slot.call()?;
-    slot.store_variables();
+/// Never.
+pub fn commit_record<S: Space>(_: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
     Ok(())
 }
 

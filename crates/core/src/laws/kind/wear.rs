@@ -36,9 +36,6 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
 }
 
 fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
-    slot.gather();
-    slot.add_slip_and_owed_work();
-    slot.call()?;
     // What a bond gives when it breaks it gives once, also in a cycle that stands for many.
     let network = &mut *slot.network;
     let breaks = network
@@ -46,13 +43,13 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
         .iter()
         .filter(|_| network.cycle_multiplier > 1.0);
     let broke: HashSet<Key> = breaks.map(|b| b.key).collect();
-    for (k, at) in slot.evaluator.members.iter().enumerate() {
+    for (at, worn) in slot.members.iter().zip(&slot.outputs.volume) {
         let times = if broke.contains(&network.contacts[*at].key) {
             1.0
         } else {
             network.cycle_multiplier
         };
-        let volume = times * slot.evaluator.columns.out.volume[k];
+        let volume = times * worn;
         let surface = network.contacts[*at].key.surface();
         if let Some(surface) = surface.filter(|s| !network.of_grains.contains(s)) {
             slot.totals.worn_first += volume;
@@ -66,9 +63,6 @@ fn commit<S: Space>(slot: &mut SlotCommit<'_, S>) -> Result<(), LawError> {
         } else {
             slot.totals.worn_third += volume;
         }
-    }
-    if slot.law.variables() > 0 {
-        slot.store_variables();
     }
     Ok(())
 }
