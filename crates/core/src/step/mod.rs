@@ -20,6 +20,7 @@
 //!       └──────────────── observers and files (layers above), processes between steps
 //! ```
 mod answers;
+mod change;
 mod columns;
 mod compiled;
 pub mod control;
@@ -47,6 +48,7 @@ mod systems;
 mod turning;
 mod workspace;
 
+pub use change::{ContactForces, StepChange};
 pub use columns::ContactRow;
 pub use compiled::{InDimension, Steps};
 pub use error::StepError;

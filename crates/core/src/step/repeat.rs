@@ -54,6 +54,17 @@ impl<S: Space> Simulation<S> {
         }
     }
 
+    /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events stay with the steps of the case, see
+    /// [`super::control::Ahead`].
+    pub fn span_steps(&mut self, h: f64, count: u32) {
+        let count = count.max(1);
+        let spanned = h * f64::from(count);
+        if self.options.scheme.h != spanned {
+            self.change_step(spanned);
+        }
+        self.options.grown = count - 1;
+    }
+
     /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
     /// the next step gives the same bits as without the trial.
     ///
