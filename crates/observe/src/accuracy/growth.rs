@@ -11,15 +11,19 @@ use fretwork_core::step::{ContactForces, Simulation, StepReport};
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
-/// Largest displacement that steps aim at, as a share of the smallest half size of a body that moves, and the change of forces, of what is
-/// allowed.
-const AIM: [f64; 2] = [0.1, 0.4];
-/// A step that has grown is kept up to this many times of that.
+/// Largest displacement that steps aim at, as a share of the smallest half size of a body that moves.
+const AIM: f64 = 0.1;
+/// A step that has grown is made again as a shorter one above this many times of that.
 const KEPT: f64 = 2.5;
-/// Most by which a step is longer or shorter than the one before it: forces of a step are those of the next where the two are similar.
-const RATIO: f64 = 2.0;
-/// Steps are not changed by less than this.
-const LITTLE: f64 = 0.2;
+/// Change of forces above which steps do not grow, of what is allowed.
+const CHANGE: f64 = 0.4;
+/// Least and most by which a step is longer than the one before it. It shrinks slowly where it may: rigid contacts with gaps of up to g h^2
+/// carry over a step h, and a much shorter step finds them open.
+const RATIO: [f64; 2] = [0.8, 2.0];
+/// A step that is not kept is made again with its number over this.
+const SHRINKS: u32 = 4;
+/// Displacements are not told apart more closely than this.
+const LITTLE: f64 = 0.1;
 /// Largest change of forces that is allowed in a step, whatever accuracy is asked for.
 const MOST_CHANGE: f64 = 0.1;
 /// Largest step over that of the case, if nothing is said.
@@ -108,15 +112,18 @@ impl Growth {
         if s.phase_begins() {
             self.chosen = 1;
         }
-        let (ahead, event) = s.ahead().steps(s.state.time, h);
-        let count = u64::from(self.chosen).min(ahead).min(most).max(1);
-        self.event = event && count == ahead;
-        count as u32
+        let [event, resolved] = s.ahead().steps(s.state.time, h);
+        let wanted = u64::from(self.chosen).min(resolved).max(1);
+        // Equal steps up to the next event or record, so that none is much shorter than the one before it.
+        let rest = event.min(most).max(1);
+        let count = rest.div_ceil(rest.div_ceil(wanted));
+        self.event = count == event;
+        u32::try_from(count).unwrap_or(u32::MAX)
     }
 
     /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or may grow after it.
     pub fn watches<S: Space>(&self, s: &Simulation<S>, count: u32) -> bool {
-        count > 1 || (self.most > 1 && s.largest_displacement() <= AIM[0])
+        count > 1 || (self.most > 1 && s.largest_displacement() <= AIM)
     }
 
     /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
@@ -128,34 +135,34 @@ impl Growth {
         count: u32,
     ) -> bool {
         let network = &s.state.network;
-        let quiet = report.solver.converged
-            && report.solves <= 1
+        let whole = report.solver.converged
             && report.projected.is_none()
             && network.bond_breaks.is_empty()
             && network.bonds_formed.is_empty();
-        // What has changed most, over what is aimed at.
-        let over = before.filter(|_| quiet).map_or(f64::INFINITY, |before| {
-            let change = s.change_since(&before.forces);
-            let damage = (damage(s) - before.damage).abs() / before.damage.max(1.0);
-            let forces = change.forces.max(damage) / self.allowed;
-            (change.displacement / AIM[0]).max(forces / AIM[1])
-        });
-        if let Some(b) = before {
-            let c = s.change_since(&b.forces);
+        // Displacement, and change of forces and damage, over what steps aim at.
+        let [moved, changed] = before
+            .filter(|_| whole)
+            .map_or([f64::INFINITY; 2], |before| {
+                let change = s.change_since(&before.forces);
+                let damage = (damage(s) - before.damage).abs() / before.damage.max(1.0);
+                let changed = change.forces.max(damage) / (CHANGE * self.allowed);
+                [change.displacement / AIM, changed]
+            });
+        if std::env::var("DBG").is_ok() {
             eprintln!(
-                "n {count} quiet {quiet} solves {} its {} disp {:.3} forces {:.4} over {:?}",
-                report.solves, report.solver.iterations, c.displacement, c.forces, over
+                "n {count} whole {whole} solves {} its {} moved {moved:.3} changed {changed:.3}",
+                report.solves, report.solver.iterations
             );
         }
-        if count > 1 && over > KEPT {
+        if count > 1 && moved > KEPT {
             return false;
         }
-        self.keep(count, over);
+        self.keep(count, moved, changed);
         true
     }
 
-    /// A step of `count` steps of the case is made, in which changes were `over` times what is aimed at.
-    fn keep(&mut self, count: u32, over: f64) {
+    /// A step of `count` steps of the case is made, in which displacement and forces changed by these, over what is aimed at.
+    fn keep(&mut self, count: u32, moved: f64, changed: f64) {
         self.last = count;
         self.longest = self.longest.max(count);
         if count > 1 {
@@ -166,22 +173,19 @@ impl Growth {
             self.chosen = 1;
             return;
         }
-        let ratio = (1.0 / over).clamp(1.0 / RATIO, RATIO);
-        if (ratio - 1.0).abs() > LITTLE {
-            let next = (f64::from(count) * ratio) as u32;
+        let ratio = (1.0 / moved).clamp(RATIO[0], RATIO[1]);
+        if ratio < 1.0 - LITTLE {
+            self.chosen = ((f64::from(count) * ratio) as u32).max(1);
+        } else if ratio > 1.0 + LITTLE && changed <= 1.0 {
             // A step that a record has ended before says nothing against longer ones.
-            let chosen = if ratio > 1.0 {
-                next.max(self.chosen)
-            } else {
-                next
-            };
-            self.chosen = chosen.clamp(1, self.most);
+            let next = (f64::from(count) * ratio) as u32;
+            self.chosen = next.max(self.chosen).min(self.most);
         }
     }
 
     /// A step of `count` steps of the case did not hold: the next ones span fewer.
     pub fn shrink(&mut self, count: u32) {
-        self.chosen = (f64::from(count) / RATIO) as u32;
+        self.chosen = (count / SHRINKS).max(1);
         self.event = false;
     }
 }

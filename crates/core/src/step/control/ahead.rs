@@ -3,6 +3,7 @@
 use super::{GravityDrive, Simulation};
 use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::space::Space;
+use crate::laws::Interface;
 
 /// What a step must not pass, and how long it may be, as known from drives, gates and phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,9 +25,9 @@ impl Ahead {
         self.longest = self.longest.min(drive.resolved_step(t));
     }
 
-    /// Steps of `h` (s) from `time` on that one step may span, at least 1, and whether the event is what bounds them. A step ends where
-    /// that of the case ends in which the event falls, and where it begins.
-    pub fn steps(&self, time: f64, h: f64) -> (u64, bool) {
+    /// Steps of `h` (s) from `time` on to the event, or to the step in which it falls; and those that one step may span, as far as what
+    /// changes smoothly goes. Both are at least 1.
+    pub fn steps(&self, time: f64, h: f64) -> [u64; 2] {
         let whole = |t: f64| {
             let steps = t / h;
             // Times are sums of steps.
@@ -36,10 +37,8 @@ impl Ahead {
                 steps.floor()
             }
         };
-        let event = whole(self.event - time).max(1.0);
-        let resolved = whole(self.longest).max(1.0);
         // Saturates where there is no bound.
-        (event.min(resolved) as u64, event <= resolved)
+        [self.event - time, self.longest].map(|t| whole(t).max(1.0) as u64)
     }
 }
 
@@ -59,6 +58,8 @@ impl<S: Space> Simulation<S> {
         for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
             ahead.event = ahead.event.min(*gate);
         }
+        let bonds = self.laws.iter().filter_map(Interface::bonding_time);
+        ahead.event = bonds.filter(|b| *b > t).fold(ahead.event, f64::min);
         match &control.gravity_drive {
             None => {}
             Some(GravityDrive::Turned { angle: f, .. } | GravityDrive::Scaled(f)) => {
@@ -89,13 +90,12 @@ mod tests {
     #[test]
     fn a_step_ends_at_an_event_or_at_the_steps_beside_it() {
         let steps = |event: f64, longest: f64, time: f64| Ahead { event, longest }.steps(time, 0.1);
-        assert_eq!(steps(1.0, f64::INFINITY, 0.0), (10, true));
-        assert_eq!(steps(1.0, 0.35, 0.0), (3, false));
+        assert_eq!(steps(1.0, 0.35, 0.0), [10, 3]);
         // 0.1 + 0.1 + 0.1 is above 0.3.
-        assert_eq!(steps(1.0, f64::INFINITY, 0.1 + 0.1 + 0.1), (7, true));
+        assert_eq!(steps(1.0, 1.0, 0.1 + 0.1 + 0.1), [7, 10]);
         // Between two steps: up to the first of them, then a step of the case.
-        assert_eq!(steps(1.03, f64::INFINITY, 0.0), (10, true));
-        assert_eq!(steps(1.03, f64::INFINITY, 1.0), (1, true));
-        assert_eq!(steps(f64::INFINITY, f64::INFINITY, 0.0).0, u64::MAX);
+        assert_eq!(steps(1.03, 1.0, 0.0), [10, 10]);
+        assert_eq!(steps(1.03, 0.01, 1.0), [1, 1]);
+        assert_eq!(steps(f64::INFINITY, f64::INFINITY, 0.0), [u64::MAX; 2]);
     }
 }
