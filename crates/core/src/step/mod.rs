@@ -55,7 +55,7 @@ pub use error::StepError;
 pub use options::{Options, Scheme};
 pub use processes::ProcessState;
 pub use projection::Projected;
-pub use repeat::RepeatError;
+pub use repeat::{RepeatError, Saved};
 pub use report::{StepReport, Timing};
 pub use simulation::Simulation;
 pub use state::State;

@@ -6,8 +6,7 @@
 //!
 //! [`Ahead`]: fretwork_core::step::control::Ahead
 
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{ContactForces, Simulation, StepReport};
+use fretwork_core::step::{ContactForces, Simulation, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
@@ -51,12 +50,12 @@ pub(super) struct Growth {
 
 /// What a step is compared with.
 #[derive(Debug)]
-pub(super) struct Before<S: Space> {
+pub(super) struct Before<S: Steps> {
     pub forces: ContactForces<S>,
     damage: f64,
 }
 
-impl<S: Space> Before<S> {
+impl<S: Steps> Before<S> {
     pub fn of(s: &Simulation<S>) -> Self {
         Self {
             forces: s.contact_forces(),
@@ -66,7 +65,7 @@ impl<S: Space> Before<S> {
 }
 
 /// Sum of the damage of all bonds.
-fn damage<S: Space>(s: &Simulation<S>) -> f64 {
+fn damage<S: Steps>(s: &Simulation<S>) -> f64 {
     let made = s.state.network.bonds_made();
     if made == 0 {
         return 0.0;
@@ -75,7 +74,7 @@ fn damage<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 impl Growth {
-    pub fn new<S: Space>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
+    pub fn new<S: Steps>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
         let most = spec
             .largest_step
             .map_or(LARGEST, |largest| largest / case.time.step);
@@ -104,7 +103,7 @@ impl Growth {
     }
 
     /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than `most`.
-    pub fn next<S: Space>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
+    pub fn next<S: Steps>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
         self.event = false;
         if self.most == 1 {
             return 1;
@@ -122,12 +121,12 @@ impl Growth {
     }
 
     /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or may grow after it.
-    pub fn watches<S: Space>(&self, s: &Simulation<S>, count: u32) -> bool {
+    pub fn watches<S: Steps>(&self, s: &Simulation<S>, count: u32) -> bool {
         count > 1 || (self.most > 1 && s.largest_displacement() <= AIM)
     }
 
     /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
-    pub fn holds<S: Space>(
+    pub fn holds<S: Steps>(
         &mut self,
         s: &Simulation<S>,
         before: Option<&Before<S>>,
@@ -148,12 +147,6 @@ impl Growth {
                 let changed = change.forces.max(damage) / (CHANGE * self.allowed);
                 [change.displacement / AIM, changed]
             });
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "n {count} whole {whole} solves {} its {} moved {moved:.3} changed {changed:.3}",
-                report.solves, report.solver.iterations
-            );
-        }
         if count > 1 && moved > KEPT {
             return false;
         }
