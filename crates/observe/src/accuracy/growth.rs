@@ -10,9 +10,7 @@ use fretwork_core::step::{ContactForces, Simulation, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
-/// Largest displacement that steps aim at, as a share of the smallest half size of a body that moves.
-const AIM: f64 = 0.1;
-/// A step that has grown is made again as a shorter one above this many times of that.
+/// A step that has grown is made again as a shorter one above this many times of the displacement that is aimed at.
 const KEPT: f64 = 2.5;
 /// Change of forces above which steps do not grow, of what is allowed.
 const CHANGE: f64 = 0.4;
@@ -23,8 +21,8 @@ const RATIO: [f64; 2] = [0.8, 2.0];
 const SHRINKS: u32 = 4;
 /// Displacements are not told apart more closely than this.
 const LITTLE: f64 = 0.1;
-/// Largest change of forces that is allowed in a step, whatever accuracy is asked for.
-const MOST_CHANGE: f64 = 0.1;
+/// Largest displacement of a step, over the half size of the smallest grain, and change of forces, whatever accuracy is asked for.
+const MOST_CHANGE: f64 = 0.2;
 /// Largest step over that of the case, if nothing is said.
 const LARGEST: f64 = 100.0;
 /// How many steps of the case a step spans.
@@ -32,7 +30,7 @@ const LARGEST: f64 = 100.0;
 pub(super) struct Growth {
     /// Most; 1 where steps do not grow.
     most: u32,
-    /// Change of forces over a step that is allowed, as a share of the forces.
+    /// Displacement over a step that is aimed at, over the half size of the smallest grain, and change of forces that is allowed, over these.
     allowed: f64,
     /// As chosen; events and records may end a step before.
     chosen: u32,
@@ -122,7 +120,7 @@ impl Growth {
 
     /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or may grow after it.
     pub fn watches<S: Steps>(&self, s: &Simulation<S>, count: u32) -> bool {
-        count > 1 || (self.most > 1 && s.largest_displacement() <= AIM)
+        count > 1 || (self.most > 1 && s.largest_displacement() <= self.allowed)
     }
 
     /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
@@ -145,7 +143,7 @@ impl Growth {
                 let change = s.change_since(&before.forces);
                 let damage = (damage(s) - before.damage).abs() / before.damage.max(1.0);
                 let changed = change.forces.max(damage) / (CHANGE * self.allowed);
-                [change.displacement / AIM, changed]
+                [change.displacement / self.allowed, changed]
             });
         if count > 1 && moved > KEPT {
             return false;
@@ -174,6 +172,11 @@ impl Growth {
             let next = (f64::from(count) * ratio) as u32;
             self.chosen = next.max(self.chosen).min(self.most);
         }
+    }
+
+    /// Finer steps were found to change the result by more than is allowed: the next ones are somewhat shorter.
+    pub fn hold_back(&mut self) {
+        self.chosen = ((f64::from(self.chosen) * RATIO[0]) as u32).max(1);
     }
 
     /// A step of `count` steps of the case did not hold: the next ones span fewer.

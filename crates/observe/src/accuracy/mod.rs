@@ -367,8 +367,7 @@ impl AccuracyControl {
         self.step
             .decide(pair(changes.finer), STEP_LIMIT, 2.0, allowed);
         if STEP_LIMIT * changes.finer > allowed {
-            let count = s.options.grown + 1;
-            self.growth.shrink(count);
+            self.growth.hold_back();
         }
         if s.state.control.tolerance.is_some() || !changes.tight {
             return Ok(());
