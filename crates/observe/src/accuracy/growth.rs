@@ -1,8 +1,9 @@
 //! Steps that grow beyond that of the case where nothing moves, and shrink again before something does.
 //!
-//! A step of the run spans a number of steps of the case. It follows from what a step changes: the largest displacement of a body over
-//! its size, and the change of forces over the accuracy asked for. A step that spanned several is repeated with half the number if in it something
-//! moved, broke or changed by more. Events end steps, see [`Ahead`].
+//! A step of the run spans a number of steps of the case. It follows from what a step changes: the largest displacement of a body over the half
+//! size of the smallest grain, which is to stay at the accuracy asked for, and the change of forces and damage, above which steps do not grow. A
+//! step in which something moves too far, a bond forms or breaks, or the solver does not converge is made again with a quarter of the number.
+//! Events end steps, see [`Ahead`].
 //!
 //! [`Ahead`]: fretwork_core::step::control::Ahead
 
@@ -23,8 +24,6 @@ const SHRINKS: u32 = 4;
 const LITTLE: f64 = 0.1;
 /// Largest displacement of a step, over the half size of the smallest grain, and change of forces, whatever accuracy is asked for.
 const MOST_CHANGE: f64 = 0.2;
-/// Largest step over that of the case, if nothing is said.
-const LARGEST: f64 = 100.0;
 /// How many steps of the case a step spans.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Growth {
@@ -73,9 +72,7 @@ fn damage<S: Steps>(s: &Simulation<S>) -> f64 {
 
 impl Growth {
     pub fn new<S: Steps>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
-        let most = spec
-            .largest_step
-            .map_or(LARGEST, |largest| largest / case.time.step);
+        let most = spec.largest(case.time.step) / case.time.step;
         // A largest step that is a multiple up to rounding is reached. The waves of deformable bodies are not seen by what is looked at here.
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
         Self {

@@ -137,10 +137,15 @@ impl AccuracyControl {
             s.options.correction,
         ];
         let of = Quantity::asked(spec.of, case, s);
-        let [mut step, tolerance] = finest_levels(spec, &coarsest);
+        let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
         if of == Quantity::Forces {
-            // Their steps only grow.
+            // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is tightened where the case says how far.
             step = 0;
+            tolerance = if spec.finest_tolerance.is_some() {
+                tolerance
+            } else {
+                0
+            };
         }
         Some(Self {
             share: spec.share,

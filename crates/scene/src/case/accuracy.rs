@@ -40,6 +40,16 @@ pub struct AccuracySpec {
     pub effort: f64,
 }
 
+impl AccuracySpec {
+    /// Largest step (s) where nothing moves, of a case with this `time.step`.
+    pub fn largest(&self, step: f64) -> f64 {
+        self.largest_step.unwrap_or(LARGEST * step)
+    }
+}
+
+/// Largest step over that of the case, if nothing is said.
+const LARGEST: f64 = 100.0;
+
 /// The fields of [`AccuracySpec`] as a case gives them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename = "AccuracySpec")]

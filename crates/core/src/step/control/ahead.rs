@@ -31,7 +31,7 @@ impl Ahead {
         let whole = |t: f64| {
             let steps = t / h;
             // Times are sums of steps.
-            if (steps - steps.round()).abs() < 1e-6 * steps.abs().max(1.0).min(1e3) {
+            if (steps - steps.round()).abs() < 1e-6 * steps.abs().clamp(1.0, 1e3) {
                 steps.round()
             } else {
                 steps.floor()
