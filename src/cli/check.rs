@@ -71,8 +71,26 @@ pub fn run_time<S: Steps>(loaded: &Loaded, built: Built<S>) -> CheckLine {
     let time = &loaded.case.time;
     let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
     let grains = built.simulation.state.bodies.grains().count();
-    let text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
+    let mut text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
+    if loaded.case.accuracy.is_some() {
+        text += "; with time.step throughout, where the run chooses its steps";
+    }
     ("run time".to_owned(), text)
+}
+
+/// What a run makes of the steps of a case that asks for an accuracy.
+fn chosen_steps<S: Space>(case: &crate::scene::case::Case, s: &Simulation<S>) -> String {
+    let Some(accuracy) = &case.accuracy else {
+        return String::new();
+    };
+    let largest = accuracy.largest(case.time.step);
+    if s.state.systems.is_empty() && largest > case.time.step {
+        format!(
+            "; the run chooses them, in parts where finer ones change the result, and up to {largest:e} s where nothing moves"
+        )
+    } else {
+        "; the run chooses them, in parts where finer ones change the result".to_owned()
+    }
 }
 
 /// What `fretwork check` prints of a case below its title, but for the [run time](run_time). Deformable bodies are timed if
@@ -86,8 +104,10 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     line(
         "steps",
         format!(
-            "{steps} of {:e} s, theta {}",
-            case.time.step, case.time.theta
+            "{steps} of {:e} s, theta {}{}",
+            case.time.step,
+            case.time.theta,
+            chosen_steps(case, s)
         ),
     );
     let largest = bodies(s, timed, &mut line);

@@ -45,10 +45,10 @@ const BLOCK: &str = r#"(
     output: (frames: 0, views: 0, figures: false),
 )"#;
 
-struct Folder(PathBuf);
+pub struct Folder(pub PathBuf);
 
 impl Folder {
-    fn new(name: &str) -> Self {
+    pub fn new(name: &str) -> Self {
         let name = format!("fretwork-accuracy-{}-{name}", std::process::id());
         let path = std::env::temp_dir().join(name);
         std::fs::create_dir_all(&path).unwrap();
@@ -56,7 +56,7 @@ impl Folder {
     }
 
     /// Runs a case into a folder here.
-    fn run(&self, case: &Path, out: &str, sets: &[&str]) -> Output {
+    pub fn run(&self, case: &Path, out: &str, sets: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_fretwork"))
             .current_dir(env!("CARGO_MANIFEST_DIR"))
             .arg("run")
@@ -70,7 +70,7 @@ impl Folder {
             .unwrap()
     }
 
-    fn summary(&self, out: &str) -> Value {
+    pub fn summary(&self, out: &str) -> Value {
         let text = std::fs::read_to_string(self.0.join(out).join("summary.json")).unwrap();
         serde_json::from_str(&text).unwrap()
     }
@@ -116,7 +116,7 @@ fn with_careful_law(name: &str) -> (Folder, PathBuf) {
     (folder, case)
 }
 
-fn told(output: &Output) -> String {
+pub fn told(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout)
 }
 

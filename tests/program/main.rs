@@ -15,6 +15,7 @@ mod check_methods;
 mod deformed_state;
 mod fclib;
 mod grains;
+mod growth;
 mod holders;
 mod law_drive;
 mod law_new;

@@ -138,6 +138,15 @@ fn accuracy(case: &Case) -> Result<(), ValidationError> {
         let expected = "a time above 0, at most time.step, which is the coarsest step";
         return outside("finest_step", step, expected);
     }
+    let largest = asked.largest_step.unwrap_or(case.time.step);
+    if !(largest >= case.time.step && largest.is_finite()) {
+        let expected = "a time of at least time.step, from which steps grow where nothing moves";
+        return outside("largest_step", largest, expected);
+    }
+    if asked.of == AccurateResult::Forces && asked.finest_step.is_some() {
+        let message = "with `of: Forces` steps only grow, and time.step is the smallest: leave out finest_step, or take a smaller time.step";
+        return Err(ValidationError::new("accuracy.finest_step", message));
+    }
     if let Some(tolerance) = asked.finest_tolerance
         && !(tolerance > 0.0 && tolerance.is_finite())
     {

@@ -5,12 +5,9 @@
 
 use super::case::{BodySpec, Case};
 use super::phases::{drives_of, drives_of_holder, holder_name};
-use fretwork_core::bodies::{Dof, TimeFunction};
+use fretwork_core::bodies::{Dof, STEPS_A_PERIOD, TimeFunction};
 use fretwork_core::step::control::GravityDrive;
 
-/// Steps per period below which a sine is poorly resolved: linear interpolation between 20 points has an
-/// error of (pi/20)^2/2, 1.2 % of the amplitude.
-const COARSE: f64 = 20.0;
 /// Steps per period below which a sine aliases to another frequency (Nyquist).
 const ALIAS: f64 = 2.0;
 /// Smallest recommended number of steps of a ramp or a table.
@@ -119,8 +116,8 @@ fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
             ..
         } => {
             let steps = 1.0 / (frequency * h);
-            let most = 1.0 / (COARSE * frequency);
-            if *amplitude == 0.0 || steps.is_nan() || steps >= COARSE * (1.0 - 1e-9) {
+            let most = 1.0 / (STEPS_A_PERIOD * frequency);
+            if *amplitude == 0.0 || steps.is_nan() || steps >= STEPS_A_PERIOD * (1.0 - 1e-9) {
                 None
             } else if steps <= ALIAS {
                 Some(format!(
@@ -130,7 +127,7 @@ fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
             } else {
                 Some(format!(
                     "the sine of {frequency} Hz has only {steps:.1} steps a period; take time.step = {most:.2e} s or \
-                     less ({COARSE} steps a period), or a lower frequency"
+                     less ({STEPS_A_PERIOD} steps a period), or a lower frequency"
                 ))
             }
         }

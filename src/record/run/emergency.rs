@@ -107,13 +107,14 @@ impl<S: Steps> Recorder<'_, S> {
 
     /// A step, or a part of one where the run chooses how many parts it has.
     fn part(&mut self) -> Result<StepReport, RunError> {
+        let most = self.until_record();
         let simulation = &mut self.simulation;
         let Some(control) = &mut self.accuracy else {
             return Ok(simulation.step()?);
         };
         let parts = match &mut self.parts {
             Some(parts) => parts,
-            none => none.insert(control.begin_step(simulation, [self.done, self.total])?),
+            none => none.insert(control.begin_step(simulation, [self.done, self.total], most)?),
         };
         let report = loop {
             if let Some(report) = control.part(simulation, parts)? {

@@ -9,6 +9,7 @@ mod end;
 mod error;
 mod frame;
 mod notice;
+mod schedule;
 mod stamps;
 mod timed;
 
@@ -18,6 +19,7 @@ pub use self::error::RunError;
 use self::drawing::Drawing;
 use self::emergency::EmergencySave;
 use self::error::unwritable;
+use self::schedule::due;
 use self::stamps::{density_of, stamps};
 use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
 use super::picture::Camera;
@@ -341,11 +343,12 @@ impl<'a, S: Observed> Recorder<'a, S> {
             self.timed(|t| &mut t.files, Self::record_state)?;
             self.timed(|t| &mut t.pictures, |run| run.draw_pictures(0))?;
         }
-        for step in self.done + 1..=self.total {
+        while self.done < self.total {
             let phase = self.simulation.state.control.phase();
             let recurs = self.simulation.phase_recurs();
             let report = self.whole_step()?;
-            self.done = step;
+            self.done += self.accuracy.as_ref().map_or(1, AccuracyControl::spanned);
+            let step = self.done;
             if phase == 1 && self.simulation.state.control.phase() == 2 {
                 self.camera.dye(&self.simulation);
                 self.observers.begin(&mut self.simulation);
@@ -501,10 +504,4 @@ fn check_names(columns: &[Column]) -> Result<(), RunError> {
             name: columns[k].name.clone(),
         }),
     }
-}
-
-/// Whether event k of `count` over the run falls on this step.
-fn due(step: u64, total: u64, count: u32) -> bool {
-    let number = |step: u64| u128::from(step) * u128::from(count) / u128::from(total.max(1));
-    count > 0 && number(step) > number(step - 1)
 }

@@ -59,6 +59,24 @@ fn a_scar_with_an_accuracy() {
     resumes("accuracy", job, &[2, 9]);
 }
 
+/// Steps that have grown: a checkpoint is between two of them.
+#[test]
+fn disks_at_rest_in_steps_that_grow() {
+    let sets = [
+        "time.end=0.04",
+        "solver.tolerance=1e-3",
+        "accuracy=(share: 0.2, effort: 1.0)",
+        "output.checkpoint=Steps(25)",
+        "output.frames=2",
+        "output.figures=false",
+    ];
+    let job = Job {
+        case: "benchmarks/disks_box_5000",
+        sets: &sets,
+    };
+    resumes("growth", job, &[1, 2]);
+}
+
 /// A height field, wear, overlaps that are taken out; steps written as problems.
 #[test]
 fn shear_in_space() {

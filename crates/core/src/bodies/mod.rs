@@ -5,6 +5,7 @@ pub mod contactor;
 pub mod delay;
 pub mod drive;
 pub mod dynamical_system;
+pub mod horizon;
 pub mod integral;
 pub mod nodes;
 pub mod path;
@@ -22,6 +23,7 @@ pub use dynamical_system::{
     DeformedMesh, DynamicalSystem, Holder, SystemStep, SystemWork, compliance_by_solving,
     compliance_of_points, von_mises,
 };
+pub use horizon::STEPS_A_PERIOD;
 pub use nodes::Nodes;
 pub use stages::Stage;
 pub use state::Bodies;

@@ -2,7 +2,10 @@
 //! again.
 
 use super::fields::Fields;
-use super::{Simulation, StepError, StepReport};
+use super::{
+    ContactForces, RepeatError, Saved, Simulation, StepChange, StepError, StepReport, change,
+    repeat,
+};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Dim2, Dim3, Space};
 use crate::solve::{AutoState, ContactForm, MomentForm, Options, Problem, Report, solve};
@@ -37,6 +40,17 @@ pub trait Steps: Space {
     fn fields() -> Fields<Self>;
     /// The simulation, of known dimension.
     fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_>;
+    /// Copies all that steps may change; see [`Simulation::repeat`].
+    ///
+    /// # Errors
+    /// Steps cannot be repeated.
+    fn save(simulation: &Simulation<Self>) -> Result<Saved<Self>, RepeatError>;
+    /// The forces of the contacts; see [`Simulation::contact_forces`].
+    fn contact_forces(simulation: &Simulation<Self>) -> ContactForces<Self>;
+    /// Largest displacement and change of forces; see [`Simulation::change_since`].
+    fn change_since(simulation: &Simulation<Self>, before: &ContactForces<Self>) -> StepChange;
+    /// See [`Simulation::largest_displacement`].
+    fn largest_displacement(simulation: &Simulation<Self>) -> f64;
 }
 
 impl Steps for Dim2 {
@@ -61,6 +75,18 @@ impl Steps for Dim2 {
     fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_> {
         InDimension::Dim2(simulation)
     }
+    fn save(simulation: &Simulation<Self>) -> Result<Saved<Self>, RepeatError> {
+        repeat::save(simulation)
+    }
+    fn contact_forces(simulation: &Simulation<Self>) -> ContactForces<Self> {
+        change::contact_forces(simulation)
+    }
+    fn change_since(simulation: &Simulation<Self>, before: &ContactForces<Self>) -> StepChange {
+        change::change_since(simulation, before)
+    }
+    fn largest_displacement(simulation: &Simulation<Self>) -> f64 {
+        change::largest_displacement(simulation)
+    }
 }
 
 impl Steps for Dim3 {
@@ -84,6 +110,18 @@ impl Steps for Dim3 {
     }
     fn in_dimension(simulation: &Simulation<Self>) -> InDimension<'_> {
         InDimension::Dim3(simulation)
+    }
+    fn save(simulation: &Simulation<Self>) -> Result<Saved<Self>, RepeatError> {
+        repeat::save(simulation)
+    }
+    fn contact_forces(simulation: &Simulation<Self>) -> ContactForces<Self> {
+        change::contact_forces(simulation)
+    }
+    fn change_since(simulation: &Simulation<Self>, before: &ContactForces<Self>) -> StepChange {
+        change::change_since(simulation, before)
+    }
+    fn largest_displacement(simulation: &Simulation<Self>) -> f64 {
+        change::largest_displacement(simulation)
     }
 }
 

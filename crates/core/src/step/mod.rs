@@ -20,6 +20,7 @@
 //!       └──────────────── observers and files (layers above), processes between steps
 //! ```
 mod answers;
+mod change;
 mod columns;
 mod compiled;
 pub mod control;
@@ -47,13 +48,14 @@ mod systems;
 mod turning;
 mod workspace;
 
+pub use change::{ContactForces, StepChange};
 pub use columns::ContactRow;
 pub use compiled::{InDimension, Steps};
 pub use error::StepError;
 pub use options::{Options, Scheme};
 pub use processes::ProcessState;
 pub use projection::Projected;
-pub use repeat::RepeatError;
+pub use repeat::{RepeatError, Saved};
 pub use report::{StepReport, Timing};
 pub use simulation::Simulation;
 pub use state::State;

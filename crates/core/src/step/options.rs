@@ -30,6 +30,8 @@ pub struct Options {
     pub scheme: Scheme,
     /// The solver. Phases may set another tolerance, see [`super::Simulation::solver_in_force`].
     pub solver: solve::Options,
+    /// Steps of the case that the step spans in addition to its own; 0 unless it has grown, see [`super::Simulation::span_steps`].
+    pub grown: u32,
     /// Coupling of damage and opening within a step.
     pub coupling: Coupling,
     /// Fraction of a penetration removed per step, 0 to 1: `solver.correction` of a case.
@@ -40,4 +42,11 @@ pub struct Options {
     /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact dissipated. Once there, the record is
     /// continued until it is set to `None`.
     pub record_dissipation: bool,
+}
+
+impl Options {
+    /// Length of a step that has not grown (s): events are assigned to steps to half of it.
+    pub fn event_step(&self) -> f64 {
+        self.scheme.h / (1.0 + f64::from(self.grown))
+    }
 }

@@ -90,6 +90,11 @@ impl<S: Space> Simulation<S> {
 
     /// Adds the contacts that the free velocities (without contact impulses) would close in the step.
     pub(super) fn add_predicted_contacts(&mut self, free: &[(S::Vector, S::Spin)]) {
+        // Over a step that has grown nothing moves: what falls without contacts is held by those at hand. The velocities after the
+        // solve tell whether that is so.
+        if self.options.grown > 0 {
+            return;
+        }
         let motion = Motion {
             velocities: free,
             time: self.state.time,
@@ -143,6 +148,7 @@ impl<S: Space> Simulation<S> {
                 }
             }
             self.couple(start, free, info, report)?;
+            report.solves = solves as u32;
             let velocities = self.state.bodies.velocity.iter().copied();
             let velocities = velocities.zip(self.state.bodies.spin.iter().copied());
             let (network, bodies) = (&mut self.state.network, &self.state.bodies);

@@ -1,6 +1,6 @@
 //! Repeating steps from a saved state: steps with other options, after which all is as before.
 
-use super::{Options, ProcessState, Simulation, State};
+use super::{Options, ProcessState, Simulation, State, Steps};
 use crate::code::CodeError;
 use crate::geometry::space::Space;
 use crate::laws::Interface;
@@ -21,8 +21,9 @@ pub enum RepeatError {
     Code(#[from] CodeError),
 }
 
-/// All of a simulation that steps may change.
-struct Saved<S: Space> {
+/// All of a simulation that steps may change, to go back to it.
+#[derive(Debug)]
+pub struct Saved<S: Space> {
     state: State<S>,
     options: Options,
     laws: Vec<Interface>,
@@ -54,13 +55,26 @@ impl<S: Space> Simulation<S> {
         }
     }
 
+    /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events stay with the steps of the case, see
+    /// [`super::control::Ahead`].
+    pub fn span_steps(&mut self, h: f64, count: u32) {
+        let count = count.max(1);
+        let spanned = h * f64::from(count);
+        if self.options.scheme.h != spanned {
+            self.change_step(spanned);
+        }
+        self.options.grown = count - 1;
+    }
+}
+
+impl<S: Steps> Simulation<S> {
     /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
     /// the next step gives the same bits as without the trial.
     ///
     /// # Errors
     /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
     pub fn repeat<R>(&mut self, trial: impl FnOnce(&mut Self) -> R) -> Result<R, RepeatError> {
-        let saved = self.save()?;
+        let saved = S::save(self)?;
         let result = trial(self);
         self.put_back(saved)?;
         Ok(result)
@@ -74,22 +88,12 @@ impl<S: Space> Simulation<S> {
         &mut self,
         trial: impl FnOnce(&mut Self) -> Result<R, E>,
     ) -> Result<Result<R, E>, RepeatError> {
-        let saved = self.save()?;
+        let saved = S::save(self)?;
         let result = trial(self);
         if result.is_err() {
             self.put_back(saved)?;
         }
         Ok(result)
-    }
-
-    fn save(&self) -> Result<Saved<S>, RepeatError> {
-        self.repeatable()?;
-        Ok(Saved {
-            processes: self.save_processes()?,
-            state: self.state.clone(),
-            options: self.options,
-            laws: self.laws.clone(),
-        })
     }
 
     fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
@@ -105,4 +109,15 @@ impl<S: Space> Simulation<S> {
         self.processes.truncate(saved.processes.len());
         Ok(self.restore_processes(&saved.processes)?)
     }
+}
+
+/// See [`Steps::save`].
+pub(super) fn save<S: Space>(s: &Simulation<S>) -> Result<Saved<S>, RepeatError> {
+    s.repeatable()?;
+    Ok(Saved {
+        processes: s.save_processes()?,
+        state: s.state.clone(),
+        options: s.options,
+        laws: s.laws.clone(),
+    })
 }

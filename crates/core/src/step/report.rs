@@ -26,6 +26,8 @@ pub struct StepReport {
     pub coupling: CouplingReport,
     /// Sums over contacts.
     pub totals: Totals,
+    /// Number of solves: above 1 where the first left contacts out that its velocities closed.
+    pub solves: u32,
     /// Number of contacts that carry an impulse.
     pub active: usize,
     /// Result of the projection of penetrations, if there was one.

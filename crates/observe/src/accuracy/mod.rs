@@ -1,20 +1,24 @@
 //! Accuracy as an input: a run that chooses its step and tolerance by repeating some of its steps with finer ones.
 //!
-//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts. Every now and then the next parts are repeated with a
+//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts, or one step spans several where nothing moves. Every now and then the next parts are repeated with a
 //! quarter of their length and with a hundredth of the tolerance, as for the [error estimate](crate::error_estimate); from the change of
 //! the result asked for follow finer or coarser settings. Half of the share allowed is for the step, half for the tolerance. All of it
 //! follows from the state, and costs are counted in iterations: the bits are the same on every machine, and after a resume.
 
+mod forces;
+mod growth;
 mod report;
 mod setting;
 
 pub use report::{AccuracyReport, ChosenSettings, SettingChange};
 
 use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
+use fretwork_core::bodies::Dof;
 use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
 use fretwork_scene::processes::FrictionTest;
+use growth::{Before, Growth};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::{Deserialize, Serialize};
@@ -28,6 +32,8 @@ const CALM: u32 = 20;
 const AFTER_FAILURE: u64 = 50;
 /// Stretches at the start that may cost as much as the run.
 const FIRST: u64 = 6;
+/// Cost of repeating a step for its forces, in steps.
+const FORCES_COST: f64 = 8.0;
 /// Most steps between stretches.
 const LONGEST_PAUSE: f64 = 1e6;
 /// Mixed into the seed of the case, so that pauses are not drawn with the numbers of its grains.
@@ -48,6 +54,7 @@ pub struct AccuracyControl {
     coarsest: [f64; 3],
     step: Setting,
     tolerance: Setting,
+    growth: Growth,
     body: Option<RubbedBody>,
     /// Step of the case before which the next stretch is repeated.
     next: u64,
@@ -73,9 +80,22 @@ enum Quantity {
     FrictionEnergy,
     Damage,
     Wear,
+    Forces,
 }
 
 impl Quantity {
+    /// What a case asks for.
+    fn asked<S: Steps>(of: AccurateResult, case: &Case, s: &Simulation<S>) -> Self {
+        match of {
+            AccurateResult::Friction if FrictionTest::of(case, s).is_some() => Self::Friction,
+            AccurateResult::Friction if !driven(case, s) => Self::Forces,
+            AccurateResult::Friction | AccurateResult::FrictionEnergy => Self::FrictionEnergy,
+            AccurateResult::Damage => Self::Damage,
+            AccurateResult::Wear => Self::Wear,
+            AccurateResult::Forces => Self::Forces,
+        }
+    }
+
     /// Numerator and denominator of the result over a stretch.
     fn of(self, grown: &Increments) -> [f64; 2] {
         match self {
@@ -83,6 +103,8 @@ impl Quantity {
             Self::FrictionEnergy => [grown.friction_energy, 1.0],
             Self::Damage => [grown.damage, 1.0],
             Self::Wear => [grown.wear, 1.0],
+            // Forces have no increments, see [`forces`].
+            Self::Forces => [0.0; 2],
         }
     }
 
@@ -92,6 +114,7 @@ impl Quantity {
             Self::FrictionEnergy => "energy of friction",
             Self::Damage => "damage",
             Self::Wear => "wear of first bodies",
+            Self::Forces => "forces of contacts",
         }
     }
 }
@@ -113,13 +136,17 @@ impl AccuracyControl {
             s.options.solver.tolerance,
             s.options.correction,
         ];
-        let of = match spec.of {
-            AccurateResult::Friction if test.is_some() => Quantity::Friction,
-            AccurateResult::Friction | AccurateResult::FrictionEnergy => Quantity::FrictionEnergy,
-            AccurateResult::Damage => Quantity::Damage,
-            AccurateResult::Wear => Quantity::Wear,
-        };
-        let [step, tolerance] = finest_levels(spec, &coarsest);
+        let of = Quantity::asked(spec.of, case, s);
+        let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
+        if of == Quantity::Forces {
+            // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is tightened where the case says how far.
+            step = 0;
+            tolerance = if spec.finest_tolerance.is_some() {
+                tolerance
+            } else {
+                0
+            };
+        }
         Some(Self {
             share: spec.share,
             of,
@@ -128,6 +155,7 @@ impl AccuracyControl {
             coarsest,
             step: Setting::new(step),
             tolerance: Setting::new(tolerance),
+            growth: Growth::new(spec, case, s),
             body: test.map(|t| t.body),
             next: start.round().max(0.0) as u64,
             stretches: [0; 2],
@@ -142,7 +170,8 @@ impl AccuracyControl {
         })
     }
 
-    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a stretch where one is due, and chooses the settings.
+    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a stretch where one is due, and chooses the
+    /// settings. A step that spans several may span `most`.
     ///
     /// # Errors
     /// Steps cannot be repeated, or a process could not be put back.
@@ -150,6 +179,7 @@ impl AccuracyControl {
         &mut self,
         s: &mut Simulation<S>,
         [done, total]: [u64; 2],
+        most: u64,
     ) -> Result<StepParts, RepeatError> {
         if self.asked > 0 {
             self.calm += 1;
@@ -157,14 +187,33 @@ impl AccuracyControl {
                 (self.asked, self.calm) = (self.asked - 1, 0);
             }
         }
-        self.set(s);
         // Not beyond the end, where drives and tables have ended.
         let steps = u64::from(LENGTH.div_ceil(1 << self.level()));
-        if done >= self.next && done + steps <= total {
-            self.measure(s, done)?;
-            self.set(s);
+        if self.of == Quantity::Forces {
+            let count = self.count(s, [done, total], most);
+            self.set(s, count);
+            if self.repeats_for_forces(s) {
+                self.measure_forces(s)?;
+                let count = self.count(s, [done, total], most);
+                self.set(s, count);
+            }
+            return Ok(StepParts::default());
         }
+        if done >= self.next && done + steps <= total {
+            self.set(s, 1);
+            self.measure(s, done)?;
+        }
+        let count = self.count(s, [done, total], most);
+        self.set(s, count);
         Ok(StepParts::default())
+    }
+
+    /// Steps of the case that the next step spans.
+    fn count<S: Steps>(&mut self, s: &Simulation<S>, [done, total]: [u64; 2], most: u64) -> u32 {
+        match self.level() {
+            0 => (self.growth).next(s, self.coarsest[0], most.min(total - done)),
+            _ => 1,
+        }
     }
 
     /// Makes one part of a step of the case. `None` where a law asked for a smaller one: nothing was done then, and the
@@ -178,22 +227,49 @@ impl AccuracyControl {
         parts: &mut StepParts,
     ) -> Result<Option<StepReport>, PartError> {
         let level = self.level();
-        match s.attempt(|s| s.step())? {
+        let count = s.options.grown + 1;
+        let watched = level == 0 && self.growth.watches(s, count);
+        let before = watched.then(|| Before::of(s));
+        let mut growth = self.growth.clone();
+        let made = s.attempt(|s| {
+            let report = s.step()?;
+            if growth.holds(s, before.as_ref(), &report, count) {
+                Ok(report)
+            } else {
+                Err(Refused::Moves)
+            }
+        })?;
+        match made {
             Ok(report) => {
+                self.growth = growth;
                 parts.done += 1 << (self.step.finest - level);
                 self.parts += 1;
                 self.most_parts = self.most_parts.max(1 << level);
                 self.cost[0] += cost(s, &report);
                 Ok(Some(report))
             }
-            Err(e) if e.asks_for_smaller_step() && level < self.step.finest => {
-                (self.asked, self.calm) = (level + 1 - self.step.level, 0);
-                self.requests += 1;
-                self.set(s);
+            // Also what fails in a step that has grown may do so because of it.
+            Err(_) if count > 1 => {
+                self.growth.repeated += 1;
+                self.growth.shrink(count);
+                self.set(s, self.growth.chosen());
                 Ok(None)
             }
-            Err(e) => Err(e.into()),
+            Err(Refused::Step(e)) if e.asks_for_smaller_step() && level < self.step.finest => {
+                (self.asked, self.calm) = (level + 1 - self.step.level, 0);
+                self.requests += 1;
+                self.set(s, 1);
+                Ok(None)
+            }
+            Err(Refused::Step(e)) => Err(e.into()),
+            // A step that has not grown is kept.
+            Err(Refused::Moves) => Ok(None),
         }
+    }
+
+    /// Steps of the case that the last step spanned: 1 unless it had grown.
+    pub fn spanned(&self) -> u64 {
+        u64::from(self.growth.last())
     }
 
     /// Whether the step of the case is complete.
@@ -213,17 +289,19 @@ impl AccuracyControl {
 
     /// Goes on in a simulation that was restored with its state: impulses are those of the step in force.
     pub fn resume<S: Steps>(&mut self, s: &mut Simulation<S>) {
-        s.options.scheme.h = self.coarsest[0] / f64::from(1u32 << self.level());
-        self.set(s);
+        let last = self.growth.last();
+        let parts = f64::from(1u32 << self.level());
+        s.options.scheme.h = self.coarsest[0] / parts * f64::from(last);
+        s.options.grown = last - 1;
+        self.set(s, last);
     }
 
-    /// Sets step, tolerance and correction.
-    fn set<S: Steps>(&mut self, s: &mut Simulation<S>) {
+    /// Sets the step, which spans `count` of the case or is a part of one, tolerance and correction.
+    fn set<S: Steps>(&mut self, s: &mut Simulation<S>, count: u32) {
         let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
-        if s.options.scheme.h != h / parts {
-            s.change_step(h / parts);
-        }
+        s.span_steps(h / parts, count);
+        let parts = parts / f64::from(count);
         // As much of an overlap is taken out in a given time.
         s.options.correction = if parts == 1.0 {
             correction
@@ -269,6 +347,51 @@ impl AccuracyControl {
         Ok(())
     }
 
+    /// Whether a step is repeated for its forces: as often as the effort permits, since every step tells as much, and not the first ones,
+    /// which are solved from nothing.
+    fn repeats_for_forces<S: Steps>(&self, s: &Simulation<S>) -> bool {
+        let [run, repeats] = self.cost;
+        let each = run / self.parts.max(1) as f64;
+        s.state.steps > 3 && repeats + FORCES_COST * each <= self.effort * run
+    }
+
+    /// Repeats a step for its forces, and decides.
+    fn measure_forces<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
+        let (changes, [cost, _]) = forces::repeat_step(s)?;
+        self.cost[1] += cost;
+        let Some(changes) = changes else {
+            self.stretches[1] += 1;
+            return Ok(());
+        };
+        self.stretches[0] += 1;
+        let allowed = 0.5 * self.share;
+        let pair = |change: f64| Pair {
+            coarse: [1.0; 2],
+            fine: [1.0 + change, 1.0],
+        };
+        self.step
+            .decide(pair(changes.finer), STEP_LIMIT, 2.0, allowed);
+        if STEP_LIMIT * changes.finer > allowed {
+            self.growth.hold_back();
+        }
+        if s.state.control.tolerance.is_some() || !changes.tight {
+            return Ok(());
+        }
+        let decision =
+            (self.tolerance).decide(pair(changes.tighter), 1.0, TOLERANCE_FACTOR, allowed);
+        let effects = [self.step.effect, self.tolerance.effect];
+        if self.tolerance.adopt(decision, TOLERANCE_FACTOR) {
+            self.changes.push(SettingChange {
+                time: s.state.time,
+                step: s.options.scheme.h,
+                tolerance: self.chosen_tolerance(),
+                step_effect: effects[0],
+                tolerance_effect: effects[1],
+            });
+        }
+        Ok(())
+    }
+
     fn decide<S: Steps>(&mut self, place: &Place, s: &Simulation<S>) {
         let allowed = 0.5 * self.share;
         let pair = |fine: &Increments| Pair {
@@ -301,6 +424,19 @@ impl AccuracyControl {
     }
 }
 
+/// Why a step is not kept.
+enum Refused {
+    Step(StepError),
+    /// It had grown, and something moved in it.
+    Moves,
+}
+
+impl From<StepError> for Refused {
+    fn from(error: StepError) -> Self {
+        Self::Step(error)
+    }
+}
+
 /// Why a part of a step failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
@@ -310,6 +446,15 @@ pub enum PartError {
     /// Steps cannot be repeated.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
+}
+
+/// Whether anything moves or loads a case but gravity that does not change.
+fn driven<S: Steps>(case: &Case, s: &Simulation<S>) -> bool {
+    let dofs = s.state.bodies.driven.iter().flat_map(|d| &d.dofs);
+    case.gravity_drive.is_some()
+        || !case.phases.is_empty()
+        || !s.state.systems.is_empty()
+        || dofs.flat_map(Dof::drives).any(|d| d.function().is_some())
 }
 
 /// Finest levels of step and tolerance.
@@ -334,6 +479,7 @@ mod tests {
             share: 0.03,
             of: AccurateResult::Friction,
             finest_step: step,
+            largest_step: None,
             finest_tolerance: tolerance,
             effort: 0.2,
         };

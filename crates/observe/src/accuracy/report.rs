@@ -31,8 +31,13 @@ pub struct AccuracyReport {
     pub share: f64,
     /// The result.
     pub of: String,
-    /// Coarsest, mean and smallest step (s).
+    /// Largest, mean and smallest step (s).
     pub steps: [f64; 3],
+    /// Share of the time that was made in steps longer than that of the case, and how many such steps were repeated with shorter ones since
+    /// something moved.
+    pub grown: f64,
+    /// See `grown`.
+    pub repeated: u64,
     /// Coarsest and smallest tolerance.
     pub tolerances: [f64; 2],
     /// Stretches repeated, and those that failed.
@@ -61,7 +66,13 @@ impl AccuracyControl {
         AccuracyReport {
             share: self.share,
             of: self.of.name().to_owned(),
-            steps: [h, h / parts.max(1.0), h / self.most_parts as f64],
+            steps: [
+                h * f64::from(self.growth.longest),
+                h / parts,
+                h / self.most_parts as f64,
+            ],
+            grown: self.growth.spanned as f64 / done.max(1) as f64,
+            repeated: self.growth.repeated,
             tolerances: [tolerance, self.smallest_tolerance],
             stretches: self.stretches,
             cost_share: if self.cost[0] > 0.0 {

@@ -37,6 +37,8 @@ impl RepeatedStretch {
         let (length, mut cost) = (self.length, 0.0);
         let mut stretch = |s: &mut Simulation<S>, parts, options: &dyn Fn(&mut Simulation<S>)| {
             let made = s.repeat(|s| {
+                // Steps that have grown would end beyond what lies ahead.
+                s.span_steps(s.options.event_step(), 1);
                 options(s);
                 Stretch::of(s, [length, parts], self.body.as_ref()).ok()
             })?;
@@ -78,7 +80,7 @@ impl RepeatedStretch {
 }
 
 /// Sets a shorter step, in which as much of an overlap is taken out in a given time.
-fn shorten<S: Space>(s: &mut Simulation<S>) {
+pub(crate) fn shorten<S: Space>(s: &mut Simulation<S>) {
     let parts = f64::from(FINER);
     s.change_step(s.options.scheme.h / parts);
     let left = 1.0 - s.options.correction;
@@ -86,7 +88,7 @@ fn shorten<S: Space>(s: &mut Simulation<S>) {
 }
 
 /// Sets a tight tolerance, also where a phase has set its own.
-fn tighten<S: Space>(s: &mut Simulation<S>, most_iterations: f64) {
+pub(crate) fn tighten<S: Space>(s: &mut Simulation<S>, most_iterations: f64) {
     let tight = |tolerance: f64| (tolerance / TIGHTER).max(ROUNDING.min(tolerance));
     let solver = &mut s.options.solver;
     solver.tolerance = tight(solver.tolerance);

@@ -6,9 +6,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// The result whose error is to stay below a share of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum AccurateResult {
-    /// The friction coefficient of the friction test; the energy of friction in a case without one.
+    /// The friction coefficient of the friction test; in a case without one the energy of friction, or forces where nothing is driven.
     #[default]
     Friction,
+    /// Forces of contacts: for scenes that are at rest or come to rest.
+    Forces,
     /// Energy dissipated by friction.
     FrictionEnergy,
     /// Damage of bonds.
@@ -17,8 +19,8 @@ pub enum AccurateResult {
     Wear,
 }
 
-/// The accuracy asked for, and the bounds within which the run chooses its settings: `time.step` and `solver.tolerance` are the coarsest ones. A share
-/// alone stands for the struct with it: `accuracy: 0.03`.
+/// The accuracy asked for, and the bounds within which the run chooses its settings. `solver.tolerance` is the coarsest one; `time.step` is the
+/// coarsest one where bodies move, and grows where nothing does. A share alone stands for the struct with it: `accuracy: 0.03`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AccuracySpec {
     /// Share of the result by which step and tolerance together may change it.
@@ -28,6 +30,9 @@ pub struct AccuracySpec {
     /// Smallest step (s); a sixty-fourth of `time.step` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_step: Option<f64>,
+    /// Largest step (s) where nothing moves; 100 times `time.step` by default, and `time.step` for steps that do not grow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_step: Option<f64>,
     /// Smallest tolerance; 1/256 of the case's by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_tolerance: Option<f64>,
@@ -35,19 +40,36 @@ pub struct AccuracySpec {
     pub effort: f64,
 }
 
+impl AccuracySpec {
+    /// Largest step (s) where nothing moves, of a case with this `time.step`.
+    pub fn largest(&self, step: f64) -> f64 {
+        self.largest_step.unwrap_or(LARGEST * step)
+    }
+}
+
+/// Largest step over that of the case, if nothing is said.
+const LARGEST: f64 = 100.0;
+
 /// The fields of [`AccuracySpec`] as a case gives them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename = "AccuracySpec")]
 struct Fields {
+    #[serde(default = "share")]
     share: f64,
     #[serde(default)]
     of: AccurateResult,
     #[serde(default)]
     finest_step: Option<f64>,
     #[serde(default)]
+    largest_step: Option<f64>,
+    #[serde(default)]
     finest_tolerance: Option<f64>,
     #[serde(default = "effort")]
     effort: f64,
+}
+
+fn share() -> f64 {
+    0.03
 }
 
 fn effort() -> f64 {
@@ -60,6 +82,7 @@ impl From<Fields> for AccuracySpec {
             share: fields.share,
             of: fields.of,
             finest_step: fields.finest_step,
+            largest_step: fields.largest_step,
             finest_tolerance: fields.finest_tolerance,
             effort: fields.effort,
         }
@@ -82,6 +105,7 @@ impl<'de> Deserialize<'de> for AccuracySpec {
                     share,
                     of: AccurateResult::default(),
                     finest_step: None,
+                    largest_step: None,
                     finest_tolerance: None,
                     effort: effort(),
                 })

@@ -3,9 +3,11 @@
 //! Each step begins by applying them: first the current phase, then removals, then gravity, loaded areas and
 //! drives.
 
+mod ahead;
 mod gravity;
 mod phases;
 
+pub use ahead::Ahead;
 pub use gravity::GravityDrive;
 pub use phases::{Begun, Changes, Phase, Until};
 
@@ -136,7 +138,7 @@ impl<S: Space> Simulation<S> {
         let now = phases::Moment {
             time: self.state.time,
             step: self.state.steps,
-            h: self.options.scheme.h,
+            h: self.options.event_step(),
         };
         let mut clock = std::mem::take(&mut self.state.control.clock);
         if let Some(why) = clock.ends(&until, &now, || self.motion_of_free()) {
@@ -156,7 +158,7 @@ impl<S: Space> Simulation<S> {
         let (changes, time) = (phase.changes, self.state.time);
         for (place, dof, drive) in changes.drives {
             self.replace_servos(&Pushed::Body(place, dof), &drive);
-            let middle = time + 0.5 * self.options.scheme.h;
+            let middle = time + 0.5 * self.options.event_step();
             self.state
                 .bodies
                 .set_drive(place, dof, drive.delayed(time), middle);
@@ -192,9 +194,10 @@ impl<S: Space> Simulation<S> {
     fn loads(&mut self) {
         let time = self.state.time;
         let Scheme { h, theta } = self.options.scheme;
+        let soon = time + 0.5 * self.options.event_step();
         let (due, later) = std::mem::take(&mut self.state.control.gates)
             .into_iter()
-            .partition(|gate: &(usize, f64)| time + 0.5 * h > gate.1);
+            .partition(|gate: &(usize, f64)| soon > gate.1);
         self.state.control.gates = later;
         let due: Vec<(usize, f64)> = due;
         for (place, _) in &due {
@@ -205,7 +208,7 @@ impl<S: Space> Simulation<S> {
             self.state.gravity = drive.at::<S>(&self.state.control.gravity, time + theta * h);
         }
         self.measure_areas();
-        self.state.bodies.engage_stages(time + 0.5 * h);
+        self.state.bodies.engage_stages(soon);
     }
 
     /// Measures the loaded areas of all servo pressures.

@@ -138,6 +138,24 @@ impl Clock {
         }
     }
 
+    /// When the phase ends at the latest (s), and the longest step (s) after which its end is judged: infinite where there is none.
+    pub fn ahead(&self, until: &Until) -> [f64; 2] {
+        let Some(begun) = self.begun.last() else {
+            return [f64::INFINITY; 2];
+        };
+        match until {
+            Until::Time(t) => [*t, f64::INFINITY],
+            Until::After(t) => [begun.start + t, f64::INFINITY],
+            // Which step is the last does not depend on times.
+            Until::Steps(_) => [f64::INFINITY, 0.0],
+            Until::AtRest { held, at_most, .. } => {
+                let rest = self.still_since.map_or(f64::INFINITY, |t| t + held);
+                let latest = at_most.map_or(f64::INFINITY, |t| begun.start + t);
+                [rest.min(latest), *held]
+            }
+        }
+    }
+
     /// Returns why the phase ends now, or `None`; `motion` is evaluated only if the condition depends on it.
     pub fn ends(
         &mut self,

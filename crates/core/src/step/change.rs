@@ -1,0 +1,144 @@
+//! How much a step has changed: what tells whether a longer one would do.
+
+use super::{Simulation, Steps};
+use crate::contact::Key;
+use crate::geometry::space::{Space, VectorLike};
+
+/// Forces of all contacts in the last step (N; N/m in 2D), in the order of their keys.
+#[derive(Clone, Debug, Default)]
+pub struct ContactForces<S: Space>(Vec<(Key, S::Vector)>);
+
+impl<S: Space> ContactForces<S> {
+    /// Root of the sum of squares of the differences, over that of the forces, the larger of the two; 0 where there is none.
+    pub fn change(&self, after: &Self) -> f64 {
+        let (mut old, mut new) = (self.0.iter().peekable(), after.0.iter().peekable());
+        let (mut difference, mut sums) = (0.0, [0.0; 2]);
+        loop {
+            let (a, b) = match (old.peek(), new.peek()) {
+                (None, None) => break,
+                (Some(a), Some(b)) if a.0 == b.0 => (old.next(), new.next()),
+                (Some(a), Some(b)) if a.0 < b.0 => (old.next(), None),
+                (Some(_), None) => (old.next(), None),
+                _ => (None, new.next()),
+            };
+            let force = |of: Option<&(Key, S::Vector)>| of.map_or(S::Vector::zero(), |x| x.1);
+            let (a, b) = (force(a), force(b));
+            difference += (a - b).dot(&(a - b));
+            sums[0] += a.dot(&a);
+            sums[1] += b.dot(&b);
+        }
+        let size = sums[0].max(sums[1]);
+        if size > 0.0 {
+            (difference / size).sqrt()
+        } else {
+            0.0
+        }
+    }
+}
+
+/// What a step has changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepChange {
+    /// Largest displacement of a point of a body, see [`Simulation::largest_displacement`].
+    pub displacement: f64,
+    /// Change of the contact forces, see [`ContactForces::change`].
+    pub forces: f64,
+}
+
+impl<S: Steps> Simulation<S> {
+    /// The forces of the contacts in the last step.
+    pub fn contact_forces(&self) -> ContactForces<S> {
+        S::contact_forces(self)
+    }
+
+    /// The largest displacement of a point of a body in a step at the current velocities, over the length of the smallest grain, or the
+    /// alert distance without grains. Infinite where a surface turns into another place, since its extent is not known. A ball that
+    /// turns in its place does not move.
+    pub fn largest_displacement(&self) -> f64 {
+        S::largest_displacement(self)
+    }
+
+    /// What the last step has changed; `before` are the forces of the step before.
+    pub fn change_since(&self, before: &ContactForces<S>) -> StepChange {
+        S::change_since(self, before)
+    }
+}
+
+pub(super) fn contact_forces<S: Space>(s: &Simulation<S>) -> ContactForces<S> {
+    let per = 1.0 / s.options.scheme.h;
+    let contacts = s.state.network.contacts.iter();
+    let carrying = contacts.filter(|c| c.impulse != S::Vector::zero());
+    ContactForces(carrying.map(|c| (c.key, c.impulse * per)).collect())
+}
+
+pub(super) fn largest_displacement<S: Space>(s: &Simulation<S>) -> f64 {
+    let (bodies, network) = (&s.state.bodies, &s.state.network);
+    let turning = s.shapes.surfaces.iter().any(|surface| {
+        let b = surface.body as usize;
+        let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
+        bodies.spin[b].norm() > 0.0 && !surface.shape.keeps_place(&spin)
+    });
+    if turning {
+        return f64::INFINITY;
+    }
+    let speed = |b: usize| {
+        let lever = network.extents.lever(b);
+        let turn = if lever > 0.0 {
+            lever * bodies.spin[b].norm()
+        } else {
+            0.0
+        };
+        bodies.velocity[b].norm() + turn
+    };
+    let present = (0..bodies.len()).filter(|b| !bodies.removed[*b]);
+    let grains = bodies.grains().filter(|b| !bodies.removed[*b]);
+    let smallest = grains
+        .map(|b| bodies.length[b])
+        .fold(f64::INFINITY, f64::min);
+    let size = if smallest.is_finite() {
+        smallest
+    } else {
+        network.alert
+    };
+    s.options.scheme.h * present.map(speed).fold(0.0, f64::max) / size
+}
+
+pub(super) fn change_since<S: Space>(s: &Simulation<S>, before: &ContactForces<S>) -> StepChange {
+    StepChange {
+        displacement: largest_displacement(s),
+        forces: before.change(&contact_forces(s)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
+
+    fn forces(list: &[(u32, f64)]) -> ContactForces<Dim2> {
+        let key = |candidate| Key {
+            candidate,
+            antagonist: 9,
+            feature: 0,
+        };
+        ContactForces(
+            list.iter()
+                .map(|(k, f)| (key(*k), Vector2::new(0.0, *f)))
+                .collect(),
+        )
+    }
+
+    #[test]
+    fn forces_that_come_and_go_count_in_full() {
+        let before = forces(&[(0, 3.0), (1, 4.0)]);
+        assert_eq!(before.change(&before), 0.0);
+        assert!((before.change(&forces(&[(0, 3.0), (1, 3.5)])) - 0.1).abs() < 1e-15);
+        // 4 N go, 3 N come.
+        let after = forces(&[(0, 3.0), (2, 3.0)]);
+        assert!((before.change(&after) - 1.0).abs() < 1e-15);
+        assert!((after.change(&before) - 1.0).abs() < 1e-15);
+        assert_eq!(before.change(&forces(&[])), 1.0);
+        assert_eq!(forces(&[]).change(&forces(&[])), 0.0);
+    }
+}

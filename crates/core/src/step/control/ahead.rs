@@ -1,0 +1,101 @@
+//! What lies ahead of a step that would span several steps of the case.
+
+use super::{GravityDrive, Simulation};
+use crate::bodies::{Dof, TimeFunction};
+use crate::geometry::space::Space;
+use crate::laws::Interface;
+
+/// What a step must not pass, and how long it may be, as known from drives, gates and phases.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ahead {
+    /// Time of the next event (s): a gate, the end of a phase or stage, a kink of a drive; infinite if there is none.
+    pub event: f64,
+    /// Longest step that resolves what changes smoothly (s); infinite where nothing does.
+    pub longest: f64,
+}
+
+impl Ahead {
+    fn function(&mut self, f: &TimeFunction, t: f64) {
+        self.event = self.event.min(f.next_kink(t));
+        self.longest = self.longest.min(f.resolved_step(t));
+    }
+
+    fn drive(&mut self, drive: &Dof, t: f64) {
+        self.event = self.event.min(drive.next_kink(t));
+        self.longest = self.longest.min(drive.resolved_step(t));
+    }
+
+    /// Steps of `h` (s) from `time` on to the event, or to the step in which it falls; and those that one step may span, as far as what
+    /// changes smoothly goes. Both are at least 1.
+    pub fn steps(&self, time: f64, h: f64) -> [u64; 2] {
+        let whole = |t: f64| {
+            let steps = t / h;
+            // Times are sums of steps.
+            if (steps - steps.round()).abs() < 1e-6 * steps.abs().clamp(1.0, 1e3) {
+                steps.round()
+            } else {
+                steps.floor()
+            }
+        };
+        // Saturates where there is no bound.
+        [self.event - time, self.longest].map(|t| whole(t).max(1.0) as u64)
+    }
+}
+
+impl<S: Space> Simulation<S> {
+    /// What lies ahead of the next step. Drives of deformable bodies are not looked at.
+    pub fn ahead(&self) -> Ahead {
+        // An event that is due is one of the step that begins.
+        let t = self.state.time + 1e-6 * self.options.event_step();
+        let control = &self.state.control;
+        let mut ahead = Ahead {
+            event: f64::INFINITY,
+            longest: f64::INFINITY,
+        };
+        for dof in self.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
+            ahead.drive(dof, t);
+        }
+        for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
+            ahead.event = ahead.event.min(*gate);
+        }
+        let bonds = self.laws.iter().filter_map(Interface::bonding_time);
+        ahead.event = bonds.filter(|b| *b > t).fold(ahead.event, f64::min);
+        match &control.gravity_drive {
+            None => {}
+            Some(GravityDrive::Turned { angle: f, .. } | GravityDrive::Scaled(f)) => {
+                ahead.function(f, t);
+            }
+            Some(GravityDrive::Axes(list)) => list.iter().for_each(|f| ahead.function(f, t)),
+        }
+        let phase = control.phase().checked_sub(1);
+        let until = phase.and_then(|k| self.phases.get(k)?.until.as_ref());
+        if let Some(until) = until {
+            let [end, longest] = control.clock.ahead(until);
+            ahead.event = ahead.event.min(end);
+            ahead.longest = ahead.longest.min(longest);
+        }
+        ahead
+    }
+
+    /// Whether the next step is the first of a phase: what is ahead of it is known after it.
+    pub fn phase_begins(&self) -> bool {
+        self.state.control.clock.turns() && self.state.control.phase() < self.phases.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_ends_at_an_event_or_at_the_steps_beside_it() {
+        let steps = |event: f64, longest: f64, time: f64| Ahead { event, longest }.steps(time, 0.1);
+        assert_eq!(steps(1.0, 0.35, 0.0), [10, 3]);
+        // 0.1 + 0.1 + 0.1 is above 0.3.
+        assert_eq!(steps(1.0, 1.0, 0.1 + 0.1 + 0.1), [7, 10]);
+        // Between two steps: up to the first of them, then a step of the case.
+        assert_eq!(steps(1.03, 1.0, 0.0), [10, 10]);
+        assert_eq!(steps(1.03, 0.01, 1.0), [1, 1]);
+        assert_eq!(steps(f64::INFINITY, f64::INFINITY, 0.0), [u64::MAX; 2]);
+    }
+}
