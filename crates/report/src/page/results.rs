@@ -105,6 +105,15 @@ pub(crate) fn clock(differs: bool) -> &'static str {
     if differs { " class=\"clock\"" } else { "" }
 }
 
+/// Whether a number, by its path, or the group it is in comes from the clock.
+fn from_the_clock(path: &str) -> bool {
+    FROM_THE_CLOCK.iter().any(|pointer| {
+        let of = pointer[1..].replace('/', ".");
+        let rest = path.strip_prefix(&of);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    })
+}
+
 /// All numbers of the summary, by their paths.
 fn everything(summary: &Value) -> String {
     let mut rows = Vec::new();
@@ -114,11 +123,7 @@ fn everything(summary: &Value) -> String {
         .map(|(path, value)| {
             format!(
                 "<tr{}><td><code>{}</code></td><td>{}</td></tr>\n",
-                clock(
-                    FROM_THE_CLOCK
-                        .iter()
-                        .any(|p| p[1..].replace('/', ".") == *path)
-                ),
+                clock(from_the_clock(path)),
                 escape(path),
                 escape(value)
             )
