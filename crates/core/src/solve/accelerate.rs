@@ -1,83 +1,92 @@
-//! Anderson acceleration of the Gauss-Seidel iteration over bodies. At each failed convergence test the
-//! impulses are extrapolated and the velocities recomputed. The iterations between two tests count as one
-//! application of the fixed-point map, so that the cost of an extrapolation, about three iterations, is
-//! spread over ten.
+//! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum, less of it where the residual does not fall
+//! from test to test, Anderson extrapolation where it does not fall again, and no momentum any more where that does not help.
 
-use super::extrapolation::{Extrapolation, Safeguard};
+use super::anderson::{Anderson, MEMORY};
 use super::form::Problem;
+use super::momentum::Momentum;
 use crate::geometry::space::Space;
 
-/// Number of stored differences.
-const MEMORY: usize = 6;
 /// Iterations before it starts: most warm-started steps need no more.
-const START: u32 = 20;
-
-/// Number of tests without a reduction of the residual by a tenth, after which it is paused.
-const PATIENCE: u32 = 10;
-/// Length of the first pause in tests; doubled each time.
-const PAUSE: u32 = 6;
+const FIRST: u32 = 10;
+/// Tests in which the squared residual has to fall by half, or momentum is given up.
+const PATIENCE: u32 = 20;
 
 /// State of the acceleration in a solve.
 #[derive(Debug)]
-pub(super) struct Acceleration {
-    sequence: Option<Extrapolation>,
-    impulses: Vec<f64>,
+pub(super) struct Acceleration<S: Space> {
+    /// Whether momentum is used: not where Anderson extrapolation spans all unknowns, and not with bonds and bodies that deform, over
+    /// which it takes as many iterations.
+    with_momentum: bool,
+    momentum: Option<Momentum<S>>,
+    anderson: Anderson,
+    /// Squared residual at the last test.
+    last: f64,
+    /// Whether it had risen there.
+    rose: bool,
+    /// Squared residual from which it has to fall by half, and the tests since then.
     least: f64,
-    idle: u32,
-    paused: u32,
-    pause: u32,
+    tests: u32,
 }
 
-impl Default for Acceleration {
-    fn default() -> Self {
+impl<S: Space> Acceleration<S> {
+    pub fn new(problem: &Problem<S>) -> Self {
+        let bonded = problem.full.len() + problem.bonded_levers.len();
+        let unknowns = problem.contacts() * S::D;
         Self {
-            sequence: None,
-            impulses: Vec::new(),
+            with_momentum: unknowns > MEMORY && bonded == 0 && problem.systems.is_empty(),
+            momentum: None,
+            anderson: Anderson::default(),
+            last: f64::INFINITY,
+            rose: false,
             least: f64::INFINITY,
-            idle: 0,
-            paused: 0,
-            pause: PAUSE,
-        }
-    }
-}
-
-impl Acceleration {
-    /// Extrapolates after a failed test with the given squared residual.
-    pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
-        if done < START {
-            return;
-        }
-        if self.paused > 0 {
-            self.paused -= 1;
-            return;
-        }
-        if residual < 0.8 * self.least {
-            (self.least, self.idle) = (residual, 0);
-        } else {
-            self.idle += 1;
-            if self.idle > PATIENCE {
-                self.forget();
-                (self.least, self.idle) = (f64::INFINITY, 0);
-                self.paused = self.pause;
-                self.pause *= 2;
-                return;
-            }
-        }
-        problem.store(&mut self.impulses);
-        match &mut self.sequence {
-            None => {
-                let sequence = Extrapolation::new(MEMORY, Safeguard::Back, &self.impulses);
-                self.sequence = Some(sequence);
-            }
-            Some(sequence) => {
-                sequence.next(&self.impulses);
-                problem.restore(&sequence.start);
-            }
+            tests: 0,
         }
     }
 
-    /// Discards the stored differences, because the map has changed.
+    /// The momentum of the next iteration, after `done` iterations.
+    pub fn momentum(&mut self, problem: &Problem<S>, done: u32) -> Option<&mut Momentum<S>> {
+        if self.with_momentum && done >= FIRST && self.momentum.is_none() {
+            self.momentum = Some(Momentum::new(problem));
+        }
+        self.momentum.as_mut()
+    }
+
+    /// Discards what Anderson extrapolation knows of the iteration, because that has changed.
     pub fn forget(&mut self) {
-        self.sequence = None;
+        self.anderson.forget();
+    }
+
+    /// Looks at the squared residual of a failed test after `done` iterations, and may change the impulses.
+    pub fn tested(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
+        if self.stalls(residual) {
+            (self.with_momentum, self.momentum) = (false, None);
+            self.anderson.forget();
+        }
+        let Some(momentum) = &mut self.momentum else {
+            if done > FIRST {
+                self.anderson.extrapolate(problem, residual);
+            }
+            return;
+        };
+        let (rises, rose) = (residual >= self.last, self.rose);
+        (self.last, self.rose) = (residual, rises);
+        if !rises {
+            self.anderson.forget();
+            momentum.speed_up();
+        } else if !rose {
+            momentum.slow_down();
+        } else if self.anderson.extrapolate(problem, residual) {
+            momentum.start_anew(problem);
+        }
+    }
+
+    /// Whether the squared residual has not fallen by half for long.
+    fn stalls(&mut self, residual: f64) -> bool {
+        if residual < 0.5 * self.least {
+            (self.least, self.tests) = (residual, 0);
+        } else {
+            self.tests += 1;
+        }
+        self.momentum.is_some() && self.tests >= PATIENCE
     }
 }

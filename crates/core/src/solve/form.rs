@@ -330,11 +330,11 @@ impl<S: Space> Problem<S> {
     /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
         match place {
-            Place::Plain(r) => self.plain.row(r).normal(),
-            Place::Full(r) => self.full.row(r).normal(),
-            Place::Lever(r) => self.levers.row(r).normal(),
-            Place::BondedLever(r) => self.bonded_levers.row(r).normal(),
-            Place::System(r) => self.of_systems[r as usize].normal(),
+            Place::Plain(r) => self.plain.row(r).parts().0,
+            Place::Full(r) => self.full.row(r).parts().0,
+            Place::Lever(r) => self.levers.row(r).parts().0,
+            Place::BondedLever(r) => self.bonded_levers.row(r).parts().0,
+            Place::System(r) => self.of_systems[r as usize].impulse().0,
         }
     }
 

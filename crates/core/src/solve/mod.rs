@@ -7,6 +7,7 @@
 //!
 //! Body velocities are updated in place, so that applying an impulse costs O(1) per contact.
 pub mod accelerate;
+mod anderson;
 mod build;
 pub mod choose;
 pub mod chosen;
@@ -18,6 +19,7 @@ pub mod form;
 mod loaded;
 pub mod local;
 mod measure;
+mod momentum;
 pub mod nlgs;
 pub mod nodal;
 pub mod requirements;

@@ -6,8 +6,9 @@ use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
 use super::measure::{free_velocity, measure, scale};
+use super::momentum::Momentum;
 use super::nodal::NodalSystem;
-use super::row::{Row, SolverBodies, SolverBody};
+use super::row::{self, Row, SolverBodies, SolverBody};
 use crate::geometry::space::Space;
 
 /// Solver options.
@@ -23,7 +24,7 @@ pub struct Options {
     pub test_every: u32,
     /// Over-relaxation factor in \[1, 2) applied to the impulse increment of each contact.
     pub relaxation: f64,
-    /// Whether Anderson acceleration is used.
+    /// Whether momentum and Anderson acceleration are used.
     pub accelerated: bool,
     /// Solution method.
     pub method: Method,
@@ -106,7 +107,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     problem.reload(options.parallel);
     let every = options.test_every.max(1);
     let mut report = Report::default();
-    let mut acceleration = options.accelerated.then(Acceleration::default);
+    let mut acceleration = options.accelerated.then(|| Acceleration::new(problem));
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
@@ -114,13 +115,13 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     loop {
         let last = next.min(options.max_iterations);
         while report.iterations < last {
-            // The iteration before a test is not relaxed, so that its impulses are admissible.
-            let plain = report.iterations + 1 == last;
-            sweep(
-                problem,
-                if plain { 1.0 } else { relaxation },
-                options.parallel,
-            );
+            let momentum = acceleration.as_mut();
+            let momentum = momentum.and_then(|a| a.momentum(problem, report.iterations));
+            // The iteration before a test is not relaxed, so that its impulses are admissible; nor is one with momentum, which takes
+            // the place of relaxation.
+            let plain = report.iterations + 1 == last || momentum.is_some();
+            let relaxation = if plain { 1.0 } else { relaxation };
+            sweep(problem, relaxation, options.parallel, momentum);
             report.iterations += 1;
         }
         let ended = report.iterations >= options.max_iterations;
@@ -165,7 +166,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             if cautious != relaxation {
                 acceleration.forget();
             }
-            acceleration.extrapolate(problem, report.iterations, sums.residual);
+            acceleration.tested(problem, report.iterations, sums.residual);
         }
         relaxation = cautious;
     }
@@ -180,7 +181,7 @@ pub fn prepare<S: Space>(problem: &mut Problem<S>) {
 /// Runs iterations without convergence tests, for benchmarks. The problem must have been [`prepare`]d.
 pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, parallel: bool) {
     for _ in 0..count {
-        sweep(problem, relaxation, parallel);
+        sweep(problem, relaxation, parallel, None);
     }
     problem.settle_systems();
 }
@@ -254,24 +255,24 @@ impl<S: Space> Problem<S> {
     /// Stores the components of all impulses and moments, in the order of the iteration.
     pub(super) fn store(&self, out: &mut Vec<f64>) {
         out.clear();
-        self.plain.iter().for_each(|row| row.store(out));
-        self.full.iter().for_each(|row| row.store(out));
-        self.levers.iter().for_each(|row| row.store(out));
-        self.bonded_levers.iter().for_each(|row| row.store(out));
-        self.of_systems.iter().for_each(|row| row.store(out));
+        self.plain.store(out);
+        self.full.store(out);
+        self.levers.store(out);
+        self.bonded_levers.store(out);
+        let of_systems = self.of_systems.iter();
+        of_systems.for_each(|row| row::store::<S>(row.impulse(), out));
         self.moments.iter().for_each(|row| row.store(out));
     }
 
     /// Restores them, and recomputes the velocities.
     pub(super) fn restore(&mut self, mut from: &[f64]) {
         let from = &mut from;
-        self.plain.iter_mut().for_each(|row| row.restore(from));
-        self.full.iter_mut().for_each(|row| row.restore(from));
-        self.levers.iter_mut().for_each(|row| row.restore(from));
-        self.bonded_levers
-            .iter_mut()
-            .for_each(|row| row.restore(from));
-        self.of_systems.iter_mut().for_each(|row| row.restore(from));
+        self.plain.restore(from);
+        self.full.restore(from);
+        self.levers.restore(from);
+        self.bonded_levers.restore(from);
+        let of_systems = self.of_systems.iter_mut();
+        of_systems.for_each(|row| row.set_impulse(row::restore::<S>(from)));
         self.moments.iter_mut().for_each(|row| row.restore(from));
         self.reload(false);
     }
@@ -375,14 +376,17 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
     }
 }
 
-fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
-    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    problem.plain.sweep(&solver_bodies, relaxation, parallel);
-    problem.full.sweep(&solver_bodies, relaxation, parallel);
-    problem.levers.sweep(&solver_bodies, relaxation, parallel);
-    problem
-        .bonded_levers
-        .sweep(&solver_bodies, relaxation, parallel);
+/// Solves every contact once; with momentum from impulses and velocities that it has moved on.
+fn sweep<S: Space>(
+    problem: &mut Problem<S>,
+    relaxation: f64,
+    parallel: bool,
+    momentum: Option<&mut Momentum<S>>,
+) {
+    match momentum {
+        None => sweep_rows(problem, relaxation, parallel),
+        Some(momentum) => sweep_rows_on(problem, relaxation, parallel, momentum),
+    }
     for row in &mut problem.of_systems {
         row.update(&mut problem.solver_bodies, &mut problem.systems, relaxation);
     }
@@ -392,4 +396,38 @@ fn sweep<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
         let (row, systems) = (&mut problem.moments[k], &mut problem.systems);
         solver_bodies.alone(row.bodies, |a, b| row.update(pn, a, b, systems, relaxation));
     }
+}
+
+fn sweep_rows<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
+    problem.plain.sweep(&solver_bodies, relaxation, parallel);
+    problem.full.sweep(&solver_bodies, relaxation, parallel);
+    problem.levers.sweep(&solver_bodies, relaxation, parallel);
+    problem
+        .bonded_levers
+        .sweep(&solver_bodies, relaxation, parallel);
+}
+
+fn sweep_rows_on<S: Space>(
+    problem: &mut Problem<S>,
+    relaxation: f64,
+    parallel: bool,
+    momentum: &mut Momentum<S>,
+) {
+    let factor = momentum.advance(&mut problem.solver_bodies, parallel);
+    for (row, before) in problem.moments.iter_mut().zip(&mut momentum.moments) {
+        let now = row.moment();
+        row.set(&(now + (now - *before) * factor));
+        *before = now;
+    }
+    let [plain, full, levers, bonded_levers] = &mut momentum.impulses;
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
+    let rows = &mut problem.plain;
+    rows.sweep_on(&solver_bodies, relaxation, parallel, (plain, factor));
+    let rows = &mut problem.full;
+    rows.sweep_on(&solver_bodies, relaxation, parallel, (full, factor));
+    let rows = &mut problem.levers;
+    rows.sweep_on(&solver_bodies, relaxation, parallel, (levers, factor));
+    let rows = &mut problem.bonded_levers;
+    rows.sweep_on(&solver_bodies, relaxation, parallel, (bonded_levers, factor));
 }

@@ -3,9 +3,10 @@
 use super::colour::Order;
 use super::error::{Scale, Sums};
 use super::form::ContactForm;
-use super::row::{Free, Load, Measure, Row, SolverBodies, Update, Visit, visit};
+use super::row::{self, Free, Load, Measure, Parts, Row, SolverBodies, Update, Visit, visit};
 use crate::geometry::space::Space;
 use crate::threads::{fill_places, map_ranges, pays};
+use std::ops::Range;
 
 /// Contacts per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 512;
@@ -51,14 +52,6 @@ impl<R> Rows<R> {
         self.rows.push(row);
         self.sorted = false;
         self.rows.len() as u32 - 1
-    }
-
-    pub fn iter(&self) -> impl Iterator<Item = &R> {
-        self.rows.iter()
-    }
-
-    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut R> {
-        self.rows.iter_mut()
     }
 
     pub fn row(&self, place: u32) -> &R {
@@ -125,7 +118,32 @@ impl<R> Rows<R> {
     ) where
         R: Row<S>,
     {
-        self.pass(solver_bodies, parallel, || Update(relaxation));
+        self.pass(solver_bodies, parallel, |_, _| Update(relaxation));
+    }
+
+    /// As [`Self::sweep`], from impulses moved on by `factor` times what they changed since `before`, which then holds them as they
+    /// were.
+    pub fn sweep_on<S: Space>(
+        &mut self,
+        solver_bodies: &SolverBodies<S>,
+        relaxation: f64,
+        parallel: bool,
+        (before, factor): (&mut [Parts<S>], f64),
+    ) where
+        R: Row<S>,
+    {
+        assert_eq!(before.len(), self.rows.len());
+        let before = Shared(before.as_mut_ptr());
+        self.pass(solver_bodies, parallel, |rows, range| {
+            // SAFETY: as of the rows.
+            let before = unsafe { before.slice(range) };
+            for (row, before) in rows.iter_mut().zip(before) {
+                let (n, t) = row.parts();
+                row.set_parts((n + (n - before.0) * factor, t + (t - before.1) * factor));
+                *before = (n, t);
+            }
+            Update(relaxation)
+        });
     }
 
     /// Applies the stored impulses to the velocities.
@@ -133,15 +151,15 @@ impl<R> Rows<R> {
     where
         R: Row<S>,
     {
-        self.pass(solver_bodies, parallel, || Load);
+        self.pass(solver_bodies, parallel, |_, _| Load);
     }
 
-    /// Applies a visitor to all rows, block by block.
+    /// Applies a visitor to all rows, block by block; `what` gives it for each, after it has seen the rows and their range.
     fn pass<S: Space, V: Visit>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         parallel: bool,
-        what: impl Fn() -> V + Sync,
+        what: impl Fn(&mut [R], Range<usize>) -> V + Sync,
     ) where
         R: Row<S>,
     {
@@ -154,8 +172,35 @@ impl<R> Rows<R> {
         schedule.run(pays(parallel, count, ORDERED), |block| {
             // SAFETY: blocks are disjoint, and each is run once.
             let part = unsafe { rows.slice(schedule.block(block)) };
-            visit(part, schedule.groups(block), solver_bodies, &mut what());
+            let mut visitor = what(part, schedule.block(block));
+            visit(part, schedule.groups(block), solver_bodies, &mut visitor);
         });
+    }
+
+    /// Appends the components of the impulses.
+    pub fn store<S: Space>(&self, out: &mut Vec<f64>)
+    where
+        R: Row<S>,
+    {
+        let rows = self.rows.iter();
+        rows.for_each(|r| row::store::<S>(r.parts(), out));
+    }
+
+    /// Takes them from the front of `from`.
+    pub fn restore<S: Space>(&mut self, from: &mut &[f64])
+    where
+        R: Row<S>,
+    {
+        let rows = self.rows.iter_mut();
+        rows.for_each(|r| r.set_parts(row::restore::<S>(from)));
+    }
+
+    /// The impulses.
+    pub fn parts<S: Space>(&self) -> Vec<Parts<S>>
+    where
+        R: Row<S>,
+    {
+        self.rows.iter().map(Row::parts).collect()
     }
 
     /// Adds the contributions to the convergence test; rows are counted from `first`.
@@ -221,7 +266,7 @@ impl<R> Shared<R> {
     /// The places are those of rows that no one else uses meanwhile.
     #[inline(always)]
     #[expect(clippy::mut_from_ref)]
-    unsafe fn slice(&self, places: std::ops::Range<usize>) -> &mut [R] {
+    unsafe fn slice(&self, places: Range<usize>) -> &mut [R] {
         // SAFETY: as above.
         unsafe { std::slice::from_raw_parts_mut(self.0.add(places.start), places.len()) }
     }

@@ -1,7 +1,7 @@
 //! A contact on a full block of W, and its impulse: without a bond, and with one. What the impulse does to the bodies is the row's part.
 
 use super::cone::{Cone, Limits, across, compliant, framed, in_frame, times};
-use super::{Residual, natural_map, restore_parts, store_parts};
+use super::{Parts, Residual, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
@@ -84,14 +84,16 @@ impl<S: Space> State<S> {
         self.pt = S::tangential(&self.n, impulse);
     }
 
-    /// See [`super::Row::store`].
-    pub fn store(&self, out: &mut Vec<f64>) {
-        store_parts(self.pn, &self.pt, out);
+    /// See [`super::Row::parts`].
+    #[inline(always)]
+    pub fn parts(&self) -> Parts<S> {
+        (self.pn, self.pt)
     }
 
-    /// See [`super::Row::restore`].
-    pub fn restore(&mut self, from: &mut &[f64]) {
-        restore_parts(&mut self.pn, &mut self.pt, from);
+    /// See [`super::Row::set_parts`].
+    #[inline(always)]
+    pub fn set_parts(&mut self, parts: Parts<S>) {
+        (self.pn, self.pt) = parts;
     }
 
     /// Goes `relaxation` times as far as to the impulse `p`, given in the frame; gives the change.

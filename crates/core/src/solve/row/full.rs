@@ -1,8 +1,7 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed form.
 
 use super::{
-    Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
-    store_parts,
+    Parts, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -172,21 +171,19 @@ impl<S: Space> Row<S> for FullRow<S> {
         push(&self.n, self.pn, self.pt, a, b);
     }
 
-    fn store(&self, out: &mut Vec<f64>) {
-        store_parts(self.pn, &self.pt, out);
+    #[inline(always)]
+    fn parts(&self) -> Parts<S> {
+        (self.pn, self.pt)
     }
 
-    fn restore(&mut self, from: &mut &[f64]) {
-        restore_parts(&mut self.pn, &mut self.pt, from);
+    #[inline(always)]
+    fn set_parts(&mut self, parts: Parts<S>) {
+        (self.pn, self.pt) = parts;
     }
 
     fn set(&mut self, impulse: &S::Vector) {
         self.pn = self.n.dot(impulse);
         self.pt = S::tangential(&self.n, impulse);
-    }
-
-    fn normal(&self) -> f64 {
-        self.pn
     }
 
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {

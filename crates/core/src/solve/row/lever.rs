@@ -1,7 +1,7 @@
 //! A contact with lever arms, or of a body that is free along some axes only: a full block of W.
 
 use super::block::OnBlock;
-use super::{Residual, Row, SolverBody};
+use super::{Parts, Residual, Row, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 
@@ -91,20 +91,18 @@ impl<S: Space, C: OnBlock<S>> Row<S> for LeverRow<S, C> {
         self.levers.push(&self.contact.state().impulse(), a, b);
     }
 
-    fn store(&self, out: &mut Vec<f64>) {
-        self.contact.state().store(out);
+    #[inline(always)]
+    fn parts(&self) -> Parts<S> {
+        self.contact.state().parts()
     }
 
-    fn restore(&mut self, from: &mut &[f64]) {
-        self.contact.state_mut().restore(from);
+    #[inline(always)]
+    fn set_parts(&mut self, parts: Parts<S>) {
+        self.contact.state_mut().set_parts(parts);
     }
 
     fn set(&mut self, impulse: &S::Vector) {
         self.contact.state_mut().set(impulse);
-    }
-
-    fn normal(&self) -> f64 {
-        self.contact.state().pn
     }
 
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {

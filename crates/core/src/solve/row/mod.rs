@@ -73,6 +73,9 @@ pub struct Residual {
     pub slip: f64,
 }
 
+/// Normal and tangential impulse of a contact (N s).
+pub(super) type Parts<S> = (f64, <S as Space>::Tangent);
+
 /// A contact in the solver.
 pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn bodies(&self) -> [u32; 2];
@@ -81,14 +84,12 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64);
     /// Applies the stored impulse to the velocities.
     fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>);
-    /// Appends the components of the impulse.
-    fn store(&self, out: &mut Vec<f64>);
-    /// Restores them from the front of `from`; the caller updates the velocities.
-    fn restore(&mut self, from: &mut &[f64]);
+    /// Returns the normal and the tangential impulse.
+    fn parts(&self) -> Parts<S>;
+    /// Sets them; the caller updates the velocities.
+    fn set_parts(&mut self, parts: Parts<S>);
     /// Sets an impulse given in world axes; the caller updates the velocities.
     fn set(&mut self, impulse: &S::Vector);
-    /// Returns the normal impulse.
-    fn normal(&self) -> f64;
     /// Returns |u|^2 at the current velocities.
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64;
     /// Returns rho of the natural map; 0 for a contact between immovable bodies.
@@ -101,17 +102,20 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S>;
 }
 
-fn store_parts<T: VectorLike>(n: f64, t: &T, out: &mut Vec<f64>) {
+/// Appends the components of an impulse.
+pub(super) fn store<S: Space>((n, t): Parts<S>, out: &mut Vec<f64>) {
     out.push(n);
-    for k in 0..T::N {
+    for k in 0..S::Tangent::N {
         out.push(t[k]);
     }
 }
 
-fn restore_parts<T: VectorLike>(n: &mut f64, t: &mut T, from: &mut &[f64]) {
-    *n = from[0];
-    *t = T::from_slice(&from[1..=T::N]);
-    *from = &from[1 + T::N..];
+/// Takes them from the front of `from`.
+pub(super) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
+    let size = 1 + S::Tangent::N;
+    let (parts, rest) = from.split_at(size);
+    *from = rest;
+    (parts[0], S::Tangent::from_slice(&parts[1..]))
 }
 
 #[inline(always)]

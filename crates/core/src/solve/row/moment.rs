@@ -198,6 +198,10 @@ impl<S: Space> MomentRow<S> {
         *from = &from[S::Spin::N..];
     }
 
+    pub fn moment(&self) -> S::Spin {
+        self.moment
+    }
+
     pub fn set(&mut self, moment: &S::Spin) {
         self.moment = *moment;
     }

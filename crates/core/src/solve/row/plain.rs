@@ -1,8 +1,7 @@
 //! Contact of two balls without a bond, solved in closed form.
 
 use super::{
-    Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative, restore_parts,
-    store_parts,
+    Parts, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution};
@@ -82,21 +81,19 @@ impl<S: Space> Row<S> for PlainRow<S> {
         push(&self.n, self.pn, self.pt, a, b);
     }
 
-    fn store(&self, out: &mut Vec<f64>) {
-        store_parts(self.pn, &self.pt, out);
+    #[inline(always)]
+    fn parts(&self) -> Parts<S> {
+        (self.pn, self.pt)
     }
 
-    fn restore(&mut self, from: &mut &[f64]) {
-        restore_parts(&mut self.pn, &mut self.pt, from);
+    #[inline(always)]
+    fn set_parts(&mut self, parts: Parts<S>) {
+        (self.pn, self.pt) = parts;
     }
 
     fn set(&mut self, impulse: &S::Vector) {
         self.pn = self.n.dot(impulse);
         self.pt = grip::<S>(&self.n, impulse, self.mu);
-    }
-
-    fn normal(&self) -> f64 {
-        self.pn
     }
 
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {

@@ -2,7 +2,7 @@
 //! system that are touched.
 
 use super::block::{Bonded, OnBlock};
-use super::{Residual, SolverBody};
+use super::{Parts, Residual, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::error::Scale;
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
@@ -180,19 +180,14 @@ impl<S: Space> SystemRow<S> {
         self.contact.is_bonded()
     }
 
-    /// See [`super::Row::normal`].
-    pub fn normal(&self) -> f64 {
-        self.contact.state().pn
+    /// See [`super::Row::parts`].
+    pub fn impulse(&self) -> Parts<S> {
+        self.contact.state().parts()
     }
 
-    /// See [`super::Row::store`].
-    pub fn store(&self, out: &mut Vec<f64>) {
-        self.contact.state().store(out);
-    }
-
-    /// See [`super::Row::restore`].
-    pub fn restore(&mut self, from: &mut &[f64]) {
-        self.contact.state_mut().restore(from);
+    /// See [`super::Row::set_parts`].
+    pub fn set_impulse(&mut self, parts: Parts<S>) {
+        self.contact.state_mut().set_parts(parts);
     }
 
     /// See [`super::Row::set`].

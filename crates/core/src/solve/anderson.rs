@@ -1,0 +1,79 @@
+//! Anderson acceleration of the Gauss-Seidel iteration over bodies, between convergence tests. At each failed test the
+//! impulses are extrapolated and the velocities recomputed. The iterations between two tests count as one
+//! application of the fixed-point map, so that the cost of an extrapolation, about three iterations, is
+//! spread over ten.
+
+use super::extrapolation::{Extrapolation, Safeguard};
+use super::form::Problem;
+use crate::geometry::space::Space;
+
+/// Number of stored differences.
+pub(super) const MEMORY: usize = 6;
+/// Number of tests without a reduction of the residual by a tenth, after which it is paused.
+const PATIENCE: u32 = 10;
+/// Length of the first pause in tests; doubled each time.
+const PAUSE: u32 = 6;
+
+/// State of the acceleration in a solve.
+#[derive(Debug)]
+pub(super) struct Anderson {
+    sequence: Option<Extrapolation>,
+    impulses: Vec<f64>,
+    least: f64,
+    idle: u32,
+    paused: u32,
+    pause: u32,
+}
+
+impl Default for Anderson {
+    fn default() -> Self {
+        Self {
+            sequence: None,
+            impulses: Vec::new(),
+            least: f64::INFINITY,
+            idle: 0,
+            paused: 0,
+            pause: PAUSE,
+        }
+    }
+}
+
+impl Anderson {
+    /// Extrapolates after a failed test with the given squared residual; returns whether the impulses are others now.
+    pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, residual: f64) -> bool {
+        if self.paused > 0 {
+            self.paused -= 1;
+            return false;
+        }
+        if residual < 0.8 * self.least {
+            (self.least, self.idle) = (residual, 0);
+        } else {
+            self.idle += 1;
+            if self.idle > PATIENCE {
+                self.forget();
+                (self.least, self.idle) = (f64::INFINITY, 0);
+                self.paused = self.pause;
+                self.pause *= 2;
+                return false;
+            }
+        }
+        problem.store(&mut self.impulses);
+        match &mut self.sequence {
+            None => {
+                let sequence = Extrapolation::new(MEMORY, Safeguard::Back, &self.impulses);
+                self.sequence = Some(sequence);
+                false
+            }
+            Some(sequence) => {
+                sequence.next(&self.impulses);
+                problem.restore(&sequence.start);
+                true
+            }
+        }
+    }
+
+    /// Discards the stored differences, because the map has changed.
+    pub fn forget(&mut self) {
+        self.sequence = None;
+    }
+}
