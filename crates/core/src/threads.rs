@@ -190,6 +190,32 @@ pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + 
     parts.iter().sum()
 }
 
+/// Returns how many indices below `count` satisfy `of`, which takes about `each` nanoseconds.
+pub fn count(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool + Sync) -> usize {
+    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+        items.filter(|k| of(*k)).count()
+    });
+    parts.iter().sum()
+}
+
+/// Returns whether any index below `count` satisfies `of`, which takes about `each` nanoseconds.
+pub fn any(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool + Sync) -> bool {
+    if !pays(parallel, count, each) {
+        return (0..count).any(of);
+    }
+    let parts = map_ranges(true, count, SUM, |mut items| items.any(&of));
+    parts.contains(&true)
+}
+
+/// Returns the largest of what `of` gives for each index below `count`, which takes about `each` nanoseconds; 0 if none is larger, NaN if one is.
+pub fn largest(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let larger = |far: f64, x: f64| if x <= far || far.is_nan() { far } else { x };
+    let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
+        items.map(&of).fold(0.0, larger)
+    });
+    parts.into_iter().fold(0.0, larger)
+}
+
 /// Calls `on` with each chunk of `size` items and the index of its first.
 pub fn for_chunks<T: Send>(
     divide: bool,

@@ -45,7 +45,7 @@ impl Counts {
             steps: s.state.steps,
             time: s.state.time,
             bodies: s.state.bodies.len(),
-            contacts: n.contact_count(),
+            contacts: n.contact_count(s.options.solver.parallel),
             bonds: n.bonds_made(),
             broken: n.bonds_broken(),
             damage_ratio: damage_ratio(s),
@@ -180,7 +180,7 @@ impl<S: Space> Observer<S> for RunState {
             s.state.steps as f64,
             s.state.time,
             f64::from(cycle),
-            n.contact_count() as f64,
+            n.contact_count(s.options.solver.parallel) as f64,
         ];
         row.extend(self.last);
         row.extend([

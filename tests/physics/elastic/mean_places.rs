@@ -291,7 +291,7 @@ fn tension_acts_once_at_a_crease() {
     };
     let mut s = blocks.build::<Dim2>();
     go(&mut s, 30);
-    let contacts = s.state.network.contact_count();
+    let contacts = s.state.network.contact_count(false);
     assert!(contacts > 9, "{contacts} contacts of 9 points");
     near(
         2.0 * half * strength,

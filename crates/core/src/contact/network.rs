@@ -6,7 +6,7 @@ use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::sum;
+use crate::threads::{count, sum};
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -219,6 +219,13 @@ fn in_order<T: Serializer>(pairs: &HashSet<(u32, u32)>, to: T) -> Result<T::Ok, 
 
 /// About what it takes to find the energy of a contact's spring (ns).
 const ENERGY: f64 = 3.0;
+/// About what it takes to look whether a contact counts (ns).
+const COUNT: f64 = 2.0;
+
+/// Whether a contact is within the alert distance or bonded, or predicted and with an impulse.
+fn counts<S: Space>(contact: &Contact<S>) -> bool {
+    !contact.beyond || contact.impulse != S::Vector::zero()
+}
 
 impl<S: Space> Network<S> {
     /// Returns whether all bodies of its contacts have indices below this number. Broken pairs refer to
@@ -295,14 +302,14 @@ impl<S: Space> Network<S> {
 
     /// Returns the number of contacts: those within the alert distance or bonded, and of the predicted ones
     /// those with an impulse.
-    pub fn contact_count(&self) -> usize {
-        self.counted_contacts().count()
+    pub fn contact_count(&self, parallel: bool) -> usize {
+        let contacts = &self.contacts;
+        count(parallel, contacts.len(), COUNT, |k| counts(&contacts[k]))
     }
 
     /// Iterates over the contacts that [`Self::contact_count`] counts.
     pub fn counted_contacts(&self) -> impl Iterator<Item = &Contact<S>> {
-        let counts = |c: &&Contact<S>| !c.beyond || c.impulse != S::Vector::zero();
-        self.contacts.iter().filter(counts)
+        self.contacts.iter().filter(|c| counts(c))
     }
 
     /// Returns the bond of a contact, intact or broken.

@@ -17,6 +17,7 @@ pub(super) struct Acceleration<S: Space> {
     /// Whether momentum is used: not where Anderson extrapolation spans all unknowns, and not with bonds and bodies that deform, over
     /// which it takes as many iterations.
     with_momentum: bool,
+    parallel: bool,
     momentum: Option<Momentum<S>>,
     anderson: Anderson,
     /// Squared residual at the last test.
@@ -29,11 +30,12 @@ pub(super) struct Acceleration<S: Space> {
 }
 
 impl<S: Space> Acceleration<S> {
-    pub fn new(problem: &Problem<S>) -> Self {
+    pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
         let bonded = problem.full.len() + problem.bonded_levers.len();
         let unknowns = problem.contacts() * S::D;
         Self {
             with_momentum: unknowns > MEMORY && bonded == 0 && problem.systems.is_empty(),
+            parallel,
             momentum: None,
             anderson: Anderson::default(),
             last: f64::INFINITY,
@@ -46,7 +48,7 @@ impl<S: Space> Acceleration<S> {
     /// The momentum of the next iteration, after `done` iterations.
     pub fn momentum(&mut self, problem: &Problem<S>, done: u32) -> Option<&mut Momentum<S>> {
         if self.with_momentum && done >= FIRST && self.momentum.is_none() {
-            self.momentum = Some(Momentum::new(problem));
+            self.momentum = Some(Momentum::new(problem, self.parallel));
         }
         self.momentum.as_mut()
     }
@@ -76,7 +78,7 @@ impl<S: Space> Acceleration<S> {
         } else if !rose {
             momentum.slow_down();
         } else if self.anderson.extrapolate(problem, residual) {
-            momentum.start_anew(problem);
+            momentum.start_anew(problem, self.parallel);
         }
     }
 

@@ -3,10 +3,14 @@
 use super::form::{ContactForm, Mobility, Place, Problem};
 use super::row::{FullRow, LeverRow, OnBlock, PlainRow, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{fill, pays};
+use crate::threads::{fill, for_chunks, map_chunks, pays};
 
 /// About what it takes to add a body (ns).
 const BODY: f64 = 15.0;
+/// About what it takes to look up where a contact or a body belongs (ns).
+const SORT: f64 = 3.0;
+/// Contacts of a task.
+const CHUNK: usize = 4096;
 
 /// The record of a body at its free velocity.
 fn record<S: Space>(
@@ -104,18 +108,34 @@ impl<S: Space> Problem<S> {
         debug_assert!(self.places.is_empty());
         let mut of_kind = std::mem::take(&mut self.of_kind);
         of_kind.iter_mut().for_each(Vec::clear);
+        let divide = pays(parallel, contacts.len(), SORT);
+        let parts = map_chunks(divide, contacts, CHUNK, |first, contacts| {
+            let mut of_kind: [Vec<u32>; 4] = Default::default();
+            let mut places = Vec::with_capacity(contacts.len());
+            for (contact, k) in contacts.iter().zip(first..) {
+                let list = &mut of_kind[kind(contact) as usize];
+                places.push((kind(contact), list.len() as u32));
+                list.push(k as u32);
+            }
+            (of_kind, places)
+        });
         self.places.reserve_exact(contacts.len());
-        for (k, contact) in contacts.iter().enumerate() {
-            let list = &mut of_kind[kind(contact) as usize];
-            self.places.push(match kind(contact) {
-                Kind::Plain => Place::Plain(list.len() as u32),
-                Kind::Full => Place::Full(list.len() as u32),
-                Kind::Lever => Place::Lever(list.len() as u32),
-                Kind::BondedLever => Place::BondedLever(list.len() as u32),
-            });
-            list.push(k as u32);
+        for (lists, places) in parts {
+            let before = [0, 1, 2, 3].map(|k: usize| of_kind[k].len() as u32);
+            self.places.extend(places.iter().map(|(kind, k)| {
+                let k = before[*kind as usize] + k;
+                match kind {
+                    Kind::Plain => Place::Plain(k),
+                    Kind::Full => Place::Full(k),
+                    Kind::Lever => Place::Lever(k),
+                    Kind::BondedLever => Place::BondedLever(k),
+                }
+            }));
+            for (all, some) in of_kind.iter_mut().zip(lists) {
+                all.extend(some);
+            }
         }
-        let movable = self.movable();
+        let movable = self.movable(parallel);
         let [plain, full, levers, bonded_levers] = &of_kind;
         // Taken out of the problem while its bodies are read.
         let mut rows = std::mem::take(&mut self.plain);
@@ -133,28 +153,35 @@ impl<S: Space> Problem<S> {
         });
         self.bonded_levers = rows;
         self.of_kind = of_kind;
-        self.place_in_order();
+        self.place_in_order(parallel);
     }
 
     /// Whether a body moves, of each.
-    pub(super) fn movable(&self) -> Vec<bool> {
-        let moves = |l: &SolverBody<S>| l.im > 0.0 || l.is > 0.0;
-        self.solver_bodies.iter().map(moves).collect()
+    pub(super) fn movable(&self, parallel: bool) -> Vec<bool> {
+        let (mut movable, count) = (Vec::new(), self.solver_bodies.len());
+        fill(pays(parallel, count, SORT), &mut movable, count, |b| {
+            let body = &self.solver_bodies[b];
+            body.im > 0.0 || body.is > 0.0
+        });
+        movable
     }
 
     /// Takes the places of contacts from their order as pushed to that of the iteration.
-    pub(super) fn place_in_order(&mut self) {
+    pub(super) fn place_in_order(&mut self, parallel: bool) {
         let (plain, full) = (self.plain.places(), self.full.places());
         let (levers, bonded_levers) = (self.levers.places(), self.bonded_levers.places());
-        for place in &mut self.places {
-            *place = match *place {
-                Place::Plain(r) => Place::Plain(plain[r as usize]),
-                Place::Full(r) => Place::Full(full[r as usize]),
-                Place::Lever(r) => Place::Lever(levers[r as usize]),
-                Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
-                in_order => in_order,
-            };
-        }
+        let divide = pays(parallel, self.places.len(), SORT);
+        for_chunks(divide, &mut self.places, CHUNK, |_, places| {
+            for place in places {
+                *place = match *place {
+                    Place::Plain(r) => Place::Plain(plain[r as usize]),
+                    Place::Full(r) => Place::Full(full[r as usize]),
+                    Place::Lever(r) => Place::Lever(levers[r as usize]),
+                    Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
+                    in_order => in_order,
+                };
+            }
+        });
     }
 
     /// W along and across the normal of a contact of two balls (1/kg).

@@ -4,7 +4,7 @@ use super::error::{Scale, Sums};
 use super::form::Problem;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
-use crate::threads::{map_ranges, pays};
+use crate::threads::{for_chunks, map_ranges, pays};
 
 /// Bodies per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 2048;
@@ -65,7 +65,7 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale, parallel: bool)
 
 /// Computes the reference values that depend on the free velocities; leaves these in the body records.
 pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Scale {
-    problem.set_free();
+    problem.set_free(parallel);
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let mut out = Scale::default();
     out.add(&problem.plain.free(&solver_bodies, parallel));
@@ -80,16 +80,15 @@ pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) 
 
 impl<S: Space> Problem<S> {
     /// Sets every body to its free velocity.
-    pub(super) fn set_free(&mut self) {
-        let bodies = self
-            .solver_bodies
-            .iter_mut()
-            .zip(&self.free)
-            .zip(&self.lengths);
-        for ((body, free), length) in bodies {
-            body.v = free.0;
-            body.s = free.1 * *length;
-        }
+    pub(super) fn set_free(&mut self, parallel: bool) {
+        let divide = pays(parallel, self.solver_bodies.len(), WORK);
+        let (free, lengths) = (&self.free, &self.lengths);
+        for_chunks(divide, &mut self.solver_bodies, CHUNK, |first, bodies| {
+            for (body, b) in bodies.iter_mut().zip(first..) {
+                body.v = free[b].0;
+                body.s = free[b].1 * lengths[b];
+            }
+        });
         self.free_systems();
     }
 }

@@ -13,7 +13,7 @@
 use super::form::Problem;
 use super::row::{Parts, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
-use crate::threads::{map_chunks_of_two, pays};
+use crate::threads::{fill, map_chunks_of_two, pays};
 
 /// Bodies of a task.
 const CHUNK: usize = 2048;
@@ -51,36 +51,40 @@ pub(super) struct Momentum<S: Space> {
 
 impl<S: Space> Momentum<S> {
     /// Starts from the impulses and velocities of a problem.
-    pub fn new(problem: &Problem<S>) -> Self {
+    pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
         let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
-        let of = |b: &SolverBody<S>| Moved {
-            v: b.v,
-            s: b.s,
-            dv: S::Vector::zero(),
-            ds: S::Spin::zero(),
-            mass: inverse(b.im),
-            inertia: inverse(b.is),
-        };
+        let (mut bodies, count) = (Vec::new(), problem.solver_bodies.len());
+        fill(pays(parallel, count, EACH), &mut bodies, count, |b| {
+            let b = &problem.solver_bodies[b];
+            Moved {
+                v: b.v,
+                s: b.s,
+                dv: S::Vector::zero(),
+                ds: S::Spin::zero(),
+                mass: inverse(b.im),
+                inertia: inverse(b.is),
+            }
+        });
         Self {
             t: 1.0,
             factor: 0.0,
             most: f64::INFINITY,
-            bodies: problem.solver_bodies.iter().map(of).collect(),
+            bodies,
             impulses: [
-                problem.plain.parts(),
-                problem.full.parts(),
-                problem.levers.parts(),
-                problem.bonded_levers.parts(),
+                problem.plain.parts(parallel),
+                problem.full.parts(parallel),
+                problem.levers.parts(parallel),
+                problem.bonded_levers.parts(parallel),
             ],
             moments: problem.moments.iter().map(|row| row.moment()).collect(),
         }
     }
 
     /// Starts anew from other impulses and velocities of the same problem.
-    pub fn start_anew(&mut self, problem: &Problem<S>) {
+    pub fn start_anew(&mut self, problem: &Problem<S>, parallel: bool) {
         *self = Self {
             most: self.most,
-            ..Self::new(problem)
+            ..Self::new(problem, parallel)
         };
     }
 

@@ -107,7 +107,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     problem.reload(options.parallel);
     let every = options.test_every.max(1);
     let mut report = Report::default();
-    let mut acceleration = options.accelerated.then(|| Acceleration::new(problem));
+    let mut acceleration = options.accelerated.then(|| Acceleration::new(problem, options.parallel));
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
@@ -315,7 +315,7 @@ impl<S: Space> Problem<S> {
 
     /// Computes v = v_free + M^-1 H p.
     pub(super) fn reload(&mut self, parallel: bool) {
-        self.set_free();
+        self.set_free(parallel);
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         self.plain.load(&solver_bodies, parallel);
         self.full.load(&solver_bodies, parallel);
@@ -364,12 +364,12 @@ fn sort<S: Space>(problem: &mut Problem<S>) {
         && problem.levers.sorted()
         && problem.bonded_levers.sorted();
     if !sorted {
-        let movable = problem.movable();
+        let movable = problem.movable(false);
         problem.plain.sort(&movable);
         problem.full.sort(&movable);
         problem.levers.sort(&movable);
         problem.bonded_levers.sort(&movable);
-        problem.place_in_order();
+        problem.place_in_order(false);
     }
     for row in &mut problem.moments {
         row.place = problem.places[row.form.contact as usize];

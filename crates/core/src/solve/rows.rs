@@ -5,7 +5,7 @@ use super::error::{Scale, Sums};
 use super::form::ContactForm;
 use super::row::{self, Free, Load, Measure, Parts, Row, SolverBodies, Update, Visit, visit};
 use crate::geometry::space::Space;
-use crate::threads::{fill_places, map_ranges, pays};
+use crate::threads::{fill, fill_places, map_ranges, pays};
 use std::ops::Range;
 
 /// Contacts per task. Sums are formed per chunk and added in order.
@@ -196,11 +196,15 @@ impl<R> Rows<R> {
     }
 
     /// The impulses.
-    pub fn parts<S: Space>(&self) -> Vec<Parts<S>>
+    pub fn parts<S: Space>(&self, parallel: bool) -> Vec<Parts<S>>
     where
         R: Row<S>,
     {
-        self.rows.iter().map(Row::parts).collect()
+        let (mut parts, count) = (Vec::new(), self.rows.len());
+        fill(pays(parallel, count, VISIT), &mut parts, count, |k| {
+            self.rows[k].parts()
+        });
+        parts
     }
 
     /// Adds the contributions to the convergence test; rows are counted from `first`.

@@ -2,10 +2,13 @@
 
 use super::{Simulation, StepError};
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads::any;
 
 /// Motion lost to rounding from which a warning is issued, as a fraction of the alert distance: for spheres,
 /// a millionth of the radius.
 const LOST: f64 = 2e-5;
+/// About what it takes to look at a position (ns).
+const LOOK: f64 = 2.0;
 
 impl<S: Space> Simulation<S> {
     /// Checks that the state and the ledger are finite.
@@ -20,10 +23,10 @@ impl<S: Space> Simulation<S> {
             value,
         };
         let bodies = &self.state.bodies;
-        // Velocities were checked after the solve. The sum is zero unless a component is infinite or NaN.
-        let zero = |sum: f64, x: &S::Vector| sum + (*x * 0.0).dot(x);
-        if bodies.position.iter().fold(0.0, zero) != 0.0
-            && let Some(b) = bodies.position.iter().position(|x| !x.is_finite())
+        // Velocities were checked after the solve.
+        let lost = |b: usize| !bodies.position[b].is_finite();
+        if any(self.options.solver.parallel, bodies.len(), LOOK, lost)
+            && let Some(b) = (0..bodies.len()).find(|b| lost(*b))
         {
             let place = bodies.position[b].padded();
             let value = place.into_iter().find(|x| !x.is_finite());

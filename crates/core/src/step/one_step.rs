@@ -6,7 +6,7 @@ use crate::contact::detect::detect;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::{Interface, SpringForm, Totals};
-use crate::threads::{map_chunks, pays};
+use crate::threads::{count, map_chunks, pays};
 use std::time::Instant;
 
 /// Contacts of a task.
@@ -147,10 +147,10 @@ impl<S: Space> Simulation<S> {
 
     /// Counts the step, checks its result, and has phases and processes follow it.
     fn end_step(&mut self, report: &mut StepReport) -> Result<(), StepError> {
-        let contact_steps = self.workspace.solved.contact_steps.iter();
-        report.active = contact_steps
-            .filter(|s| s.solution.impulse != S::Vector::zero())
-            .count();
+        let steps = &self.workspace.solved.contact_steps;
+        let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
+        let parallel = self.options.solver.parallel;
+        report.active = count(parallel, steps.len(), RECEIVED, acts);
         self.state.steps += 1;
         self.finite()?;
         self.watch_rounding();

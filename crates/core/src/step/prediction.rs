@@ -7,11 +7,14 @@ use crate::contact::Key;
 use crate::contact::detect::{self, Motion};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
+use crate::threads::{fill, pays};
 
 /// Maximum number of solves of a step: each may close contacts that the previous one did not.
 const MAX_SOLVES: usize = 6;
 /// Relative change of a surface's spin from which it counts as a jump.
 const TURNS: f64 = 0.01;
+/// About what it takes to copy the velocity of a body (ns).
+const COPY: f64 = 3.0;
 
 impl<S: Space> Simulation<S> {
     /// Reports tunnelling during the first half move. Each step checks the paths of the bodies between two
@@ -23,9 +26,8 @@ impl<S: Space> Simulation<S> {
         let length = (1.0 - theta) * h;
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
         if self.state.steps == 0 {
-            let velocities = bodies.velocity.iter().copied();
-            let velocities = velocities.zip(bodies.spin.iter().copied());
-            if detect::is_calm(network, &self.shapes, bodies, velocities, length) {
+            let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+            if detect::is_calm(network, &self.shapes, bodies, velocity, length, false) {
                 return;
             }
         } else if !self.velocities_jump(before, length) {
@@ -46,10 +48,9 @@ impl<S: Space> Simulation<S> {
         let Scheme { h, theta } = self.options.scheme;
         let length = (1.0 - theta) * h;
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
-        let velocities = bodies.velocity.iter().copied();
-        let velocities = velocities.zip(bodies.spin.iter().copied());
+        let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
         if self.workspace.pushed
-            && !detect::is_calm(network, &self.shapes, bodies, velocities, length)
+            && !detect::is_calm(network, &self.shapes, bodies, velocity, length, false)
         {
             let (shapes, table) = (&self.shapes, &self.table);
             detect::report_first_move(network, shapes, bodies, table, self.state.time, length);
@@ -102,8 +103,8 @@ impl<S: Space> Simulation<S> {
             parallel: self.options.solver.parallel,
         };
         let (network, bodies) = (&mut self.state.network, &self.state.bodies);
-        let all = free.iter().copied();
-        if detect::is_calm(network, &self.shapes, bodies, all, motion.h) {
+        let (h, parallel) = (motion.h, motion.parallel);
+        if detect::is_calm(network, &self.shapes, bodies, |b| free[b], h, parallel) {
             return;
         }
         detect::add_predicted(network, &self.shapes, bodies, &self.table, &motion);
@@ -149,18 +150,19 @@ impl<S: Space> Simulation<S> {
             }
             self.couple(start, free, info, report)?;
             report.solves = solves as u32;
-            let velocities = self.state.bodies.velocity.iter().copied();
-            let velocities = velocities.zip(self.state.bodies.spin.iter().copied());
             let (network, bodies) = (&mut self.state.network, &self.state.bodies);
-            if detect::is_calm(network, &self.shapes, bodies, velocities.clone(), info.h) {
+            let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+            let parallel = self.options.solver.parallel;
+            if detect::is_calm(network, &self.shapes, bodies, velocity, info.h, parallel) {
                 return Ok(());
             }
-            let velocities: Vec<_> = velocities.collect();
+            let (mut velocities, divide) = (Vec::new(), pays(parallel, bodies.len(), COPY));
+            fill(divide, &mut velocities, bodies.len(), velocity);
             let motion = Motion {
                 velocities: &velocities,
                 time: self.state.time,
                 h: info.h,
-                parallel: self.options.solver.parallel,
+                parallel,
             };
             if solves == MAX_SOLVES {
                 detect::report_passing(network, &self.shapes, bodies, &self.table, &motion);

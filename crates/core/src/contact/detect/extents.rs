@@ -4,10 +4,13 @@ use crate::bodies::Bodies;
 use crate::geometry::convex::Core;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads::{fill, pays};
 
 /// Fraction of the half thickness of the thinnest body from which the relative motion in a step counts as
 /// fast.
 const FAST: f64 = 0.01;
+/// About what the displacement of a body takes (ns).
+const TRAVEL: f64 = 5.0;
 
 /// Half thicknesses of the convex pieces, and the distance of each body's farthest point from its centre.
 #[derive(Clone, Debug, Default)]
@@ -57,6 +60,7 @@ impl Extents {
         bodies: &Bodies<S>,
         velocities: &[(S::Vector, S::Spin)],
         h: f64,
+        parallel: bool,
     ) -> Vec<f64> {
         let of = |b: usize| {
             let ((v, w), lever) = (&velocities[b], self.levers[b]);
@@ -67,7 +71,9 @@ impl Extents {
                 h * (v.norm() + turn)
             }
         };
-        (0..bodies.len()).map(of).collect()
+        let (mut travels, divide) = (Vec::new(), pays(parallel, bodies.len(), TRAVEL));
+        fill(divide, &mut travels, bodies.len(), of);
+        travels
     }
 }
 

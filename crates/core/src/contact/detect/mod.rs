@@ -4,6 +4,7 @@
 mod convex_pair;
 mod extents;
 mod margin;
+mod meeting;
 mod narrow;
 mod neighbours;
 mod order;
@@ -22,12 +23,15 @@ use crate::bodies::Bodies;
 use crate::geometry::convex::ConvexCollider;
 use crate::geometry::shape::{Ball, Shapes};
 use crate::geometry::space::{Space, VectorLike};
+use crate::threads::{any, fill, pays};
 use neighbours::{NeighbourSearch, joined};
 use renewal::{Scene, renew_contacts};
 
 /// Corners whose distance along a face is less than this fraction of the alert distance count as on the
 /// face.
 const SLACK: f64 = 0.01;
+/// About what a pass over centres takes for each (ns).
+const CENTRE: f64 = 4.0;
 
 /// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
 #[derive(Clone, Debug)]
@@ -82,8 +86,8 @@ pub fn detect<S: Space>(
     [time, h]: [f64; 2],
     parallel: bool,
 ) {
-    let centres = centres(shapes, bodies);
-    if must_rebuild(network, shapes, bodies, &centres) {
+    let centres = centres(shapes, bodies, parallel);
+    if must_rebuild(network, shapes, bodies, &centres, parallel) {
         let velocities = bodies.velocity.iter().copied();
         let velocities: Vec<_> = velocities.zip(bodies.spin.iter().copied()).collect();
         let motion = Motion {
@@ -106,19 +110,25 @@ pub fn detect<S: Space>(
 }
 
 /// Returns the centres of the balls, then of the convex pieces (m).
-fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>) -> Vec<S::Vector> {
-    let mut centres: Vec<S::Vector> = shapes.balls.iter().map(|b| centre(b, bodies)).collect();
-    let pieces = shapes.pieces.iter();
-    centres.extend(pieces.map(|p| frame(p.body, &p.offset, bodies).0));
+fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>, parallel: bool) -> Vec<S::Vector> {
+    let balls = &shapes.balls;
+    let count = balls.len() + shapes.pieces.len();
+    let mut centres = Vec::new();
+    fill(pays(parallel, count, CENTRE), &mut centres, count, |k| {
+        if k < balls.len() {
+            return centre(&balls[k], bodies);
+        }
+        let piece = &shapes.pieces[k - balls.len()];
+        frame(piece.body, &piece.offset, bodies).0
+    });
     centres
 }
 
-/// Returns the points that the neighbour list tracks: the centres of balls and pieces, the frames of the
+/// Returns the points that the neighbour list tracks beside the centres of balls and pieces: the frames of the
 /// surfaces, and the vertices of surfaces that deform.
-fn watched<'a, S: Space>(
+fn watched_of_surfaces<'a, S: Space>(
     shapes: &'a Shapes<S>,
     bodies: &'a Bodies<S>,
-    centres: &'a [S::Vector],
 ) -> impl Iterator<Item = S::Vector> + 'a {
     let frames = shapes
         .surfaces
@@ -129,7 +139,7 @@ fn watched<'a, S: Space>(
         let vertices = s.shape.moving_vertices().iter();
         vertices.map(move |x| origin + S::rotate(&rotation, x))
     });
-    centres.iter().copied().chain(frames).chain(vertices)
+    frames.chain(vertices)
 }
 
 fn must_rebuild<S: Space>(
@@ -137,6 +147,7 @@ fn must_rebuild<S: Space>(
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
     centres: &[S::Vector],
+    parallel: bool,
 ) -> bool {
     let surfaces = shapes.surfaces.iter();
     let vertices: usize = surfaces.map(|s| s.shape.moving_vertices().len()).sum();
@@ -152,12 +163,14 @@ fn must_rebuild<S: Space>(
         return true;
     }
     let limit = 0.25 * network.skin * network.skin;
-    watched(shapes, bodies, centres)
-        .zip(&network.seen_at)
-        .any(|(x, seen)| {
-            let d = x - *seen;
-            d.dot(&d) > limit
-        })
+    let left = |x: S::Vector, seen: &S::Vector| {
+        let d = x - *seen;
+        d.dot(&d) > limit
+    };
+    let seen_at = &network.seen_at;
+    let centre = |k: usize| left(centres[k], &seen_at[k]);
+    let mut surfaces = watched_of_surfaces(shapes, bodies).zip(&seen_at[centres.len()..]);
+    any(parallel, centres.len(), CENTRE, centre) || surfaces.any(|(x, seen)| left(x, seen))
 }
 
 /// Builds the neighbour list: the pairs that may touch before one of them leaves its skin.
@@ -184,7 +197,9 @@ fn rebuild<S: Space>(
     network.candidates = joined(pairs, more);
     network.turning = turning;
     network.seen_at.clear();
-    network.seen_at.extend(watched(shapes, bodies, centres));
+    network.seen_at.extend_from_slice(centres);
+    let of_surfaces = watched_of_surfaces(shapes, bodies);
+    network.seen_at.extend(of_surfaces);
     network.rebuilds += 1;
 }
 

@@ -3,9 +3,10 @@
 //! pay for a comparison of speeds.
 
 use super::extents::Extents;
-use super::margin::{Stage, margin};
+use super::margin::Stage;
+use super::meeting::{Meeting, Search};
 use super::order::{PredictedMeeting, mark_later};
-use super::sweep::{Course, Pair, Sweep};
+use super::sweep::Sweep;
 use super::{LawTable, centres, rebuild};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, Key, Network};
@@ -20,8 +21,8 @@ const HEADROOM: f64 = 1.5;
 const CHUNK: usize = 256;
 /// Time of a pair (ns).
 const COST: f64 = 20.0;
-/// Bound of the rounding of gaps, relative to the motion.
-const ROUNDING: f64 = 1e-9;
+/// Time of a comparison of a body's displacement (ns).
+const COMPARE: f64 = 2.0;
 /// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
@@ -38,13 +39,14 @@ pub struct Motion<'a, S: Space> {
 }
 
 /// Returns whether no two bodies can move fast relative to each other in the step, so that no contact has to
-/// be predicted. Cheap.
+/// be predicted. Cheap. `velocity` gives velocity and spin of a body.
 pub fn is_calm<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
     bodies: &Bodies<S>,
-    velocities: impl Iterator<Item = (S::Vector, S::Spin)>,
+    velocity: impl Fn(usize) -> (S::Vector, S::Spin) + Sync,
     h: f64,
+    parallel: bool,
 ) -> bool {
     if !network.extents.fits(shapes, bodies) {
         network.extents = Extents::new(shapes, bodies);
@@ -53,13 +55,19 @@ pub fn is_calm<S: Space>(
         return false;
     }
     let levers = &network.extents.levers;
-    let (mut fastest, mut turning) = (0.0f64, 0.0f64);
-    for ((v, w), lever) in velocities.zip(levers) {
-        fastest = fastest.max(v.dot(&v));
-        if *lever > 0.0 {
-            turning = turning.max(lever * lever * w.dot(&w));
-        }
-    }
+    // What is not a number is reported where it is solved for.
+    let known = |x: f64| if x.is_nan() { 0.0 } else { x };
+    let largest = |of: &(dyn Fn(usize) -> f64 + Sync)| {
+        threads::largest(parallel, levers.len(), COMPARE, |b| known(of(b)))
+    };
+    let fastest = largest(&|b| {
+        let (v, _) = velocity(b);
+        v.dot(&v)
+    });
+    let turning = largest(&|b| {
+        let (lever, w) = (levers[b], velocity(b).1);
+        lever * lever * w.dot(&w)
+    });
     // The bound is below what requires a wider list or a check of pairs. A rotating surface always requires
     // them.
     let still = shapes.surfaces.iter().all(|s| {
@@ -127,10 +135,16 @@ pub fn report_first_move<S: Space>(
         parallel: false,
     };
     if network.seen_at.is_empty() {
-        let centres = centres(shapes, bodies);
+        let centres = centres(shapes, bodies, motion.parallel);
         rebuild(network, shapes, bodies, laws, &centres, &motion);
     }
     report_passing(network, shapes, bodies, laws, &motion);
+}
+
+/// The longest of some lengths (m), without those that are NaN.
+fn longest(parallel: bool, list: &[f64]) -> f64 {
+    let of = |k: usize| if list[k].is_nan() { 0.0 } else { list[k] };
+    threads::largest(parallel, list.len(), COMPARE, of)
 }
 
 /// Computes the displacement of each body in the step, and widens the neighbour list around fast bodies
@@ -145,11 +159,15 @@ fn widen<S: Space>(
     if !network.extents.fits(shapes, bodies) {
         network.extents = Extents::new(shapes, bodies);
     }
-    let travels = network.extents.travels(bodies, motion.velocities, motion.h);
+    let travels =
+        network
+            .extents
+            .travels(bodies, motion.velocities, motion.h, motion.parallel);
     let half = 0.5 * network.alert;
     let need = |travel: &f64| (travel - half).max(0.0);
-    let farthest = travels.iter().copied().fold(0.0, f64::max);
-    let widest = network.widened.iter().copied().fold(0.0, f64::max);
+    let longest = |list: &[f64]| longest(motion.parallel, list);
+    let farthest = longest(&travels);
+    let widest = longest(&network.widened);
     let turn_faster = surfaces_turn_faster(network, shapes, bodies, motion);
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
@@ -166,14 +184,16 @@ fn widen<S: Space>(
     }
     let seen = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
     let short = |b: usize| need(&travels[b]) > seen(b);
-    let must = network.seen_at.is_empty() || turn_faster || (0..bodies.len()).any(short);
+    let must = network.seen_at.is_empty()
+        || turn_faster
+        || threads::any(motion.parallel, bodies.len(), COMPARE, short);
     if must {
         network.widened = if farthest > half {
             travels.iter().map(wide).collect()
         } else {
             Vec::new()
         };
-        let centres = centres(shapes, bodies);
+        let centres = centres(shapes, bodies, motion.parallel);
         limit(network, shapes, &centres);
         rebuild(network, shapes, bodies, laws, &centres, motion);
         let looked = |b: usize| network.widened.get(b).copied().unwrap_or(0.0);
@@ -255,7 +275,7 @@ fn find_closing<S: Space>(
     stage: Stage,
 ) -> Vec<Contact<S>> {
     let travels = widen(network, shapes, bodies, laws, motion);
-    let farthest = travels.iter().copied().fold(0.0, f64::max);
+    let farthest = longest(motion.parallel, &travels);
     let turning = network.turning.iter().any(|w| *w > 0.0);
     if 2.0 * farthest <= network.fast && !turning {
         return Vec::new();
@@ -272,23 +292,28 @@ fn find_closing<S: Space>(
         alert: network.alert,
     };
     let fast = network.fast;
-    let balls = shapes.balls.iter().map(|b| b.body);
-    let pieces = shapes.pieces.iter().map(|p| p.body);
-    let of = balls.chain(pieces);
-    let of = of.chain(shapes.surfaces.iter().map(|s| s.body));
+    let (balls, pieces) = (shapes.balls.len(), shapes.pieces.len());
+    let count = balls + pieces + shapes.surfaces.len();
+    let travel = |k: usize| {
+        let body = if k < balls {
+            shapes.balls[k].body
+        } else if k < balls + pieces {
+            shapes.pieces[k - balls].body
+        } else {
+            shapes.surfaces[k - balls - pieces].body
+        };
+        travels[body as usize]
+    };
+    let mut of_shapes = Vec::new();
+    let divide = threads::pays(motion.parallel, count, COMPARE);
+    threads::fill(divide, &mut of_shapes, count, travel);
     let search = Search {
         network,
         sweep: &sweep,
         laws,
-        travels: of.map(|b| travels[b as usize]).collect(),
+        travels: of_shapes,
         // A pair with NaN is followed, and reported.
-        farthest: travels.iter().fold(0.0, |far, x| {
-            if *x <= far || f64::is_nan(far) {
-                far
-            } else {
-                *x
-            }
-        }),
+        farthest: threads::largest(motion.parallel, travels.len(), COMPARE, |b| travels[b]),
         turning,
         stage,
     };
@@ -364,134 +389,6 @@ fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> usize {
         shapes.balls[k].body
     };
     body as usize
-}
-
-/// The search for pairs that meet in the step.
-struct Search<'a, S: Space> {
-    network: &'a Network<S>,
-    sweep: &'a Sweep<'a, S>,
-    laws: &'a LawTable,
-    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all bodies.
-    travels: Vec<f64>,
-    farthest: f64,
-    /// Whether a surface moves by rotation.
-    turning: bool,
-    stage: Stage,
-}
-
-/// A pair that meets in the step.
-struct Meeting<S: Space> {
-    names: (u32, u32),
-    bodies: [u32; 2],
-    /// Fraction of the step after which it meets; `None` if it cannot be followed.
-    at: Option<f64>,
-    /// Largest relative displacement of two of its points in the step (m).
-    travel: f64,
-    /// Its contacts there.
-    contacts: Vec<Contact<S>>,
-    /// Whether it is reported as passing.
-    passing: bool,
-}
-
-impl<'a, S: Space> Search<'a, S> {
-    /// Returns whether a surface moves into the way of the pair by rotation.
-    fn turns(&self, names: (u32, u32)) -> bool {
-        self.turning && names.1 & Key::SURFACE != 0
-    }
-
-    /// Relative motion in a step from which a pair is followed (m).
-    fn slow(&self, names: (u32, u32)) -> f64 {
-        // Two balls have a single contact: if they move less than the alert distance, detection has found
-        // it.
-        let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
-        if balls {
-            self.network.alert
-        } else {
-            self.network.fast
-        }
-    }
-
-    /// Upper bound of the relative motion of a pair, without that of a rotating surface (m).
-    fn travel(&self, names: (u32, u32)) -> f64 {
-        let shapes = self.sweep.shapes;
-        let [balls, pieces] = [shapes.balls.len(), shapes.pieces.len()];
-        let travel = |name: u32| {
-            let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
-            let first = match name & (Key::PIECE | Key::SURFACE) {
-                0 => 0,
-                Key::PIECE => balls,
-                _ => balls + pieces,
-            };
-            self.travels[first + k]
-        };
-        travel(names.0) + travel(names.1)
-    }
-
-    /// Returns whether the relative motion of a pair is slow, at sight.
-    fn is_slow(&self, names: (u32, u32)) -> bool {
-        let slow = self.slow(names);
-        !self.turns(names) && (2.0 * self.farthest <= slow || self.travel(names) <= slow)
-    }
-
-    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart than they move: it has no contact.
-    fn is_found(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
-        let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
-        convex && contacts.is_empty() && self.travel(names) <= self.network.alert
-    }
-
-    /// Returns the pair with these keys if its relative motion in the step is fast.
-    fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
-        let slow = self.slow(names);
-        let pair = self.sweep.pair(names);
-        // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
-        if pair.travel <= slow {
-            None
-        } else {
-            Some(pair)
-        }
-    }
-
-    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that it is to be reported.
-    fn examine(
-        &self,
-        names: (u32, u32),
-        pair: &Pair<S>,
-        contacts: &[Contact<S>],
-    ) -> Option<Meeting<S>> {
-        let sweep = self.sweep;
-        let [one, other] = pair.materials();
-        let law = self.laws.get(one, other);
-        let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
-        let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
-        // The gap that detection found, in the same places, is enough for the motion.
-        let gap = contacts.iter().map(|c| c.gap).fold(f64::INFINITY, f64::min);
-        let wide = gap + margin.deepest > (1.0 + ROUNDING) * pair.travel;
-        let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
-        if wide && known && !contacts.is_empty() && self.stage == Stage::After {
-            return None;
-        }
-        if sweep.course(pair, margin.deepest) == Course::Clear {
-            return None;
-        }
-        let mut meeting = Meeting {
-            names,
-            bodies: pair.bodies(),
-            at: None,
-            travel: pair.travel,
-            contacts: Vec::new(),
-            passing: self.stage == Stage::Report,
-        };
-        if meeting.passing {
-            return Some(meeting);
-        }
-        if let (Course::Meets(s), Some(law)) = (sweep.course(pair, margin.begins), law) {
-            meeting.at = Some(s);
-            sweep.contacts(pair, s, law, &mut meeting.contacts);
-        }
-        // A pair that cannot be followed, or cannot be held at the point of meeting, is reported.
-        meeting.passing = meeting.contacts.is_empty() && self.stage == Stage::After;
-        Some(meeting)
-    }
 }
 
 impl<S: Space> Network<S> {

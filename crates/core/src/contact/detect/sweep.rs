@@ -133,6 +133,11 @@ impl<'a, S: Space> Pair<'a, S> {
         [self.shapes[0].body(), self.shapes[1].body()]
     }
 
+    /// Upper bound of the speed at which a gap with this normal closes (m/s).
+    pub fn closing_speed(&self, normal: &S::Vector) -> f64 {
+        (-normal.dot(&self.approach)).max(0.0) + self.turning
+    }
+
     pub fn materials(&self) -> [u16; 2] {
         [self.shapes[0].material(), self.shapes[1].material()]
     }
@@ -253,7 +258,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 return Course::Clear;
             }
             let closing = match normal {
-                Some(n) => (-n.dot(&pair.approach)).max(0.0) + pair.turning,
+                Some(n) => pair.closing_speed(&n),
                 None => travel / self.h,
             };
             if closing <= 0.0 {

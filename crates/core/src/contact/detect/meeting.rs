@@ -1,0 +1,143 @@
+//! The search for a pair that meets within a step.
+
+use super::LawTable;
+use super::margin::{Stage, margin};
+use super::sweep::{Course, Pair, Sweep};
+use crate::contact::network::{Contact, Key, Network};
+use crate::geometry::space::Space;
+
+/// Bound of the rounding of gaps, relative to the motion.
+const ROUNDING: f64 = 1e-9;
+
+/// The search for pairs that meet in the step.
+pub(super) struct Search<'a, S: Space> {
+    pub network: &'a Network<S>,
+    pub sweep: &'a Sweep<'a, S>,
+    pub laws: &'a LawTable,
+    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all bodies.
+    pub travels: Vec<f64>,
+    pub farthest: f64,
+    /// Whether a surface moves by rotation.
+    pub turning: bool,
+    pub stage: Stage,
+}
+
+/// A pair that meets in the step.
+pub(super) struct Meeting<S: Space> {
+    pub names: (u32, u32),
+    pub bodies: [u32; 2],
+    /// Fraction of the step after which it meets; `None` if it cannot be followed.
+    pub at: Option<f64>,
+    /// Largest relative displacement of two of its points in the step (m).
+    pub travel: f64,
+    /// Its contacts there.
+    pub contacts: Vec<Contact<S>>,
+    /// Whether it is reported as passing.
+    pub passing: bool,
+}
+
+impl<'a, S: Space> Search<'a, S> {
+    /// Returns whether a surface moves into the way of the pair by rotation.
+    fn turns(&self, names: (u32, u32)) -> bool {
+        self.turning && names.1 & Key::SURFACE != 0
+    }
+
+    /// Relative motion in a step from which a pair is followed (m).
+    fn slow(&self, names: (u32, u32)) -> f64 {
+        // Two balls have a single contact: if they move less than the alert distance, detection has found
+        // it.
+        let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
+        if balls {
+            self.network.alert
+        } else {
+            self.network.fast
+        }
+    }
+
+    /// Upper bound of the relative motion of a pair, without that of a rotating surface (m).
+    fn travel(&self, names: (u32, u32)) -> f64 {
+        let shapes = self.sweep.shapes;
+        let [balls, pieces] = [shapes.balls.len(), shapes.pieces.len()];
+        let travel = |name: u32| {
+            let k = (name & !(Key::PIECE | Key::SURFACE)) as usize;
+            let first = match name & (Key::PIECE | Key::SURFACE) {
+                0 => 0,
+                Key::PIECE => balls,
+                _ => balls + pieces,
+            };
+            self.travels[first + k]
+        };
+        travel(names.0) + travel(names.1)
+    }
+
+    /// Returns whether the relative motion of a pair is slow, at sight.
+    pub fn is_slow(&self, names: (u32, u32)) -> bool {
+        let slow = self.slow(names);
+        !self.turns(names) && (2.0 * self.farthest <= slow || self.travel(names) <= slow)
+    }
+
+    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart than they move: it has no contact.
+    pub fn is_found(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
+        let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
+        convex && contacts.is_empty() && self.travel(names) <= self.network.alert
+    }
+
+    /// Returns the pair with these keys if its relative motion in the step is fast.
+    pub fn fast_pair(&self, names: (u32, u32)) -> Option<Pair<'a, S>> {
+        let slow = self.slow(names);
+        let pair = self.sweep.pair(names);
+        // Not `pair.travel > slow`: a pair with NaN is followed, and reported.
+        if pair.travel <= slow {
+            None
+        } else {
+            Some(pair)
+        }
+    }
+
+    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that it is to be reported.
+    pub fn examine(
+        &self,
+        names: (u32, u32),
+        pair: &Pair<S>,
+        contacts: &[Contact<S>],
+    ) -> Option<Meeting<S>> {
+        let sweep = self.sweep;
+        let [one, other] = pair.materials();
+        let law = self.laws.get(one, other);
+        let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
+        let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
+        // The gap that detection found, in the same places, is enough for the motion along the normal, along which it closes.
+        let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
+        let nearest = contacts.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
+        if let Some(nearest) = nearest
+            && known
+            && pair.travel.is_finite()
+            && self.stage == Stage::After
+            && nearest.gap + margin.deepest
+                > (1.0 + ROUNDING) * sweep.h * pair.closing_speed(&nearest.normal)
+        {
+            return None;
+        }
+        if sweep.course(pair, margin.deepest) == Course::Clear {
+            return None;
+        }
+        let mut meeting = Meeting {
+            names,
+            bodies: pair.bodies(),
+            at: None,
+            travel: pair.travel,
+            contacts: Vec::new(),
+            passing: self.stage == Stage::Report,
+        };
+        if meeting.passing {
+            return Some(meeting);
+        }
+        if let (Course::Meets(s), Some(law)) = (sweep.course(pair, margin.begins), law) {
+            meeting.at = Some(s);
+            sweep.contacts(pair, s, law, &mut meeting.contacts);
+        }
+        // A pair that cannot be followed, or cannot be held at the point of meeting, is reported.
+        meeting.passing = meeting.contacts.is_empty() && self.stage == Stage::After;
+        Some(meeting)
+    }
+}
