@@ -165,6 +165,23 @@ pub unsafe fn fill_places<T: Send>(
     unsafe { list.set_len(count) };
 }
 
+/// Returns what `of` gives for each index below `count`, in their order; threads have memory of their own, on whose contents results must not
+/// depend.
+pub fn map_with_memory<M, R: Send>(
+    divide: bool,
+    count: usize,
+    memory: impl Fn() -> M + Sync + Send,
+    of: impl Fn(&mut M, usize) -> R + Sync + Send,
+) -> Vec<R> {
+    if divide && count > 1 {
+        let indices = (0..count).into_par_iter();
+        indices.map_init(memory, of).collect()
+    } else {
+        let mut memory = memory();
+        (0..count).map(|k| of(&mut memory, k)).collect()
+    }
+}
+
 /// Returns what `of` gives for each of some tasks, in their order.
 pub fn map_tasks<T: Send, R: Send>(
     divide: bool,

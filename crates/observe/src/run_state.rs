@@ -39,13 +39,14 @@ struct Counts {
 }
 
 impl Counts {
-    fn of<S: Space>(s: &Simulation<S>) -> Self {
+    /// Of a simulation with so many contacts.
+    fn of<S: Space>(s: &Simulation<S>, contacts: usize) -> Self {
         let n = &s.state.network;
         Self {
             steps: s.state.steps,
             time: s.state.time,
             bodies: s.state.bodies.len(),
-            contacts: n.contact_count(s.options.solver.parallel),
+            contacts,
             bonds: n.bonds_made(),
             broken: n.bonds_broken(),
             damage_ratio: damage_ratio(s),
@@ -77,6 +78,8 @@ pub struct RunState {
     solver: SolverSummary,
     iterations: u64,
     couplings: u64,
+    /// Number of contacts in the last step.
+    contacts: Option<usize>,
     /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance was reached.
     last: [f64; 4],
 }
@@ -95,6 +98,7 @@ impl RunState {
             },
             iterations: 0,
             couplings: 0,
+            contacts: None,
             last: [0.0; 4],
         }
     }
@@ -118,7 +122,10 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn before_step(&mut self, s: &Simulation<S>) {
-        self.counts = Counts::of(s);
+        let parallel = s.options.solver.parallel;
+        let counted = || s.state.network.contact_count(parallel);
+        let contacts = self.contacts.unwrap_or_else(counted);
+        self.counts = Counts::of(s, contacts);
     }
 
     fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
@@ -143,6 +150,7 @@ impl<S: Space> Observer<S> for RunState {
             }
             solver.unconverged_steps += 1;
         }
+        self.contacts = Some(report.contacts);
         self.last = [
             report.active as f64,
             f64::from(report.solver.iterations),
@@ -195,7 +203,8 @@ impl<S: Space> Observer<S> for RunState {
 
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
         let s = end.simulation;
-        self.put(&Counts::of(s), summary);
+        let contacts = s.state.network.contact_count(s.options.solver.parallel);
+        self.put(&Counts::of(s, contacts), summary);
         summary.mean_damage = s.state.network.mean_damage();
         summary.solver.why = self
             .solver

@@ -104,6 +104,11 @@ impl LawEvaluator {
         }
     }
 
+    /// The contacts of the step that are beyond the alert distance and held by no bond, as places in the network.
+    pub(crate) fn beyond(&self) -> impl Iterator<Item = usize> {
+        self.members.iter().flat_map(|m| m.beyond.iter().copied())
+    }
+
     /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds, among threads.
     pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
         contacts > any_size(BATCH) && pays(self.parallel, contacts, each / OVERHEAD)

@@ -9,6 +9,7 @@
 //! bitwise identical results.
 
 use super::schedule::Schedule;
+use crate::threads::{map_chunks_mut, map_with_memory, pays};
 
 /// Maximum number of colours, of blocks and within a part.
 const COLOURS: usize = 32;
@@ -23,6 +24,11 @@ const BLOCKS: usize = 128;
 /// A body in more blocks than this would prevent their parallel solution; its contacts are solved
 /// separately.
 const HUB: u32 = 16;
+
+/// Contacts of a task, and about what it takes to read the bodies of one and to colour it (ns).
+const CHUNK: usize = 4096;
+const READ: f64 = 4.0;
+const COLOUR: f64 = 15.0;
 
 /// Colouring state of a body: the last visitor, and the colours in use.
 #[derive(Clone, Copy, Default)]
@@ -42,20 +48,32 @@ pub struct Order {
 }
 
 impl Order {
-    /// Updates the order for contacts between these bodies.
-    pub fn update(&mut self, bodies: impl ExactSizeIterator<Item = [u32; 2]>, movable: &[bool]) {
-        let mut same = self.movable == movable && self.bodies.len() == bodies.len();
-        self.bodies.resize(bodies.len(), [0, 0]);
-        for (old, new) in self.bodies.iter_mut().zip(bodies) {
-            same &= *old == new;
-            *old = new;
-        }
-        if same {
+    /// Updates the order for `count` contacts, between the bodies that `of` gives.
+    pub fn update(
+        &mut self,
+        count: usize,
+        of: impl Fn(usize) -> [u32; 2] + Sync,
+        movable: &[bool],
+        parallel: bool,
+    ) {
+        let same = self.movable == movable && self.bodies.len() == count;
+        self.bodies.resize(count, [0, 0]);
+        let divide = pays(parallel, count, READ);
+        let changed = map_chunks_mut(divide, &mut self.bodies, CHUNK, |first, bodies| {
+            let mut same = true;
+            for (old, k) in bodies.iter_mut().zip(first..) {
+                let new = of(k);
+                same &= *old == new;
+                *old = new;
+            }
+            !same
+        });
+        if same && !changed.contains(&true) {
             return;
         }
         self.movable.clear();
         self.movable.extend_from_slice(movable);
-        (self.sequence, self.schedule) = order(&self.bodies, movable);
+        (self.sequence, self.schedule) = order(&self.bodies, movable, parallel);
         self.places.resize(self.sequence.len(), 0);
         for (k, old) in self.sequence.iter().enumerate() {
             self.places[*old as usize] = k as u32;
@@ -80,7 +98,7 @@ impl Order {
 
 /// Sorts contacts for the iteration. Returns the permutation (`order[k]` is the old index of the k-th) and
 /// the schedule of the new order.
-fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
+fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Schedule) {
     let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
     let mut sorting = Sorting {
         bodies,
@@ -90,12 +108,13 @@ fn order(bodies: &[[u32; 2]], movable: &[bool]) -> (Vec<u32>, Schedule) {
         schedule: Schedule::default(),
     };
     if bodies.len() <= SMALL {
-        sorting.group(0..bodies.len(), 1);
-        return (sorting.order, sorting.schedule.cut(PART));
+        let (mut seen, mut groups) = (sorting.seen, Groups::default());
+        groups.add(bodies, movable, &mut seen, 0..bodies.len(), 1);
+        return (groups.order, Schedule::of_groups(groups.ends).cut(PART));
     }
     let hubs = Hubs::find(&mut sorting, span);
     let blocks = sorting.colour_blocks(span, &hubs);
-    sorting.group_blocks(&blocks, span, &hubs);
+    sorting.group_blocks(&blocks, span, &hubs, parallel);
     sorting.append_hubs(&hubs);
     (sorting.order, sorting.schedule)
 }
@@ -192,20 +211,30 @@ impl Sorting<'_> {
         blocks
     }
 
-    /// Forms the groups of the blocks, colour by colour and part by part.
-    fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs) {
+    /// Forms the groups of the blocks, colour by colour and part by part; blocks are divided among threads.
+    fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs, parallel: bool) {
         let (bodies, movable) = (self.bodies, self.movable);
-        self.seen.fill(Seen::default());
-        let mut mark = 0;
+        let memory = || (vec![Seen::default(); movable.len()], 0);
+        let divide = pays(parallel, bodies.len(), COLOUR);
+        let grouped = map_with_memory(divide, blocks.len(), memory, |(seen, mark), k| {
+            let first = blocks[k].1 as usize * span;
+            let end = bodies.len().min(first + span);
+            let mut groups = Groups::default();
+            for from in (first..end).step_by(PART) {
+                *mark += 1;
+                let part = from..end.min(from + PART);
+                let part = part.filter(|k| !hubs.touch(&bodies[*k], movable));
+                groups.add(bodies, movable, seen, part, *mark);
+            }
+            groups
+        });
+        let mut grouped = grouped.into_iter();
         for same in blocks.chunk_by(|a, b| a.0 == b.0) {
-            for (_, block) in same {
-                let first = *block as usize * span;
-                let end = bodies.len().min(first + span);
-                for from in (first..end).step_by(PART) {
-                    mark += 1;
-                    let part = from..end.min(from + PART);
-                    let part = part.filter(|k| !hubs.touch(&bodies[*k], movable));
-                    self.group(part, mark);
+            for groups in grouped.by_ref().take(same.len()) {
+                let first = self.order.len() as u32;
+                self.order.extend(groups.order);
+                for end in groups.ends {
+                    self.schedule.end_group((first + end) as usize);
                 }
                 self.schedule.end_block();
             }
@@ -227,16 +256,27 @@ impl Sorting<'_> {
         self.schedule.end_block();
         self.schedule.end_colour();
     }
+}
 
-    /// Appends the contacts of a part, grouped by colour.
-    fn group(&mut self, part: impl Iterator<Item = usize>, mark: u32) {
-        let Self {
-            bodies,
-            movable,
-            seen,
-            order,
-            schedule,
-        } = self;
+/// Contacts grouped by colour, part by part.
+#[derive(Default)]
+struct Groups {
+    order: Vec<u32>,
+    /// Where each group ends in the order.
+    ends: Vec<u32>,
+}
+
+impl Groups {
+    /// Appends the contacts of a part. `seen` is of all bodies; `mark` differs from part to part.
+    fn add(
+        &mut self,
+        bodies: &[[u32; 2]],
+        movable: &[bool],
+        seen: &mut [Seen],
+        part: impl Iterator<Item = usize>,
+        mark: u32,
+    ) {
+        let Self { order, ends } = self;
         let mut sizes = [0u32; COLOURS + 1];
         let mut coloured = Vec::with_capacity(part.size_hint().1.unwrap_or(0));
         for k in part {
@@ -256,19 +296,18 @@ impl Sorting<'_> {
             sizes[colour as usize] += 1;
             coloured.push((k as u32, colour as u8));
         }
-        let first = order.len();
         let mut next = [0u32; COLOURS + 1];
-        let mut at = first;
+        let mut at = order.len();
         for (colour, size) in sizes.iter().enumerate() {
             next[colour] = at as u32;
             if colour < COLOURS {
                 at += *size as usize;
-                schedule.end_group(at);
+                ends.push(at as u32);
             } else {
                 // Contacts without a colour may share a body and form groups of one.
                 for _ in 0..*size {
                     at += 1;
-                    schedule.end_group(at);
+                    ends.push(at as u32);
                 }
             }
         }
@@ -288,7 +327,10 @@ mod tests {
 
     fn check(bodies: &[[u32; 2]], fixed: u32, count: usize) -> Schedule {
         let movable: Vec<bool> = (0..count as u32).map(|b| b != fixed).collect();
-        let (order, schedule) = order(bodies, &movable);
+        let (order, schedule) = order(bodies, &movable, false);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
+        let divided = pool.unwrap().install(|| super::order(bodies, &movable, true));
+        assert_eq!(divided.0, order);
         let mut seen = order.clone();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(k, o)| k as u32 == *o));

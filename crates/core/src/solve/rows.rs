@@ -78,7 +78,7 @@ impl<R> Rows<R> {
         R: Row<S>,
     {
         let Self { rows, order, .. } = self;
-        order.update(rows.iter().map(Row::bodies), movable);
+        order.update(rows.len(), |k| rows[k].bodies(), movable, false);
         let sorted = order.sequence().iter();
         *rows = sorted.map(|k| rows[*k as usize].clone()).collect();
         self.sorted = true;
@@ -95,8 +95,8 @@ impl<R> Rows<R> {
     ) where
         R: Row<S>,
     {
-        let bodies = of.iter().map(|k| contacts[*k as usize].bodies);
-        self.order.update(bodies, movable);
+        let bodies = |k: usize| contacts[of[k] as usize].bodies;
+        self.order.update(of.len(), bodies, movable, parallel);
         let places = self.order.places();
         assert_eq!(places.len(), of.len(), "one place for each contact");
         let divide = pays(parallel, places.len(), MAKE);

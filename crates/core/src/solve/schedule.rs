@@ -104,6 +104,13 @@ impl Schedule {
         out
     }
 
+    /// The schedule of groups that end there, not yet cut into blocks.
+    pub(super) fn of_groups(ends: impl IntoIterator<Item = u32>) -> Self {
+        let mut out = Self::default();
+        ends.into_iter().for_each(|end| out.end_group(end as usize));
+        out
+    }
+
     /// Ends a group before the contact `at`.
     pub(super) fn end_group(&mut self, at: usize) {
         if self.groups.last() != Some(&(at as u32)) {

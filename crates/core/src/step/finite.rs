@@ -67,9 +67,11 @@ impl<S: Space> Simulation<S> {
             return;
         }
         let least = LOST * self.state.network.alert;
-        let stuck =
-            (0..self.state.bodies.lost.len()).find(|b| self.state.bodies.lost[*b].norm() > least);
-        if let Some(body) = stuck {
+        let lost = &self.state.bodies.lost;
+        let stuck = |b: usize| lost[b].norm() > least;
+        if any(self.options.solver.parallel, lost.len(), LOOK, stuck)
+            && let Some(body) = (0..lost.len()).find(|b| stuck(*b))
+        {
             let step_size = &mut self.state.network.step_size;
             step_size.record_lost_motion(self.state.time, &self.state.bodies, body as u32);
         }

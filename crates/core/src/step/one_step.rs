@@ -151,6 +151,8 @@ impl<S: Space> Simulation<S> {
         let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
         let parallel = self.options.solver.parallel;
         report.active = count(parallel, steps.len(), RECEIVED, acts);
+        let beyond = self.workspace.evaluator.beyond();
+        report.contacts = steps.len() - beyond.filter(|k| !acts(*k)).count();
         self.state.steps += 1;
         self.finite()?;
         self.watch_rounding();

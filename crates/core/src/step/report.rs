@@ -30,6 +30,8 @@ pub struct StepReport {
     pub solves: u32,
     /// Number of contacts that carry an impulse.
     pub active: usize,
+    /// Number of contacts: those within the alert distance or bonded, and of the predicted ones those with an impulse.
+    pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
     /// Wall-clock time.

@@ -13,6 +13,8 @@ use crate::threads;
 const CHUNK: [usize; 2] = [512, 128];
 /// Time of a pair of balls, and of other shapes (ns).
 const COST: [f64; 2] = [15.0, 200.0];
+/// Time of a ball (ns).
+const ROUND: f64 = 5.0;
 /// Tasks whose new contacts are kept at a time: a few megabytes.
 const BATCH: usize = 64;
 
@@ -281,9 +283,11 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     let frame =
         |s: &crate::geometry::shape::Carried<S>| super::frame(s.body, &s.offset, scene.bodies);
     let frames: Vec<_> = surfaces.map(frame).collect();
-    let balls = scene.shapes.balls.iter().zip(scene.centres);
-    let round = balls.map(|(ball, centre)| Round::new(ball, *centre, scene.bodies));
-    let round: Vec<_> = round.collect();
+    let balls = &scene.shapes.balls;
+    let (mut round, divide) = (Vec::new(), threads::pays(parallel, balls.len(), ROUND));
+    threads::fill(divide, &mut round, balls.len(), |k| {
+        Round::new(&balls[k], scene.centres[k], scene.bodies)
+    });
     let kind = usize::from(!(scene.shapes.pieces.is_empty() && frames.is_empty()));
     let divide = threads::pays(parallel, candidates.len(), COST[kind]);
     let size = threads::any_size(CHUNK[kind]);
