@@ -78,7 +78,7 @@ pub struct RunState {
     solver: SolverSummary,
     iterations: u64,
     couplings: u64,
-    /// Number of contacts in the last step.
+    /// Number of contacts in the last step; none before it.
     contacts: Option<usize>,
     /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance was reached.
     last: [f64; 4],
@@ -103,6 +103,12 @@ impl RunState {
         }
     }
 
+    fn count_contacts<S: Space>(&self, s: &Simulation<S>) -> usize {
+        let parallel = s.options.solver.parallel;
+        let counted = || s.state.network.contact_count(parallel);
+        self.contacts.unwrap_or_else(counted)
+    }
+
     fn put(&self, counts: &Counts, summary: &mut Summary) {
         counts.put(summary);
         summary.solver.clone_from(&self.solver);
@@ -122,10 +128,7 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn before_step(&mut self, s: &Simulation<S>) {
-        let parallel = s.options.solver.parallel;
-        let counted = || s.state.network.contact_count(parallel);
-        let contacts = self.contacts.unwrap_or_else(counted);
-        self.counts = Counts::of(s, contacts);
+        self.counts = Counts::of(s, self.count_contacts(s));
     }
 
     fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
@@ -188,7 +191,7 @@ impl<S: Space> Observer<S> for RunState {
             s.state.steps as f64,
             s.state.time,
             f64::from(cycle),
-            n.contact_count(s.options.solver.parallel) as f64,
+            self.count_contacts(s) as f64,
         ];
         row.extend(self.last);
         row.extend([

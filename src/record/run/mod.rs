@@ -467,7 +467,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             steps: (step, self.total),
             resumed_at: self.resumed_at,
             cycle: self.observers.cycle(s.state.time).unwrap_or((0, 0)),
-            contacts: s.state.network.contact_count(s.options.solver.parallel),
+            contacts: report.contacts,
             iterations: report.solver.iterations,
             error: report.solver.error,
             unconverged: self.unconverged,

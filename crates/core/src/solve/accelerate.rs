@@ -9,7 +9,7 @@ use crate::geometry::space::Space;
 /// Iterations before it starts: most warm-started steps need no more.
 const FIRST: u32 = 10;
 /// Tests in which the squared residual has to fall by half, or momentum is given up.
-const PATIENCE: u32 = 20;
+const PATIENCE: u32 = 100;
 
 /// State of the acceleration in a solve.
 #[derive(Debug)]
