@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Least work that pays for waking other threads (ns): many times what that takes, since other programs may run on their cores.
-const LEAST_WORK: u64 = 150_000;
+const LEAST_WORK: u64 = 170_000;
 
 /// Least items of a task in [`fill`].
 const LEAST_ITEMS: usize = 256;

@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Contacts per task. Sums are formed per chunk and added in order.
 const CHUNK: usize = 512;
 /// About what making a row takes (ns).
-const MAKE: f64 = 40.0;
+const MAKE: f64 = 15.0;
 /// About what a visit of a row takes (ns).
 const VISIT: f64 = 10.0;
 /// The same in a sweep, which pays from about 10,000 contacts on (ns).
