@@ -172,8 +172,8 @@ fn internal_flow<S: Space>(s: &Simulation<S>, along: usize) -> f64 {
     let parts = map_ranges(divide, bodies.len(), CHUNK, |range| {
         let (mut low, mut high, mut flow) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for b in range {
-            let moves = bodies.inverse_mass[b][along] > 0.0
-                || bodies.carrier(b).is_some_and(|c| c.grain);
+            let moves =
+                bodies.inverse_mass[b][along] > 0.0 || bodies.carrier(b).is_some_and(|c| c.grain);
             if moves && bodies.length[b] > 0.0 {
                 let x = bodies.position[b][along];
                 (low, high) = (low.min(x), high.max(x));

@@ -329,7 +329,9 @@ mod tests {
         let movable: Vec<bool> = (0..count as u32).map(|b| b != fixed).collect();
         let (order, schedule) = order(bodies, &movable, false);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build();
-        let divided = pool.unwrap().install(|| super::order(bodies, &movable, true));
+        let divided = pool
+            .unwrap()
+            .install(|| super::order(bodies, &movable, true));
         assert_eq!(divided.0, order);
         let mut seen = order.clone();
         seen.sort_unstable();

@@ -88,6 +88,12 @@ impl<S: Space> Momentum<S> {
         };
     }
 
+    /// The state after an iteration from t = 1, which moves nothing on.
+    fn start(&mut self) {
+        let golden = 0.5 * (1.0 + 5f64.sqrt());
+        (self.t, self.factor) = (golden.min(self.most), 0.0);
+    }
+
     /// Takes less momentum from now on.
     pub fn slow_down(&mut self) {
         self.most = (0.5 * self.t).max(1.0);
@@ -101,14 +107,19 @@ impl<S: Space> Momentum<S> {
 
     /// Moves the velocities on, after an iteration; returns the factor by which the next one moves the impulses on.
     pub fn advance(&mut self, solver_bodies: &mut [SolverBody<S>], parallel: bool) -> f64 {
+        let next = 0.5 * (1.0 + (1.0 + 4.0 * self.t * self.t).sqrt());
+        let factor = (self.t - 1.0) / next;
         let divide = pays(parallel, solver_bodies.len(), EACH);
         let lists = (&mut self.bodies[..], &mut solver_bodies[..]);
         let parts = map_chunks_of_two(divide, CHUNK, lists, |_, moved, bodies| {
             let (mut squared, mut along) = (0.0, 0.0);
-            for (m, b) in moved.iter().zip(bodies.iter()) {
+            for (m, b) in moved.iter_mut().zip(bodies) {
                 let (dv, ds) = (b.v - m.v, b.s - m.s);
                 squared += m.mass * dv.dot(&dv) + m.inertia * ds.dot(&ds);
                 along += m.mass * dv.dot(&m.dv) + m.inertia * ds.dot(&m.ds);
+                (m.v, m.s, m.dv, m.ds) = (b.v, b.s, dv, ds);
+                b.v += dv * factor;
+                b.s += ds * factor;
             }
             [squared, along]
         });
@@ -118,20 +129,17 @@ impl<S: Space> Momentum<S> {
             along += part[1];
         }
         if self.factor * along > squared {
-            self.t = 1.0;
+            // Seldom: nothing is moved on.
+            let lists = (&mut self.bodies[..], solver_bodies);
+            map_chunks_of_two(divide, CHUNK, lists, |_, moved, bodies| {
+                for (m, b) in moved.iter().zip(bodies) {
+                    (b.v, b.s) = (m.v, m.s);
+                }
+            });
+            self.start();
+            return 0.0;
         }
-        let next = 0.5 * (1.0 + (1.0 + 4.0 * self.t * self.t).sqrt());
-        let factor = (self.t - 1.0) / next;
         (self.t, self.factor) = (next.min(self.most), factor);
-        let lists = (&mut self.bodies[..], solver_bodies);
-        map_chunks_of_two(divide, CHUNK, lists, |_, moved, bodies| {
-            for (m, b) in moved.iter_mut().zip(bodies) {
-                (m.dv, m.ds) = (b.v - m.v, b.s - m.s);
-                (m.v, m.s) = (b.v, b.s);
-                b.v += m.dv * factor;
-                b.s += m.ds * factor;
-            }
-        });
         factor
     }
 }

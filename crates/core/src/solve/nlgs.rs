@@ -107,7 +107,9 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     problem.reload(options.parallel);
     let every = options.test_every.max(1);
     let mut report = Report::default();
-    let mut acceleration = options.accelerated.then(|| Acceleration::new(problem, options.parallel));
+    let mut acceleration = options
+        .accelerated
+        .then(|| Acceleration::new(problem, options.parallel));
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
@@ -429,5 +431,10 @@ fn sweep_rows_on<S: Space>(
     let rows = &mut problem.levers;
     rows.sweep_on(&solver_bodies, relaxation, parallel, (levers, factor));
     let rows = &mut problem.bonded_levers;
-    rows.sweep_on(&solver_bodies, relaxation, parallel, (bonded_levers, factor));
+    rows.sweep_on(
+        &solver_bodies,
+        relaxation,
+        parallel,
+        (bonded_levers, factor),
+    );
 }

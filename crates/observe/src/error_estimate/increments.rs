@@ -40,7 +40,11 @@ const FIXED_ITERATIONS: f64 = 60.0;
 /// Cost of a step in iterations times contacts: the same on every machine.
 pub fn cost<S: Space>(s: &Simulation<S>, report: &StepReport) -> f64 {
     let iterations = f64::from(report.solver.iterations) + FIXED_ITERATIONS;
-    iterations * s.state.network.contact_count(s.options.solver.parallel).max(1) as f64
+    iterations
+        * s.state
+            .network
+            .contact_count(s.options.solver.parallel)
+            .max(1) as f64
 }
 
 /// The sum of the damage of all bonds; broken ones count 1.

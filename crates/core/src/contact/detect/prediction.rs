@@ -159,10 +159,9 @@ fn widen<S: Space>(
     if !network.extents.fits(shapes, bodies) {
         network.extents = Extents::new(shapes, bodies);
     }
-    let travels =
-        network
-            .extents
-            .travels(bodies, motion.velocities, motion.h, motion.parallel);
+    let travels = network
+        .extents
+        .travels(bodies, motion.velocities, motion.h, motion.parallel);
     let half = 0.5 * network.alert;
     let need = |travel: &f64| (travel - half).max(0.0);
     let longest = |list: &[f64]| longest(motion.parallel, list);

@@ -97,7 +97,9 @@ struct State<R, S: Space> {
 impl<S: Space, R: Row<S>> State<R, S> {
     fn bits(&self) -> Vec<u64> {
         let mut out = Vec::new();
-        self.rows.iter().for_each(|row| crate::solve::row::store::<S>(row.parts(), &mut out));
+        self.rows
+            .iter()
+            .for_each(|row| crate::solve::row::store::<S>(row.parts(), &mut out));
         for body in &self.solver_bodies {
             out.extend(body.v.padded());
             out.extend(body.s.padded());
