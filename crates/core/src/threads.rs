@@ -89,7 +89,7 @@ pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     (a, b): (&mut [A], &mut [B]),
     of: impl Fn(usize, &mut [A], &mut [B]) -> R + Sync,
 ) -> Vec<R> {
-    debug_assert_eq!(a.len(), b.len());
+    assert_eq!(a.len(), b.len(), "lists of the same length");
     if divide && a.len() > size {
         let chunks = a.par_chunks_mut(size).zip(b.par_chunks_mut(size));
         let chunks = chunks.enumerate();
@@ -165,8 +165,8 @@ pub unsafe fn fill_places<T: Send>(
     unsafe { list.set_len(count) };
 }
 
-/// Returns what `of` gives for each index below `count`, in their order; threads have memory of their own, on whose contents results must not
-/// depend.
+/// Returns what `of` gives for each index below `count`, in their order. `of` gets memory that `memory` made for its part of the indices: about as
+/// many as there are threads; results must not depend on its contents.
 pub fn map_with_memory<M, R: Send>(
     divide: bool,
     count: usize,
@@ -174,7 +174,8 @@ pub fn map_with_memory<M, R: Send>(
     of: impl Fn(&mut M, usize) -> R + Sync + Send,
 ) -> Vec<R> {
     if divide && count > 1 {
-        let indices = (0..count).into_par_iter();
+        let least = count.div_ceil(rayon::current_num_threads());
+        let indices = (0..count).into_par_iter().with_min_len(least);
         indices.map_init(memory, of).collect()
     } else {
         let mut memory = memory();
@@ -278,6 +279,45 @@ mod tests {
             assert_eq!(sums(threads, true), serial);
         }
         assert_eq!(map_chunks(true, &[0u8; 0], 64, |_, _| ()), []);
+    }
+
+    #[test]
+    fn counts_and_largest_values_are_the_same_on_any_number_of_threads() {
+        let on = |threads: usize, values: &[f64]| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            pool.build().unwrap().install(|| {
+                let (parallel, n) = (threads > 1, values.len());
+                // Long enough to be divided.
+                let each = 1e6;
+                (
+                    count(parallel, n, each, |k| values[k] > 0.5),
+                    any(parallel, n, each, |k| values[k] == 3.0),
+                    largest(parallel, n, each, |k| values[k]).to_bits(),
+                )
+            })
+        };
+        let plain: Vec<f64> = (0..5000).map(|k| f64::from(k).sin()).collect();
+        let with = |at: usize, x: f64| {
+            let mut list = plain.clone();
+            list[at] = x;
+            list
+        };
+        let lists = [
+            Vec::new(),
+            plain.clone(),
+            with(4999, 3.0),
+            with(0, f64::NAN),
+            with(4999, f64::NAN),
+        ];
+        for (k, list) in lists.iter().enumerate() {
+            let serial = on(1, list);
+            assert_eq!(serial, on(3, list));
+            assert_eq!(serial.1, k == 2);
+            assert_eq!(f64::from_bits(serial.2).is_nan(), k > 2);
+        }
+        assert_eq!(on(1, &[]), (0, false, 0f64.to_bits()));
+        assert_eq!(f64::from_bits(on(1, &lists[2]).2), 3.0);
+        assert_eq!(on(1, &plain).0, plain.iter().filter(|x| **x > 0.5).count());
     }
 
     #[test]

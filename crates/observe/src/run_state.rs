@@ -232,6 +232,7 @@ impl<S: Space> Observer<S> for RunState {
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
         (self.solver, self.iterations, self.couplings) = decode(from)?;
+        self.contacts = None;
         Ok(())
     }
 }

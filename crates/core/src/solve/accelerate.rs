@@ -1,21 +1,23 @@
 //! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum, less of it where the residual does not fall
-//! from test to test, Anderson extrapolation where it does not fall again, and no momentum any more where that does not help.
+//! from test to test, Anderson extrapolation where it still does not fall, and that alone where momentum does not help.
 
 use super::anderson::{Anderson, MEMORY};
 use super::form::Problem;
 use super::momentum::Momentum;
 use crate::geometry::space::Space;
 
-/// Iterations before it starts: most warm-started steps need no more.
+/// Iterations before momentum starts: most warm-started steps need no more.
 const FIRST: u32 = 10;
-/// Tests in which the squared residual has to fall by half, or momentum is given up.
-const PATIENCE: u32 = 100;
+/// Iterations before Anderson extrapolation starts without momentum.
+const FIRST_ANDERSON: u32 = 20;
+/// Iterations in which the squared residual has to fall by half, or momentum is given up.
+const PATIENCE: u32 = 1000;
 
 /// State of the acceleration in a solve.
 #[derive(Debug)]
 pub(super) struct Acceleration<S: Space> {
-    /// Whether momentum is used: not where Anderson extrapolation spans all unknowns, and not with bonds and bodies that deform, over
-    /// which it takes as many iterations.
+    /// Whether momentum is used: where all contacts are between rigid bodies, in rows with a closed form without a bond, and Anderson extrapolation does
+    /// not span all unknowns. Over bonds momentum takes as many iterations.
     with_momentum: bool,
     parallel: bool,
     momentum: Option<Momentum<S>>,
@@ -24,24 +26,24 @@ pub(super) struct Acceleration<S: Space> {
     last: f64,
     /// Whether it had risen there.
     rose: bool,
-    /// Squared residual from which it has to fall by half, and the tests since then.
+    /// Squared residual from which it has to fall by half, and the iterations after which it was reached.
     least: f64,
-    tests: u32,
+    least_at: u32,
 }
 
 impl<S: Space> Acceleration<S> {
     pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
-        let bonded = problem.full.len() + problem.bonded_levers.len();
+        let others = problem.full.len() + problem.bonded_levers.len();
         let unknowns = problem.contacts() * S::D;
         Self {
-            with_momentum: unknowns > MEMORY && bonded == 0 && problem.systems.is_empty(),
+            with_momentum: unknowns > MEMORY && others == 0 && problem.systems.is_empty(),
             parallel,
             momentum: None,
             anderson: Anderson::default(),
             last: f64::INFINITY,
             rose: false,
             least: f64::INFINITY,
-            tests: 0,
+            least_at: 0,
         }
     }
 
@@ -53,19 +55,31 @@ impl<S: Space> Acceleration<S> {
         self.momentum.as_mut()
     }
 
+    /// Whether iterations are relaxed, because they have no momentum.
+    pub fn relaxes(&self) -> bool {
+        self.momentum.is_none()
+    }
+
     /// Discards what Anderson extrapolation knows of the iteration, because that has changed.
     pub fn forget(&mut self) {
         self.anderson.forget();
     }
 
-    /// Looks at the squared residual of a failed test after `done` iterations, and may change the impulses.
-    pub fn tested(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
-        if self.stalls(residual) {
+    /// Starts momentum again from the velocities of a problem that were computed from its impulses.
+    pub fn reloaded(&mut self, problem: &Problem<S>) {
+        if let Some(momentum) = &mut self.momentum {
+            momentum.restart(problem, self.parallel);
+        }
+    }
+
+    /// Takes the squared residual of a failed test after `done` iterations, and may change the impulses.
+    pub fn on_failed_test(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
+        if self.momentum.is_some() && self.stalls(done, residual) {
             (self.with_momentum, self.momentum) = (false, None);
-            self.anderson.forget();
+            self.anderson = Anderson::default();
         }
         let Some(momentum) = &mut self.momentum else {
-            if done > FIRST {
+            if done >= FIRST_ANDERSON {
                 self.anderson.extrapolate(problem, residual);
             }
             return;
@@ -75,20 +89,18 @@ impl<S: Space> Acceleration<S> {
         if !rises {
             self.anderson.forget();
             momentum.speed_up();
-        } else if !rose {
+        } else if rose && self.anderson.extrapolate(problem, residual) {
+            momentum.restart(problem, self.parallel);
+        } else {
             momentum.slow_down();
-        } else if self.anderson.extrapolate(problem, residual) {
-            momentum.start_anew(problem, self.parallel);
         }
     }
 
     /// Whether the squared residual has not fallen by half for long.
-    fn stalls(&mut self, residual: f64) -> bool {
+    fn stalls(&mut self, done: u32, residual: f64) -> bool {
         if residual < 0.5 * self.least {
-            (self.least, self.tests) = (residual, 0);
-        } else {
-            self.tests += 1;
+            (self.least, self.least_at) = (residual, done);
         }
-        self.momentum.is_some() && self.tests >= PATIENCE
+        done - self.least_at >= PATIENCE
     }
 }

@@ -39,7 +39,7 @@ impl Default for Anderson {
 }
 
 impl Anderson {
-    /// Extrapolates after a failed test with the given squared residual; returns whether the impulses are others now.
+    /// Extrapolates after a failed test with the given squared residual; returns whether it changed the impulses.
     pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, residual: f64) -> bool {
         if self.paused > 0 {
             self.paused -= 1;

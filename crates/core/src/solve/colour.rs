@@ -332,7 +332,7 @@ mod tests {
         let divided = pool
             .unwrap()
             .install(|| super::order(bodies, &movable, true));
-        assert_eq!(divided.0, order);
+        assert_eq!(divided, (order.clone(), schedule.clone()));
         let mut seen = order.clone();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(k, o)| k as u32 == *o));

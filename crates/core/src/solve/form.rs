@@ -330,10 +330,10 @@ impl<S: Space> Problem<S> {
     /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
         match place {
-            Place::Plain(r) => self.plain.row(r).parts().0,
-            Place::Full(r) => self.full.row(r).parts().0,
-            Place::Lever(r) => self.levers.row(r).parts().0,
-            Place::BondedLever(r) => self.bonded_levers.row(r).parts().0,
+            Place::Plain(r) => self.plain.row(r).local_impulse().0,
+            Place::Full(r) => self.full.row(r).local_impulse().0,
+            Place::Lever(r) => self.levers.row(r).local_impulse().0,
+            Place::BondedLever(r) => self.bonded_levers.row(r).local_impulse().0,
             Place::System(r) => self.of_systems[r as usize].impulse().0,
         }
     }

@@ -143,6 +143,9 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         {
             if !fresh {
                 problem.reload(options.parallel);
+                if let Some(acceleration) = &mut acceleration {
+                    acceleration.reloaded(problem);
+                }
                 sums = measure(problem, options.parallel);
             }
             let scale = scale(problem, free, options.parallel);
@@ -163,14 +166,18 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         if early {
             continue;
         }
-        let cautious = caution.judge(sums.residual, relaxation);
-        if let Some(acceleration) = &mut acceleration {
-            if cautious != relaxation {
+        if acceleration.as_ref().is_none_or(Acceleration::relaxes) {
+            let cautious = caution.judge(sums.residual, relaxation);
+            if let Some(acceleration) = &mut acceleration
+                && cautious != relaxation
+            {
                 acceleration.forget();
             }
-            acceleration.tested(problem, report.iterations, sums.residual);
+            relaxation = cautious;
         }
-        relaxation = cautious;
+        if let Some(acceleration) = &mut acceleration {
+            acceleration.on_failed_test(problem, report.iterations, sums.residual);
+        }
     }
 }
 
@@ -387,7 +394,7 @@ fn sweep<S: Space>(
 ) {
     match momentum {
         None => sweep_rows(problem, relaxation, parallel),
-        Some(momentum) => sweep_rows_on(problem, relaxation, parallel, momentum),
+        Some(momentum) => sweep_rows_extrapolated(problem, relaxation, parallel, momentum),
     }
     for row in &mut problem.of_systems {
         row.update(&mut problem.solver_bodies, &mut problem.systems, relaxation);
@@ -410,7 +417,7 @@ fn sweep_rows<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: boo
         .sweep(&solver_bodies, relaxation, parallel);
 }
 
-fn sweep_rows_on<S: Space>(
+fn sweep_rows_extrapolated<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
     parallel: bool,
@@ -422,19 +429,11 @@ fn sweep_rows_on<S: Space>(
         row.set(&(now + (now - *before) * factor));
         *before = now;
     }
-    let [plain, full, levers, bonded_levers] = &mut momentum.impulses;
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
+    let plain = (&mut momentum.plain[..], factor);
     let rows = &mut problem.plain;
-    rows.sweep_on(&solver_bodies, relaxation, parallel, (plain, factor));
-    let rows = &mut problem.full;
-    rows.sweep_on(&solver_bodies, relaxation, parallel, (full, factor));
+    rows.sweep_extrapolated(&solver_bodies, relaxation, parallel, plain);
+    let levers = (&mut momentum.levers[..], factor);
     let rows = &mut problem.levers;
-    rows.sweep_on(&solver_bodies, relaxation, parallel, (levers, factor));
-    let rows = &mut problem.bonded_levers;
-    rows.sweep_on(
-        &solver_bodies,
-        relaxation,
-        parallel,
-        (bonded_levers, factor),
-    );
+    rows.sweep_extrapolated(&solver_bodies, relaxation, parallel, levers);
 }

@@ -3,7 +3,9 @@
 use super::colour::Order;
 use super::error::{Scale, Sums};
 use super::form::ContactForm;
-use super::row::{self, Free, Load, Measure, Parts, Row, SolverBodies, Update, Visit, visit};
+use super::row::{
+    self, Free, Load, LocalImpulse, Measure, Row, SolverBodies, Update, Visit, visit,
+};
 use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, pays};
 use std::ops::Range;
@@ -123,23 +125,23 @@ impl<R> Rows<R> {
 
     /// As [`Self::sweep`], from impulses moved on by `factor` times what they changed since `before`, which then holds them as they
     /// were.
-    pub fn sweep_on<S: Space>(
+    pub fn sweep_extrapolated<S: Space>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         relaxation: f64,
         parallel: bool,
-        (before, factor): (&mut [Parts<S>], f64),
+        (before, factor): (&mut [LocalImpulse<S>], f64),
     ) where
         R: Row<S>,
     {
         assert_eq!(before.len(), self.rows.len());
         let before = Shared(before.as_mut_ptr());
         self.pass(solver_bodies, parallel, |rows, range| {
-            // SAFETY: as of the rows.
+            // SAFETY: as many as there are rows; blocks are disjoint, and each is run once.
             let before = unsafe { before.slice(range) };
             for (row, before) in rows.iter_mut().zip(before) {
-                let (n, t) = row.parts();
-                row.set_parts((n + (n - before.0) * factor, t + (t - before.1) * factor));
+                let (n, t) = row.local_impulse();
+                row.set_local_impulse((n + (n - before.0) * factor, t + (t - before.1) * factor));
                 *before = (n, t);
             }
             Update(relaxation)
@@ -183,7 +185,7 @@ impl<R> Rows<R> {
         R: Row<S>,
     {
         let rows = self.rows.iter();
-        rows.for_each(|r| row::store::<S>(r.parts(), out));
+        rows.for_each(|r| row::store::<S>(r.local_impulse(), out));
     }
 
     /// Takes them from the front of `from`.
@@ -192,17 +194,17 @@ impl<R> Rows<R> {
         R: Row<S>,
     {
         let rows = self.rows.iter_mut();
-        rows.for_each(|r| r.set_parts(row::restore::<S>(from)));
+        rows.for_each(|r| r.set_local_impulse(row::restore::<S>(from)));
     }
 
     /// The impulses.
-    pub fn parts<S: Space>(&self, parallel: bool) -> Vec<Parts<S>>
+    pub fn local_impulses<S: Space>(&self, parallel: bool) -> Vec<LocalImpulse<S>>
     where
         R: Row<S>,
     {
         let (mut parts, count) = (Vec::new(), self.rows.len());
         fill(pays(parallel, count, VISIT), &mut parts, count, |k| {
-            self.rows[k].parts()
+            self.rows[k].local_impulse()
         });
         parts
     }

@@ -4,7 +4,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Groups, blocks of groups, and colours of blocks; each list holds the start indices and the final end.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     groups: Vec<u32>,
     blocks: Vec<u32>,

@@ -11,8 +11,9 @@ use std::time::Instant;
 
 /// Contacts of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to look whether a contact is one of a driven body (ns).
+/// About what it takes to look whether a contact is one of a driven body, and whether it carries an impulse (ns).
 const RECEIVED: f64 = 5.0;
+const ACTS: f64 = 5.0;
 
 /// Velocity and spin of each body.
 type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
@@ -150,9 +151,14 @@ impl<S: Space> Simulation<S> {
         let steps = &self.workspace.solved.contact_steps;
         let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
         let parallel = self.options.solver.parallel;
-        report.active = count(parallel, steps.len(), RECEIVED, acts);
+        report.active = count(parallel, steps.len(), ACTS, acts);
         let beyond = self.workspace.evaluator.beyond();
         report.contacts = steps.len() - beyond.filter(|k| !acts(*k)).count();
+        debug_assert_eq!(
+            report.contacts,
+            self.state.network.contact_count(false),
+            "contacts of the step"
+        );
         self.state.steps += 1;
         self.finite()?;
         self.watch_rounding();

@@ -77,7 +77,7 @@ impl<'a, S: Space> Search<'a, S> {
     }
 
     /// Returns whether detection, in the same places, left a pair of convex bodies farther apart than they move: it has no contact.
-    pub fn is_found(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
+    pub fn detection_suffices(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
         let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
         convex && contacts.is_empty() && self.travel(names) <= self.network.alert
     }

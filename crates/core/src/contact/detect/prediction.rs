@@ -338,7 +338,7 @@ fn find_closing<S: Space>(
                 return None;
             }
             let contacts = of_pair(*names);
-            if search.is_found(*names, contacts) {
+            if search.detection_suffices(*names, contacts) {
                 return None;
             }
             let pair = search.fast_pair(*names)?;

@@ -1,7 +1,7 @@
 //! A contact on a full block of W, and its impulse: without a bond, and with one. What the impulse does to the bodies is the row's part.
 
 use super::cone::{Cone, Limits, across, compliant, framed, in_frame, times};
-use super::{Parts, Residual, natural_map};
+use super::{LocalImpulse, Residual, natural_map};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
@@ -84,15 +84,15 @@ impl<S: Space> State<S> {
         self.pt = S::tangential(&self.n, impulse);
     }
 
-    /// See [`super::Row::parts`].
+    /// See [`super::Row::local_impulse`].
     #[inline(always)]
-    pub fn parts(&self) -> Parts<S> {
+    pub fn local_impulse(&self) -> LocalImpulse<S> {
         (self.pn, self.pt)
     }
 
-    /// See [`super::Row::set_parts`].
+    /// See [`super::Row::set_local_impulse`].
     #[inline(always)]
-    pub fn set_parts(&mut self, parts: Parts<S>) {
+    pub fn set_local_impulse(&mut self, parts: LocalImpulse<S>) {
         (self.pn, self.pt) = parts;
     }
 

@@ -1,7 +1,7 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed form.
 
 use super::{
-    Parts, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
+    LocalImpulse, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -172,12 +172,12 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     #[inline(always)]
-    fn parts(&self) -> Parts<S> {
+    fn local_impulse(&self) -> LocalImpulse<S> {
         (self.pn, self.pt)
     }
 
     #[inline(always)]
-    fn set_parts(&mut self, parts: Parts<S>) {
+    fn set_local_impulse(&mut self, parts: LocalImpulse<S>) {
         (self.pn, self.pt) = parts;
     }
 

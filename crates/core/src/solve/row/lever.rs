@@ -1,7 +1,7 @@
 //! A contact with lever arms, or of a body that is free along some axes only: a full block of W.
 
 use super::block::OnBlock;
-use super::{Parts, Residual, Row, SolverBody};
+use super::{LocalImpulse, Residual, Row, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 
@@ -92,13 +92,13 @@ impl<S: Space, C: OnBlock<S>> Row<S> for LeverRow<S, C> {
     }
 
     #[inline(always)]
-    fn parts(&self) -> Parts<S> {
-        self.contact.state().parts()
+    fn local_impulse(&self) -> LocalImpulse<S> {
+        self.contact.state().local_impulse()
     }
 
     #[inline(always)]
-    fn set_parts(&mut self, parts: Parts<S>) {
-        self.contact.state_mut().set_parts(parts);
+    fn set_local_impulse(&mut self, parts: LocalImpulse<S>) {
+        self.contact.state_mut().set_local_impulse(parts);
     }
 
     fn set(&mut self, impulse: &S::Vector) {

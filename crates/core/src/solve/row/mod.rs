@@ -74,7 +74,7 @@ pub struct Residual {
 }
 
 /// Normal and tangential impulse of a contact (N s).
-pub(super) type Parts<S> = (f64, <S as Space>::Tangent);
+pub(super) type LocalImpulse<S> = (f64, <S as Space>::Tangent);
 
 /// A contact in the solver.
 pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
@@ -85,9 +85,9 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     /// Applies the stored impulse to the velocities.
     fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>);
     /// Returns the normal and the tangential impulse.
-    fn parts(&self) -> Parts<S>;
+    fn local_impulse(&self) -> LocalImpulse<S>;
     /// Sets them; the caller updates the velocities.
-    fn set_parts(&mut self, parts: Parts<S>);
+    fn set_local_impulse(&mut self, parts: LocalImpulse<S>);
     /// Sets an impulse given in world axes; the caller updates the velocities.
     fn set(&mut self, impulse: &S::Vector);
     /// Returns |u|^2 at the current velocities.
@@ -103,7 +103,7 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
 }
 
 /// Appends the components of an impulse.
-pub(super) fn store<S: Space>((n, t): Parts<S>, out: &mut Vec<f64>) {
+pub(super) fn store<S: Space>((n, t): LocalImpulse<S>, out: &mut Vec<f64>) {
     out.push(n);
     for k in 0..S::Tangent::N {
         out.push(t[k]);
@@ -111,7 +111,7 @@ pub(super) fn store<S: Space>((n, t): Parts<S>, out: &mut Vec<f64>) {
 }
 
 /// Takes them from the front of `from`.
-pub(super) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
+pub(super) fn restore<S: Space>(from: &mut &[f64]) -> LocalImpulse<S> {
     let size = 1 + S::Tangent::N;
     let (parts, rest) = from.split_at(size);
     *from = rest;

@@ -2,7 +2,7 @@
 //! system that are touched.
 
 use super::block::{Bonded, OnBlock};
-use super::{Parts, Residual, SolverBody};
+use super::{LocalImpulse, Residual, SolverBody};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::solve::error::Scale;
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
@@ -180,14 +180,14 @@ impl<S: Space> SystemRow<S> {
         self.contact.is_bonded()
     }
 
-    /// See [`super::Row::parts`].
-    pub fn impulse(&self) -> Parts<S> {
-        self.contact.state().parts()
+    /// See [`super::Row::local_impulse`].
+    pub fn impulse(&self) -> LocalImpulse<S> {
+        self.contact.state().local_impulse()
     }
 
-    /// See [`super::Row::set_parts`].
-    pub fn set_impulse(&mut self, parts: Parts<S>) {
-        self.contact.state_mut().set_parts(parts);
+    /// See [`super::Row::set_local_impulse`].
+    pub fn set_impulse(&mut self, parts: LocalImpulse<S>) {
+        self.contact.state_mut().set_local_impulse(parts);
     }
 
     /// See [`super::Row::set`].

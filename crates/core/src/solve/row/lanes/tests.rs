@@ -99,7 +99,7 @@ impl<S: Space, R: Row<S>> State<R, S> {
         let mut out = Vec::new();
         self.rows
             .iter()
-            .for_each(|row| crate::solve::row::store::<S>(row.parts(), &mut out));
+            .for_each(|row| crate::solve::row::store::<S>(row.local_impulse(), &mut out));
         for body in &self.solver_bodies {
             out.extend(body.v.padded());
             out.extend(body.s.padded());
@@ -167,7 +167,11 @@ fn same_rows<S: Space, R: Row<S>>(row: impl Fn(u32, &[SolverBody<S>]) -> R) {
     one.visit(None, &mut Load);
     four.visit(Some(&groups), &mut Load);
     assert!(one.bits() == four.bits());
-    let open = one.rows.iter().filter(|r| r.parts().0 == 0.0).count();
+    let open = one
+        .rows
+        .iter()
+        .filter(|r| r.local_impulse().0 == 0.0)
+        .count();
     assert!(open < one.rows.len());
 }
 
