@@ -199,7 +199,6 @@ mod tests {
                 }
                 f64::from(report.iterations)
             });
-            println!("friction {friction}: {sweeps:?}");
             assert!(sweeps[2] < 6.0 * sweeps[0], "{sweeps:?}");
         }
     }
