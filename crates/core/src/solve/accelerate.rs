@@ -6,8 +6,6 @@ use super::form::Problem;
 use super::momentum::Momentum;
 use crate::geometry::space::Space;
 
-/// Iterations before momentum starts: most warm-started steps need no more.
-const FIRST: u32 = 10;
 /// Iterations before Anderson extrapolation starts without momentum.
 const FIRST_ANDERSON: u32 = 20;
 /// Iterations in which the squared residual has to fall by half, or momentum is given up.
@@ -20,6 +18,8 @@ pub(super) struct Acceleration<S: Space> {
     /// not span all unknowns. Over bonds momentum takes as many iterations.
     with_momentum: bool,
     parallel: bool,
+    /// Iterations before momentum starts, those to the second convergence test: most warm-started steps need no more.
+    first: u32,
     momentum: Option<Momentum<S>>,
     anderson: Anderson,
     /// Squared residual at the last test.
@@ -32,12 +32,13 @@ pub(super) struct Acceleration<S: Space> {
 }
 
 impl<S: Space> Acceleration<S> {
-    pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
+    pub fn new(problem: &Problem<S>, first: u32, parallel: bool) -> Self {
         let others = problem.full.len() + problem.bonded_levers.len();
         let unknowns = problem.contacts() * S::D;
         Self {
             with_momentum: unknowns > MEMORY && others == 0 && problem.systems.is_empty(),
             parallel,
+            first,
             momentum: None,
             anderson: Anderson::default(),
             last: f64::INFINITY,
@@ -49,7 +50,7 @@ impl<S: Space> Acceleration<S> {
 
     /// The momentum of the next iteration, after `done` iterations.
     pub fn momentum(&mut self, problem: &Problem<S>, done: u32) -> Option<&mut Momentum<S>> {
-        if self.with_momentum && done >= FIRST && self.momentum.is_none() {
+        if self.with_momentum && done >= self.first && self.momentum.is_none() {
             self.momentum = Some(Momentum::new(problem, self.parallel));
         }
         self.momentum.as_mut()

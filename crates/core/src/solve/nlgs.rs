@@ -109,7 +109,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     let mut report = Report::default();
     let mut acceleration = options
         .accelerated
-        .then(|| Acceleration::new(problem, options.parallel));
+        .then(|| Acceleration::new(problem, every, options.parallel));
     let (mut relaxation, mut caution) = (options.relaxation, Caution::default());
     let large = problem.systems.iter().any(NodalSystem::is_large);
     // A warm start needs few iterations, so that the first test comes early.
