@@ -187,7 +187,7 @@ mod tests {
             let sweeps = [100, 200, 400].map(|count| {
                 let mut problem = column(count, friction);
                 let options = Options {
-                    tolerance: 1e-8,
+                    tolerance: 1e-12,
                     ..Options::default()
                 };
                 let report = nlgs::solve(&mut problem, &options);
@@ -195,7 +195,8 @@ mod tests {
                 for k in 0..count {
                     let (carried, above) = (problem.solution(k as usize).impulse, count - k);
                     let error = (carried - Vector2::new(0.0, f64::from(above))).norm();
-                    assert!(error < 1e-5 * f64::from(above), "{k}: {carried}");
+                    // The square root of the tolerance: the unbalanced share of the weight.
+                    assert!(error < 1e-6 * f64::from(count), "{k}: {carried}");
                 }
                 f64::from(report.iterations)
             });
@@ -208,13 +209,13 @@ mod tests {
     fn it_solves_the_same_problem() {
         for drift in [0.0, 1e3] {
             let solved = [true, false].map(|accelerated| {
-                let mut problem = column(60, 0.2);
+                let mut problem = column(60, 0.02);
                 for (k, body) in problem.free.iter_mut().enumerate() {
                     // Pushed sideways, the more the higher: some contacts slide.
-                    body.0.x = drift + 0.02 * k as f64;
+                    body.0.x = drift + 0.5 * k as f64;
                 }
                 let options = Options {
-                    tolerance: 1e-9,
+                    tolerance: 1e-12,
                     max_iterations: 1_000_000,
                     accelerated,
                     ..Options::default()
@@ -226,7 +227,7 @@ mod tests {
             });
             let [(fast, few), (plain, many)] = &solved;
             assert!(few < many, "{few} of {many}");
-            let slides = |p: &Vector2<f64>| p.x.abs() > 0.2 * p.y * (1.0 - 1e-6);
+            let slides = |p: &Vector2<f64>| p.x.abs() > 0.02 * p.y * (1.0 - 1e-6);
             assert!(plain.iter().any(slides));
             for (p, q) in fast.iter().zip(plain) {
                 assert!((p - q).norm() < 1e-4 * plain[0].norm(), "{p} {q}");
