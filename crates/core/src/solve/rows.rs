@@ -123,7 +123,7 @@ impl<R> Rows<R> {
         self.pass(solver_bodies, parallel, |_, _| Update(relaxation));
     }
 
-    /// As [`Self::sweep`], from impulses moved on by `factor` times what they changed since `before`, which then holds them as they
+    /// As [`Self::sweep`], from impulses extrapolated by `factor` times their change since `before`, which then holds them as they
     /// were.
     pub fn sweep_extrapolated<S: Space>(
         &mut self,
