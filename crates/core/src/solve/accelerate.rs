@@ -8,8 +8,11 @@ use crate::geometry::space::Space;
 
 /// Iterations before Anderson extrapolation starts without momentum.
 const FIRST_ANDERSON: u32 = 20;
-/// Iterations in which the squared residual has to fall by half, or momentum is given up.
-const PATIENCE: u32 = 1000;
+/// Iterations in which the squared residual has to fall by half, or momentum is given up: 10 for each contact, since with momentum an impulse
+/// crosses a row of contacts in about as many iterations, between these bounds.
+fn patience(contacts: usize) -> u32 {
+    (10 * contacts).clamp(50, 1000) as u32
+}
 
 /// State of the acceleration in a solve.
 #[derive(Debug)]
@@ -20,6 +23,7 @@ pub(super) struct Acceleration<S: Space> {
     parallel: bool,
     /// Iterations before momentum starts, those to the second convergence test: most warm-started steps need no more.
     first: u32,
+    patience: u32,
     momentum: Option<Momentum<S>>,
     anderson: Anderson,
     /// Squared residual at the last test.
@@ -39,6 +43,7 @@ impl<S: Space> Acceleration<S> {
             with_momentum: unknowns > MEMORY && others == 0 && problem.systems.is_empty(),
             parallel,
             first,
+            patience: patience(problem.contacts()),
             momentum: None,
             anderson: Anderson::default(),
             last: f64::INFINITY,
@@ -102,6 +107,6 @@ impl<S: Space> Acceleration<S> {
         if residual < 0.5 * self.least {
             (self.least, self.least_at) = (residual, done);
         }
-        done - self.least_at >= PATIENCE
+        done - self.least_at >= self.patience
     }
 }

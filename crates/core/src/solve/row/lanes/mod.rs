@@ -18,6 +18,27 @@ use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
+/// Vector instructions that a machine has. With AVX-512 (its operations on 256 bits) there are twice as many registers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Instructions {
+    Avx2,
+    Avx512,
+}
+
+impl Instructions {
+    /// The best that this machine has.
+    fn of_this_machine() -> Option<Self> {
+        let avx512 = is_x86_feature_detected!("avx512vl") && is_x86_feature_detected!("avx512dq");
+        if !is_x86_feature_detected!("avx2") {
+            None
+        } else if avx512 {
+            Some(Self::Avx512)
+        } else {
+            Some(Self::Avx2)
+        }
+    }
+}
+
 /// Visits a block of rows, see [`super::visit::visit`]; returns whether this machine and these rows support
 /// vector instructions.
 pub fn visit<S: Space, R: Row<S>>(
@@ -26,17 +47,38 @@ pub fn visit<S: Space, R: Row<S>>(
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) -> bool {
-    if !is_x86_feature_detected!("avx2") {
-        return false;
+    match Instructions::of_this_machine() {
+        // SAFETY: the machine has them.
+        Some(with) => unsafe { visit_with(with, rows, groups, solver_bodies, what) },
+        None => false,
     }
+}
+
+/// Visits a block of rows as [`visit`] does.
+///
+/// # Safety
+/// The machine has the instructions.
+unsafe fn visit_with<S: Space, R: Row<S>>(
+    with: Instructions,
+    rows: &mut [R],
+    groups: &[u32],
+    solver_bodies: &SolverBodies<S>,
+    what: &mut impl Visit,
+) -> bool {
     let (count, first, solver_bodies) = (rows.len(), rows.as_mut_ptr(), solver_bodies.at(0));
     debug_assert!(groups.last().map(|end| (end - groups[0]) as usize) == Some(count));
     macro_rules! of {
         ($($row:ty),*) => {$(
             if TypeId::of::<R>() == TypeId::of::<$row>() {
-                // SAFETY: the machine has AVX2, the type was checked, and body indices satisfy the contract
-                // of `SolverBodies`.
-                unsafe { all(first.cast::<$row>(), groups, count, solver_bodies.cast(), what) };
+                let rows = first.cast::<$row>();
+                // SAFETY: the machine has the instructions, the type was checked, and body indices satisfy the
+                // contract of `SolverBodies`.
+                unsafe {
+                    match with {
+                        Instructions::Avx2 => all_avx2(rows, groups, count, solver_bodies.cast(), what),
+                        Instructions::Avx512 => all_avx512(rows, groups, count, solver_bodies.cast(), what),
+                    }
+                };
                 return true;
             }
         )*};
@@ -53,8 +95,36 @@ pub fn visit<S: Space, R: Row<S>>(
 }
 
 /// # Safety
-/// There are `count` rows, of bodies of `solver_bodies`; their groups are as `visit` says.
+/// As for [`all`], on a machine with AVX2.
 #[target_feature(enable = "avx2")]
+unsafe fn all_avx2<W: Wide, V: Visit>(
+    rows: *mut W,
+    groups: &[u32],
+    count: usize,
+    solver_bodies: *mut SolverBody<W::Space>,
+    what: &mut V,
+) {
+    // SAFETY: as asked for.
+    unsafe { all(rows, groups, count, solver_bodies, what) }
+}
+
+/// # Safety
+/// As for [`all`], on a machine with AVX-512.
+#[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq")]
+unsafe fn all_avx512<W: Wide, V: Visit>(
+    rows: *mut W,
+    groups: &[u32],
+    count: usize,
+    solver_bodies: *mut SolverBody<W::Space>,
+    what: &mut V,
+) {
+    // SAFETY: as asked for.
+    unsafe { all(rows, groups, count, solver_bodies, what) }
+}
+
+/// # Safety
+/// There are `count` rows, of bodies of `solver_bodies`; their groups are as `visit` says.
+#[inline(always)]
 unsafe fn all<W: Wide, V: Visit>(
     rows: *mut W,
     groups: &[u32],

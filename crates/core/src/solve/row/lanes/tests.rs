@@ -1,5 +1,5 @@
-use crate::geometry::space::MatrixLike;
-use crate::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use super::{Instructions, visit_with};
+use crate::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use crate::solve::form::Mobility;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::solve::row::visit::{Free, Load, Measure, Update, Visit};
@@ -110,10 +110,13 @@ impl<S: Space, R: Row<S>> State<R, S> {
     }
 
     /// Visits several contacts at a time where the machine can, and one by one.
-    fn visit<V: Visit>(&mut self, groups: Option<&[u32]>, what: &mut V) {
+    fn visit<V: Visit>(&mut self, groups: Option<(&[u32], Instructions)>, what: &mut V) {
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         match groups {
-            Some(groups) => assert!(super::visit(&mut self.rows, groups, &solver_bodies, what)),
+            // SAFETY: the machine has the instructions.
+            Some((groups, with)) => {
+                assert!(unsafe { visit_with(with, &mut self.rows, groups, &solver_bodies, what) })
+            }
             None => {
                 let rows = self.rows.iter_mut().enumerate();
                 rows.for_each(|(at, row)| what.visit_row(row, &solver_bodies, at));
@@ -134,9 +137,17 @@ fn same<S: Space, R: Row<S>>(
 }
 
 fn same_rows<S: Space, R: Row<S>>(row: impl Fn(u32, &[SolverBody<S>]) -> R) {
-    if !is_x86_feature_detected!("avx2") {
-        return;
+    match Instructions::of_this_machine() {
+        None => {}
+        Some(Instructions::Avx2) => same_with(Instructions::Avx2, &row),
+        Some(Instructions::Avx512) => {
+            same_with(Instructions::Avx2, &row);
+            same_with(Instructions::Avx512, &row);
+        }
     }
+}
+
+fn same_with<S: Space, R: Row<S>>(with: Instructions, row: impl Fn(u32, &[SolverBody<S>]) -> R) {
     // Groups of all remainders, up to the end of the prefetch distance.
     let groups: Vec<u32> = vec![0, 1, 3, 6, 10, 15, 21, 28, 36, 45, 145];
     let solver_bodies = solver_bodies::<S>(290);
@@ -151,21 +162,21 @@ fn same_rows<S: Space, R: Row<S>>(row: impl Fn(u32, &[SolverBody<S>]) -> R) {
     };
     for relaxation in [1.0, 1.45, 1.0] {
         one.visit(None, &mut Update(relaxation));
-        four.visit(Some(&groups), &mut Update(relaxation));
+        four.visit(Some((&groups, with)), &mut Update(relaxation));
         assert!(one.bits() == four.bits());
         let mut sums = [Measure::default(), Measure::default()];
         one.visit(None, &mut sums[0]);
-        four.visit(Some(&[0, 145]), &mut sums[1]);
+        four.visit(Some((&[0, 145], with)), &mut sums[1]);
         let [a, b] = sums.map(|s| s.sums(3));
         assert!(a.residual > 0.0 && a == b, "{a:?} {b:?}");
         let mut free = [Free::default(), Free::default()];
         one.visit(None, &mut free[0]);
-        four.visit(Some(&[0, 145]), &mut free[1]);
+        four.visit(Some((&[0, 145], with)), &mut free[1]);
         let [a, b] = free.map(|f| f.scale());
         assert!(a.free > 0.0 && a == b, "{a:?} {b:?}");
     }
     one.visit(None, &mut Load);
-    four.visit(Some(&groups), &mut Load);
+    four.visit(Some((&groups, with)), &mut Load);
     assert!(one.bits() == four.bits());
     let open = one
         .rows
