@@ -16,6 +16,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+#[global_allocator]
+static ALLOCATOR: fretwork::huge_pages::HugePages = fretwork::huge_pages::HugePages;
+
 /// Measurements of one run.
 #[derive(Clone, Copy, Debug)]
 struct Row {
