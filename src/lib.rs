@@ -75,7 +75,6 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;
-pub mod huge_pages;
 pub mod interrupt;
 pub mod record;
 pub mod scene;
@@ -83,8 +82,8 @@ pub mod shipped;
 pub mod trade;
 
 pub use fretwork_core::{
-    bodies, certify, contact, energy, fields, geometry, laws, process, program, solve, step,
-    threads, wear,
+    bodies, certify, contact, energy, fields, geometry, huge_pages, laws, process, program, solve,
+    step, threads, wear,
 };
 pub use fretwork_elastic as elastic;
 pub use fretwork_plot as report;

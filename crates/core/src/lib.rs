@@ -54,6 +54,7 @@ pub mod code;
 pub mod contact;
 pub mod energy;
 pub mod geometry;
+pub mod huge_pages;
 pub mod laws;
 pub mod process;
 pub mod program;

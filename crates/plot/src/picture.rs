@@ -10,7 +10,7 @@ pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
 use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::Space;
+use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
@@ -99,10 +99,19 @@ impl Camera {
     pub fn follow<S: Steps>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {
             self.window = match S::in_dimension(simulation) {
-                InDimension::Dim2(s) => Self::whole(s),
-                InDimension::Dim3(s) => Self::whole(s),
+                InDimension::Dim2(s) => Self::whole_plane(s),
+                InDimension::Dim3(s) => Self::whole_space(s),
             };
         }
+    }
+
+    // Functions without a parameter of dimension are compiled here, optimised, and not where they are called.
+    fn whole_plane(simulation: &Simulation<Dim2>) -> [f64; 4] {
+        Self::whole(simulation)
+    }
+
+    fn whole_space(simulation: &Simulation<Dim3>) -> [f64; 4] {
+        Self::whole(simulation)
     }
 
     fn whole<S: Space>(simulation: &Simulation<S>) -> [f64; 4] {
@@ -178,9 +187,29 @@ impl Camera {
         caption: Vec<String>,
     ) -> Frame {
         match S::in_dimension(simulation) {
-            InDimension::Dim2(s) => self.frame_in(s, subject, title, caption),
-            InDimension::Dim3(s) => self.frame_in(s, subject, title, caption),
+            InDimension::Dim2(s) => self.frame_plane(s, subject, title, caption),
+            InDimension::Dim3(s) => self.frame_space(s, subject, title, caption),
         }
+    }
+
+    fn frame_plane(
+        &self,
+        simulation: &Simulation<Dim2>,
+        subject: Subject<'_>,
+        title: &str,
+        caption: Vec<String>,
+    ) -> Frame {
+        self.frame_in(simulation, subject, title, caption)
+    }
+
+    fn frame_space(
+        &self,
+        simulation: &Simulation<Dim3>,
+        subject: Subject<'_>,
+        title: &str,
+        caption: Vec<String>,
+    ) -> Frame {
+        self.frame_in(simulation, subject, title, caption)
     }
 
     fn frame_in<S: Space>(

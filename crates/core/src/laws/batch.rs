@@ -6,7 +6,7 @@ use super::error::LawError;
 use super::guarded::{self, Guarded};
 use super::interface::{Interface, Loaded};
 use super::library::{Call, Plugin};
-use super::range::{Largest, Survey, settle};
+use super::range::{ColumnRange, Largest, settle};
 use crate::contact::Network;
 use crate::geometry::space::Space;
 use crate::threads::map_tasks;
@@ -120,7 +120,7 @@ impl Batch {
         call: Call,
     ) -> Result<(), LawError> {
         let mut outputs = (plugin.kind.spec().outputs)(&mut self.columns.out, call);
-        let surveys: Vec<Survey> = outputs.iter().map(|o| Survey::of(o.values)).collect();
+        let ranges: Vec<ColumnRange> = outputs.iter().map(|o| ColumnRange::of(o.values)).collect();
         let moved = matches!(call, Call::Commit | Call::Initialise);
         let states = self.columns.state_next.iter();
         let states =
@@ -128,7 +128,7 @@ impl Batch {
                 .skip(loaded.first_variable)
                 .take(if moved { loaded.variables() } else { 0 });
         let first = |column: &[f64]| column.iter().position(|x| !x.is_finite());
-        if !surveys.iter().all(|s| s.finite) || !states.clone().all(|c| Survey::of(c).finite) {
+        if !ranges.iter().all(|s| s.finite) || !states.clone().all(|c| ColumnRange::of(c).finite) {
             let in_outputs = outputs.iter().filter_map(|o| first(o.values)).min();
             return Err(LawError::NotFinite {
                 kind: plugin.kind,
@@ -140,7 +140,7 @@ impl Batch {
         if matches!(self.checks, CallChecks::Lenient | CallChecks::Repeated) {
             return Ok(());
         }
-        match settle(&mut outputs, &surveys, plugin.kind, &mut self.largest) {
+        match settle(&mut outputs, &ranges, plugin.kind, &mut self.largest) {
             None => Ok(()),
             Some(outside) => Err(LawError::OutOfRange {
                 kind: plugin.kind,
@@ -173,9 +173,9 @@ pub(super) fn locate<S: Space>(
 
 /// Working memory for as many batches as are evaluated at the same time.
 #[derive(Debug, Default)]
-pub(super) struct Pool(Mutex<Vec<Batch>>);
+pub(super) struct BatchPool(Mutex<Vec<Batch>>);
 
-impl Pool {
+impl BatchPool {
     /// Lends out the memory of a batch.
     pub fn with<R>(&self, of: impl FnOnce(&mut Batch) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -256,9 +256,9 @@ mod tests {
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
         let judge = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {
-            let surveys = [Survey::of(column)];
+            let ranges = [ColumnRange::of(column)];
             let mut outputs = [Output::ranged(("strength", column, Range::NotNegative))];
-            match settle(&mut outputs, &surveys, Kind::CONTACT, &mut batch.largest) {
+            match settle(&mut outputs, &ranges, Kind::CONTACT, &mut batch.largest) {
                 None => Ok(column[0]),
                 Some(outside) => Err(LawError::OutOfRange {
                     kind: Kind::CONTACT,
@@ -275,7 +275,7 @@ mod tests {
             for order in [[0, 1], [1, 0]] {
                 let columns = [vec![-1e-7], vec![1e6]];
                 let tasks = order.map(|k| columns[k].clone()).to_vec();
-                let (pool, mut largest) = (Pool::default(), Largest::default());
+                let (pool, mut largest) = (BatchPool::default(), Largest::default());
                 let mut given = Vec::new();
                 let mut take = |(): &mut (), _: &Vec<f64>, x| given.push(x);
                 let judged = pool.evaluate(divide, &mut largest, &mut (), tasks, judge, &mut take);

@@ -1,6 +1,6 @@
 //! Evaluation of the laws in a step: which contacts they act on, in batches on one or several threads.
 
-use super::batch::{BATCH, Pool};
+use super::batch::{BATCH, BatchPool};
 use super::gather::{AHEAD, prefetch_bond};
 use super::interface::Interface;
 use crate::contact::Network;
@@ -19,7 +19,7 @@ const OVERHEAD: f64 = 8.0;
 /// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a step.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
-    pub(super) pool: Pool,
+    pub(super) pool: BatchPool,
     /// The contacts of each interface in this step.
     pub(super) members: Vec<Members>,
     /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.

@@ -30,13 +30,13 @@ impl Range {
     }
 
     /// Returns the first value outside the range by more than rounding, and clamps the others to it. Almost
-    /// always the survey of the column tells that there is none.
-    fn settle(self, column: &mut [f64], survey: &Survey, largest: &mut f64) -> Option<usize> {
+    /// always the range of the column tells that there is none.
+    fn settle(self, column: &mut [f64], found: &ColumnRange, largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
-            *largest = largest.max(survey.most);
+            *largest = largest.max(found.most);
         }
         let ([low, high], slack) = self.bounds(*largest);
-        if survey.least >= low && survey.most <= high {
+        if found.least >= low && found.most <= high {
             return None;
         }
         let beyond = |x: f64, by: f64| (x < low - by) | (x > high + by);
@@ -50,7 +50,7 @@ impl Range {
 
 /// What one pass without branches tells of a column.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Survey {
+pub(super) struct ColumnRange {
     /// Whether all values are finite.
     pub finite: bool,
     /// Least value; infinity of an empty column. As the largest, it has a meaning if all values are finite.
@@ -59,7 +59,7 @@ pub(super) struct Survey {
     most: f64,
 }
 
-impl Survey {
+impl ColumnRange {
     pub fn of(column: &[f64]) -> Self {
         const LANES: usize = 8;
         let mut lanes = (
@@ -137,16 +137,16 @@ pub(super) struct Outside {
 /// finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the host holds it up.
 pub(super) fn settle(
     outputs: &mut [Output<'_>],
-    surveys: &[Survey],
+    ranges: &[ColumnRange],
     kind: Kind,
     largest: &mut Largest,
 ) -> Option<Outside> {
     let largest = largest.of(kind.code(), outputs.len());
-    for ((output, survey), largest) in outputs.iter_mut().zip(surveys).zip(largest) {
+    for ((output, found), largest) in outputs.iter_mut().zip(ranges).zip(largest) {
         let Some(range) = output.range else {
             continue;
         };
-        if let Some(contact) = range.settle(output.values, survey, largest) {
+        if let Some(contact) = range.settle(output.values, found, largest) {
             return Some(Outside {
                 contact,
                 column: output.name,
@@ -163,21 +163,21 @@ mod tests {
     use super::*;
 
     fn settle(range: Range, column: &mut [f64], largest: &mut f64) -> Option<usize> {
-        let survey = Survey::of(column);
-        assert!(survey.finite);
-        range.settle(column, &survey, largest)
+        let found = ColumnRange::of(column);
+        assert!(found.finite);
+        range.settle(column, &found, largest)
     }
 
     #[test]
     fn one_value_that_is_not_finite_is_found_wherever_it_is() {
         for n in 0..20 {
             let column: Vec<f64> = (0..n).map(|k| f64::MAX / f64::from(k + 1)).collect();
-            assert!(Survey::of(&column).finite);
+            assert!(ColumnRange::of(&column).finite);
             for k in 0..column.len() {
                 for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                     let mut column = column.clone();
                     column[k] = wrong;
-                    assert!(!Survey::of(&column).finite);
+                    assert!(!ColumnRange::of(&column).finite);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum, less of it where the residual does not fall
 //! from test to test, Anderson extrapolation where it still does not fall, and that alone where momentum does not help.
 
-use super::anderson::{Anderson, MEMORY};
+use super::body_anderson::{BodyAnderson, MEMORY};
 use super::form::Problem;
 use super::momentum::Momentum;
 use crate::geometry::space::Space;
@@ -25,7 +25,7 @@ pub(super) struct Acceleration<S: Space> {
     first: u32,
     patience: u32,
     momentum: Option<Momentum<S>>,
-    anderson: Anderson,
+    anderson: BodyAnderson,
     /// Squared residual at the last test.
     last: f64,
     /// Whether it had risen there.
@@ -45,7 +45,7 @@ impl<S: Space> Acceleration<S> {
             first,
             patience: patience(problem.contacts()),
             momentum: None,
-            anderson: Anderson::default(),
+            anderson: BodyAnderson::default(),
             last: f64::INFINITY,
             rose: false,
             least: f64::INFINITY,
@@ -82,7 +82,7 @@ impl<S: Space> Acceleration<S> {
     pub fn on_failed_test(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
         if self.momentum.is_some() && self.stalls(done, residual) {
             (self.with_momentum, self.momentum) = (false, None);
-            self.anderson = Anderson::default();
+            self.anderson = BodyAnderson::default();
         }
         let Some(momentum) = &mut self.momentum else {
             if done >= FIRST_ANDERSON {

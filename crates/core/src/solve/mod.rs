@@ -7,7 +7,7 @@
 //!
 //! Body velocities are updated in place, so that applying an impulse costs O(1) per contact.
 pub mod accelerate;
-mod anderson;
+mod body_anderson;
 mod build;
 pub mod choose;
 pub mod chosen;

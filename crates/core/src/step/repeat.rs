@@ -56,7 +56,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events stay with the steps of the case, see
-    /// [`super::control::Ahead`].
+    /// [`super::control::StepBounds`].
     pub fn span_steps(&mut self, h: f64, count: u32) {
         let count = count.max(1);
         let spanned = h * f64::from(count);

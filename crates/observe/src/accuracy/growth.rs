@@ -3,9 +3,9 @@
 //! A step of the run spans a number of steps of the case. It follows from what a step changes: the largest displacement of a body over the half
 //! size of the smallest grain, which is to stay at the accuracy asked for, and the change of forces and damage, above which steps do not grow. A
 //! step in which something moves too far, a bond forms or breaks, or the solver does not converge is made again with a quarter of the number.
-//! Events end steps, see [`Ahead`].
+//! Events end steps, see [`StepBounds`].
 //!
-//! [`Ahead`]: fretwork_core::step::control::Ahead
+//! [`StepBounds`]: fretwork_core::step::control::StepBounds
 
 use fretwork_core::step::{ContactForces, Simulation, StepReport, Steps};
 use fretwork_scene::case::{AccuracySpec, Case};
@@ -106,7 +106,7 @@ impl Growth {
         if s.phase_begins() {
             self.chosen = 1;
         }
-        let [event, resolved] = s.ahead().steps(s.state.time, h);
+        let [event, resolved] = s.step_bounds().steps(s.state.time, h);
         let wanted = u64::from(self.chosen).min(resolved).max(1);
         // Equal steps up to the next event or record, so that none is much shorter than the one before it.
         let rest = event.min(most).max(1);
@@ -172,7 +172,7 @@ impl Growth {
     }
 
     /// Finer steps were found to change the result by more than is allowed: the next ones are somewhat shorter.
-    pub fn hold_back(&mut self) {
+    pub fn shorten(&mut self) {
         self.chosen = ((f64::from(self.chosen) * RATIO[0]) as u32).max(1);
     }
 

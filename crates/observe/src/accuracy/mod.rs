@@ -372,7 +372,7 @@ impl AccuracyControl {
         self.step
             .decide(pair(changes.finer), STEP_LIMIT, 2.0, allowed);
         if STEP_LIMIT * changes.finer > allowed {
-            self.growth.hold_back();
+            self.growth.shorten();
         }
         if s.state.control.tolerance.is_some() || !changes.tight {
             return Ok(());

@@ -3,13 +3,13 @@
 //! Each step begins by applying them: first the current phase, then removals, then gravity, loaded areas and
 //! drives.
 
-mod ahead;
 mod gravity;
 mod phases;
+mod step_bounds;
 
-pub use ahead::Ahead;
 pub use gravity::GravityDrive;
 pub use phases::{Begun, Changes, Phase, Until};
+pub use step_bounds::StepBounds;
 
 use super::{Scheme, Simulation};
 use crate::bodies::pressure::{Pushed, Servo};

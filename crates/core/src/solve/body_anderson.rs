@@ -16,7 +16,7 @@ const PAUSE: u32 = 6;
 
 /// State of the acceleration in a solve.
 #[derive(Debug)]
-pub(super) struct Anderson {
+pub(super) struct BodyAnderson {
     sequence: Option<Extrapolation>,
     impulses: Vec<f64>,
     least: f64,
@@ -25,7 +25,7 @@ pub(super) struct Anderson {
     pause: u32,
 }
 
-impl Default for Anderson {
+impl Default for BodyAnderson {
     fn default() -> Self {
         Self {
             sequence: None,
@@ -38,7 +38,7 @@ impl Default for Anderson {
     }
 }
 
-impl Anderson {
+impl BodyAnderson {
     /// Extrapolates after a failed test with the given squared residual; returns whether it changed the impulses.
     pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, residual: f64) -> bool {
         if self.paused > 0 {

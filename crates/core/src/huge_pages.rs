@@ -11,7 +11,7 @@ const LARGE: usize = 4 << 20;
 /// A program chooses it by
 /// ```
 /// #[global_allocator]
-/// static ALLOCATOR: fretwork::huge_pages::HugePages = fretwork::huge_pages::HugePages;
+/// static ALLOCATOR: fretwork_core::huge_pages::HugePages = fretwork_core::huge_pages::HugePages;
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HugePages;

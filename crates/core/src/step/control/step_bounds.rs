@@ -1,4 +1,4 @@
-//! What lies ahead of a step that would span several steps of the case.
+//! What bounds a step that would span several steps of the case.
 
 use super::{GravityDrive, Simulation};
 use crate::bodies::{Dof, TimeFunction};
@@ -7,14 +7,14 @@ use crate::laws::Interface;
 
 /// What a step must not pass, and how long it may be, as known from drives, gates and phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ahead {
+pub struct StepBounds {
     /// Time of the next event (s): a gate, the end of a phase or stage, a kink of a drive; infinite if there is none.
     pub event: f64,
     /// Longest step that resolves what changes smoothly (s); infinite where nothing does.
     pub longest: f64,
 }
 
-impl Ahead {
+impl StepBounds {
     fn function(&mut self, f: &TimeFunction, t: f64) {
         self.event = self.event.min(f.next_kink(t));
         self.longest = self.longest.min(f.resolved_step(t));
@@ -43,41 +43,41 @@ impl Ahead {
 }
 
 impl<S: Space> Simulation<S> {
-    /// What lies ahead of the next step. Drives of deformable bodies are not looked at.
-    pub fn ahead(&self) -> Ahead {
+    /// What bounds the next step. Drives of deformable bodies are not looked at.
+    pub fn step_bounds(&self) -> StepBounds {
         // An event that is due is one of the step that begins.
         let t = self.state.time + 1e-6 * self.options.event_step();
         let control = &self.state.control;
-        let mut ahead = Ahead {
+        let mut step_bounds = StepBounds {
             event: f64::INFINITY,
             longest: f64::INFINITY,
         };
         for dof in self.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
-            ahead.drive(dof, t);
+            step_bounds.drive(dof, t);
         }
         for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
-            ahead.event = ahead.event.min(*gate);
+            step_bounds.event = step_bounds.event.min(*gate);
         }
         let bonds = self.laws.iter().filter_map(Interface::bonding_time);
-        ahead.event = bonds.filter(|b| *b > t).fold(ahead.event, f64::min);
+        step_bounds.event = bonds.filter(|b| *b > t).fold(step_bounds.event, f64::min);
         match &control.gravity_drive {
             None => {}
             Some(GravityDrive::Turned { angle: f, .. } | GravityDrive::Scaled(f)) => {
-                ahead.function(f, t);
+                step_bounds.function(f, t);
             }
-            Some(GravityDrive::Axes(list)) => list.iter().for_each(|f| ahead.function(f, t)),
+            Some(GravityDrive::Axes(list)) => list.iter().for_each(|f| step_bounds.function(f, t)),
         }
         let phase = control.phase().checked_sub(1);
         let until = phase.and_then(|k| self.phases.get(k)?.until.as_ref());
         if let Some(until) = until {
             let [end, longest] = control.clock.ahead(until);
-            ahead.event = ahead.event.min(end);
-            ahead.longest = ahead.longest.min(longest);
+            step_bounds.event = step_bounds.event.min(end);
+            step_bounds.longest = step_bounds.longest.min(longest);
         }
-        ahead
+        step_bounds
     }
 
-    /// Whether the next step is the first of a phase: what is ahead of it is known after it.
+    /// Whether the next step is the first of a phase: what bounds it is known after it.
     pub fn phase_begins(&self) -> bool {
         self.state.control.clock.turns() && self.state.control.phase() < self.phases.len()
     }
@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn a_step_ends_at_an_event_or_at_the_steps_beside_it() {
-        let steps = |event: f64, longest: f64, time: f64| Ahead { event, longest }.steps(time, 0.1);
+        let steps =
+            |event: f64, longest: f64, time: f64| StepBounds { event, longest }.steps(time, 0.1);
         assert_eq!(steps(1.0, 0.35, 0.0), [10, 3]);
         // 0.1 + 0.1 + 0.1 is above 0.3.
         assert_eq!(steps(1.0, 1.0, 0.1 + 0.1 + 0.1), [7, 10]);
