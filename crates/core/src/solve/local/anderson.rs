@@ -11,6 +11,8 @@ use pulp::{Arch, Simd, WithSimd};
 pub struct Anderson {
     /// Maximum number of stored iterations, after which the memory is restarted.
     pub memory: usize,
+    /// Iterations without a reduction of the smallest error by a fifth after which to end; none to go on to the end of the budget.
+    pub patience: Option<usize>,
 }
 
 /// Plain iterations before the acceleration: for problems that converge in a few, its cost would exceed its
@@ -25,6 +27,9 @@ const fn soon<const D: usize>() -> i32 {
 }
 /// Iterations over which the convergence rate is measured.
 const WINDOW: usize = 4;
+
+/// Share of an error below which a later one counts as progress.
+const PROGRESS: f64 = 0.8;
 
 /// Recovery from stagnation: where the error does not fall for long, extrapolation cycles between contact
 /// statuses, and plain iterations lead out.
@@ -52,7 +57,7 @@ impl Rest {
 
     /// Returns, after a test, whether a recovery begins.
     fn begins(&mut self, error: f64, done: usize) -> bool {
-        if error < 0.8 * self.error {
+        if error < PROGRESS * self.error {
             (self.error, self.at) = (error, done);
         } else if done > self.at + Self::STALL {
             (self.at, self.left) = (done, Self::LENGTH);
@@ -71,7 +76,10 @@ impl Rest {
 
 impl Default for Anderson {
     fn default() -> Self {
-        Self { memory: 8 }
+        Self {
+            memory: 8,
+            patience: None,
+        }
     }
 }
 
@@ -105,6 +113,8 @@ impl<const D: usize> Solver<D> for Anderson {
         let mut near = false;
         let mut rest = Rest::default();
         let mut done = 0;
+        // The smallest error that was progress, and when it was found.
+        let mut progress = (f64::INFINITY, 0);
         while !budget.ends(state) {
             loop {
                 if rest.lasts() {
@@ -142,6 +152,11 @@ impl<const D: usize> Solver<D> for Anderson {
                 sequence = None;
             }
             best.keep(state);
+            if best.error < PROGRESS * progress.0 {
+                progress = (best.error, done);
+            } else if self.patience.is_some_and(|most| done - progress.1 >= most) {
+                break;
+            }
         }
         best.restore(form, state);
     }

@@ -1,9 +1,10 @@
 //! Automatic choice of the method for a problem given as a matrix.
 //!
 //! Gauss-Seidel with Anderson acceleration comes first and solves most problems. When it has cost about as
-//! much as some factorisations, Newton continues from its result, then the interior point tries from its own
-//! start, and then long runs of Gauss-Seidel alternate with Newton. The order and the lengths follow from
-//! problem sizes alone, so that a problem takes the same path on any machine.
+//! much as some factorisations, or its error has not fallen for the cost of a few, Newton continues from its
+//! result; then long runs of Gauss-Seidel alternate with Newton, and after the first of them the interior
+//! point tries from its own start. The order and the lengths follow from problem sizes and errors alone, so
+//! that a problem takes the same path on any machine.
 
 use super::anderson::Anderson;
 use super::form::Form;
@@ -25,6 +26,12 @@ pub struct Auto {
 pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
     0.9 * entries.powf(1.5) / (entries + 60.0 * contacts)
 }
+
+/// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
+const LOOSE: f64 = 40.0;
+const TIGHT: f64 = 20.0;
+/// Cost of Gauss-Seidel without progress, in factorisations, after which Newton is tried at once.
+const STALLED: f64 = 10.0;
 
 impl Auto {
     /// Returns the methods used in the last solve, in the order of first use.
@@ -54,10 +61,6 @@ impl Auto {
 
 impl<const D: usize> Solver<D> for Auto {
     fn solve(&self, form: &Form<D>, state: &mut State<D>, budget: &mut Budget) {
-        /// Cost of Gauss-Seidel before the interior point in factorisations, at a loose and at a tight
-        /// tolerance.
-        const LOOSE: f64 = 40.0;
-        const TIGHT: f64 = 20.0;
         self.used.borrow_mut().clear();
         let Some(w) = form.w.matrix() else {
             return;
@@ -70,25 +73,30 @@ impl<const D: usize> Solver<D> for Auto {
             TIGHT
         };
         let sweeps = (worth * per).clamp(100.0, 1e6) as u32;
-        if self.run(
-            "anderson",
-            &Anderson::default(),
-            form,
-            state,
-            budget,
-            sweeps,
-        ) {
+        let bends = Newton::serves(form.laws).is_ok();
+        let first = Anderson {
+            patience: bends.then_some((STALLED * per).clamp(100.0, 1e6) as usize),
+            ..Anderson::default()
+        };
+        let start = state.iterations;
+        if self.run("anderson", &first, form, state, budget, sweeps) {
             return;
         }
+        let left = sweeps.saturating_sub(state.iterations - start);
         let newton = Newton { alpha: 1e-4 };
         let mut best = Best::of(state);
-        let bends = Newton::serves(form.laws).is_ok();
         if bends && self.run("newton", &newton, form, state, budget, 40) {
             return;
         }
         best.keep(state);
-        if Interior::serves(form.laws).is_ok() {
-            if self.run("interior", &Interior, form, state, budget, 80) {
+        if f64::from(left) > per {
+            // The error stalled, but Newton did not help: the rest of the sweeps, and Newton from there.
+            let rest = Anderson::default();
+            if self.run("anderson", &rest, form, state, budget, left) {
+                return;
+            }
+            best.keep(state);
+            if bends && self.run("newton", &newton, form, state, budget, 40) {
                 return;
             }
             best.keep(state);
@@ -113,10 +121,18 @@ impl<const D: usize> Solver<D> for Auto {
                 return;
             }
             best.keep(state);
-            if bends && self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 200) {
+            if bends && self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 80) {
                 return;
             }
             best.keep(state);
+            // From its own start, which rarely helps where Newton failed, and costs more than a round.
+            if round == 0 && Interior::serves(form.laws).is_ok() {
+                if self.run("interior", &Interior, form, state, budget, 80) {
+                    return;
+                }
+                best.keep(state);
+                best.restore(form, state);
+            }
             round += 1;
         }
         best.restore(form, state);
