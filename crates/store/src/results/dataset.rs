@@ -90,3 +90,13 @@ impl Number for i64 {
         self.to_le_bytes()
     }
 }
+
+/// The bytes of values, one after the other.
+pub(super) fn as_bytes<T: Copy>(values: &[T], of: impl Fn(T) -> [u8; 8]) -> Vec<u8> {
+    let mut bytes = vec![0; 8 * values.len()];
+    let places = bytes.as_chunks_mut::<8>().0;
+    for (place, value) in places.iter_mut().zip(values) {
+        *place = of(*value);
+    }
+    bytes
+}
