@@ -150,9 +150,21 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 13] = [
-    "threads", "code", "program", "geometry", "bodies", "contact", "solve", "laws", "certify",
-    "energy", "wear", "step", "process",
+const MODULES: [&str; 14] = [
+    "huge_pages",
+    "threads",
+    "code",
+    "program",
+    "geometry",
+    "bodies",
+    "contact",
+    "solve",
+    "laws",
+    "certify",
+    "energy",
+    "wear",
+    "step",
+    "process",
 ];
 
 /// Modules of the core that a file's code names.

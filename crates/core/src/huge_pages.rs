@@ -2,7 +2,7 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// Allocations from this size on are in huge pages (bytes): two pages of the usual size of 2 MiB.
+/// Allocations from this size on ask for huge pages (bytes): any block of this size contains a whole page of the usual 2 MiB.
 const LARGE: usize = 4 << 20;
 
 /// The system's allocator, which on Linux asks for transparent huge pages (`madvise`, `MADV_HUGEPAGE`) for large allocations. Where the kernel has none or
@@ -16,21 +16,30 @@ const LARGE: usize = 4 << 20;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HugePages;
 
-/// Asks for huge pages for an allocation.
+/// Asks for huge pages for an allocation, where it is large.
+///
+/// The advice remains where the system reuses the memory for small blocks; freed memory of the process can then be somewhat larger.
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
-    /// Smallest alignment that `madvise` takes on every Linux.
+    /// A multiple of the page size of any usual machine, which `madvise` asks for.
     const PAGE: usize = 64 << 10;
+    if start.is_null() || size < LARGE {
+        return;
+    }
     let skipped = start.align_offset(PAGE);
-    if !start.is_null() && size >= LARGE.max(skipped) {
-        // SAFETY: the range is inside the allocation; the advice changes no contents, and failure has no effect.
-        unsafe {
-            libc::madvise(
-                start.add(skipped).cast(),
-                (size - skipped) & !(PAGE - 1),
-                libc::MADV_HUGEPAGE,
-            );
-        }
+    if skipped >= size {
+        return;
+    }
+    // SAFETY: the range is inside the allocation, and the advice changes no contents. A kernel without huge pages refuses, which must not
+    // be seen in `errno` of a caller.
+    unsafe {
+        let error = *libc::__errno_location();
+        libc::madvise(
+            start.add(skipped).cast(),
+            (size - skipped) & !(PAGE - 1),
+            libc::MADV_HUGEPAGE,
+        );
+        *libc::__errno_location() = error;
     }
 }
 
@@ -42,18 +51,14 @@ unsafe impl GlobalAlloc for HugePages {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as asked for.
         let start = unsafe { System.alloc(layout) };
-        if layout.size() >= LARGE {
-            advise(start, layout.size());
-        }
+        advise(start, layout.size());
         start
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         // SAFETY: as asked for.
         let start = unsafe { System.alloc_zeroed(layout) };
-        if layout.size() >= LARGE {
-            advise(start, layout.size());
-        }
+        advise(start, layout.size());
         start
     }
 
@@ -65,9 +70,7 @@ unsafe impl GlobalAlloc for HugePages {
     unsafe fn realloc(&self, start: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         // SAFETY: as asked for.
         let start = unsafe { System.realloc(start, layout, size) };
-        if size >= LARGE {
-            advise(start, size);
-        }
+        advise(start, size);
         start
     }
 }
@@ -106,6 +109,42 @@ mod tests {
                     .all(|k| zeros.add(k).read() == 0)
             );
             HugePages.dealloc(zeros, layout(5 * LARGE));
+        }
+    }
+
+    /// Flags of the memory at an address, from the system's list.
+    #[cfg(target_os = "linux")]
+    fn flags(address: usize) -> String {
+        let list = std::fs::read_to_string("/proc/self/smaps").expect("the list");
+        let mut inside = false;
+        for line in list.lines() {
+            let range = line.split(' ').next().and_then(|r| r.split_once('-'));
+            let ends = range.map(|(a, b)| [a, b].map(|x| usize::from_str_radix(x, 16)));
+            if let Some([Ok(low), Ok(high)]) = ends {
+                inside = (low..high).contains(&address);
+            } else if let Some(flags) = line.strip_prefix("VmFlags:").filter(|_| inside) {
+                return flags.to_owned();
+            }
+        }
+        String::new()
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn large_blocks_ask_for_huge_pages() {
+        if !std::path::Path::new("/sys/kernel/mm/transparent_hugepage").exists() {
+            return;
+        }
+        // Above the size up to which the system takes blocks from its heap.
+        let layout = Layout::from_size_align(80 << 20, 64).expect("a layout");
+        // SAFETY: each block has its layout.
+        unsafe {
+            for (asks, allocator) in [(true, &HugePages as &dyn GlobalAlloc), (false, &System)] {
+                let block = allocator.alloc(layout);
+                let flags = flags(block as usize + layout.size() / 2);
+                assert_eq!(flags.split(' ').any(|f| f == "hg"), asks, "{flags}");
+                allocator.dealloc(block, layout);
+            }
         }
     }
 }

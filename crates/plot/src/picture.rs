@@ -105,7 +105,7 @@ impl Camera {
         }
     }
 
-    // Functions without a parameter of dimension are compiled here, optimised, and not where they are called.
+    // Functions without a type parameter are compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
     fn whole_plane(simulation: &Simulation<Dim2>) -> [f64; 4] {
         Self::whole(simulation)
     }

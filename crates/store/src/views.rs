@@ -231,7 +231,7 @@ pub fn append<S: Steps>(
     }
 }
 
-// Functions without a parameter of dimension are compiled here, optimised, and not where they are called.
+// Functions without a type parameter are compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
 fn append_plane(
     results: &mut Results,
     s: &Simulation<Dim2>,

@@ -230,7 +230,7 @@ fn pay_debts<S: Space>(
     history.forget_separated(&network.contacts);
     let pairs = members.iter().map(|at| network.contacts[*at].key.pair());
     let works = pairs.zip(slides.iter().map(|slide| slide.1));
-    history.negative_friction_work.pay(works)
+    history.negative_friction_work.not_negative(works)
 }
 
 /// Stores the impulses of the contacts, and books what they dissipated.

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LawHistory {
     /// Negative friction work of pairs, deferred to later steps of the wear laws (J).
-    pub(super) negative_friction_work: NegativeWorks,
+    pub(super) negative_friction_work: DeferredWork,
     /// Interfaces whose bonds have been formed.
     pub(super) bonded: Vec<bool>,
     /// Largest value of each output, the reference for its rounding errors.
@@ -18,12 +18,12 @@ pub struct LawHistory {
 }
 
 impl LawHistory {
-    /// Drops the deferred negative friction work of separated pairs once they outnumber the contacts.
+    /// Drops the deferred friction work of separated pairs once they outnumber the contacts.
     pub(super) fn forget_separated<S: Space>(&mut self, contacts: &[Contact<S>]) {
-        let negative = &mut self.negative_friction_work.0;
-        if negative.len() > 2 * contacts.len() {
+        let deferred = &mut self.negative_friction_work.0;
+        if deferred.len() > 2 * contacts.len() {
             let near = |pair: &(u32, u32)| contacts.binary_search_by_key(pair, |c| c.key.pair());
-            negative.retain(|(pair, _)| near(pair).is_ok());
+            deferred.retain(|(pair, _)| near(pair).is_ok());
         }
     }
 }
@@ -31,44 +31,44 @@ impl LawHistory {
 /// Negative work by pair, in their order: contacts come in the same order, so that both are gone through together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<Pair, f64>", into = "BTreeMap<Pair, f64>")]
-pub(super) struct NegativeWorks(Vec<(Pair, f64)>);
+pub(super) struct DeferredWork(Vec<(Pair, f64)>);
 
 type Pair = (u32, u32);
 
-impl From<BTreeMap<Pair, f64>> for NegativeWorks {
-    fn from(negative: BTreeMap<Pair, f64>) -> Self {
-        Self(negative.into_iter().collect())
+impl From<BTreeMap<Pair, f64>> for DeferredWork {
+    fn from(deferred: BTreeMap<Pair, f64>) -> Self {
+        Self(deferred.into_iter().collect())
     }
 }
 
-impl From<NegativeWorks> for BTreeMap<Pair, f64> {
-    fn from(negative: NegativeWorks) -> Self {
-        negative.0.into_iter().collect()
+impl From<DeferredWork> for BTreeMap<Pair, f64> {
+    fn from(deferred: DeferredWork) -> Self {
+        deferred.0.into_iter().collect()
     }
 }
 
-impl NegativeWorks {
-    /// Returns the work of contacts, given by pair in ascending order, less what their pairs owe, and not negative: the rest they owe.
-    pub fn pay(&mut self, works: impl Iterator<Item = (Pair, f64)>) -> Vec<f64> {
+impl DeferredWork {
+    /// Returns the work of contacts, given by pair in ascending order, with what was deferred for their pairs. What is negative becomes zero and is deferred.
+    pub fn not_negative(&mut self, works: impl Iterator<Item = (Pair, f64)>) -> Vec<f64> {
         let before = std::mem::take(&mut self.0);
         let mut before = before.into_iter().peekable();
-        let negative = &mut self.0;
-        let paid = works.map(|(pair, mut work)| {
+        let deferred = &mut self.0;
+        let done = works.map(|(pair, mut work)| {
             while let Some(other) = before.next_if(|(other, _)| *other < pair) {
-                negative.push(other);
+                deferred.push(other);
             }
             // Of an earlier contact of the pair in this step, or of an earlier step.
-            let owed = negative.pop_if(|(other, _)| *other == pair);
-            let owed = owed.or_else(|| before.next_if(|(other, _)| *other == pair));
-            work += owed.map_or(0.0, |(_, owed)| owed);
+            let before_it = deferred.pop_if(|(other, _)| *other == pair);
+            let before_it = before_it.or_else(|| before.next_if(|(other, _)| *other == pair));
+            work += before_it.map_or(0.0, |(_, before_it)| before_it);
             if work < 0.0 {
-                negative.push((pair, work));
+                deferred.push((pair, work));
             }
             work.max(0.0)
         });
-        let paid = paid.collect();
-        negative.extend(before);
-        paid
+        let done = done.collect();
+        deferred.extend(before);
+        done
     }
 }
 
@@ -77,29 +77,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_a_pair_owes_is_taken_from_its_next_work() {
-        let mut negative = NegativeWorks::default();
-        let mut pay = |works: &[((u32, u32), f64)]| negative.pay(works.iter().copied());
-        // The second contact of a pair pays for the first.
+    fn negative_work_of_a_pair_is_taken_from_its_next_work() {
+        let mut deferred = DeferredWork::default();
+        let mut done = |works: &[((u32, u32), f64)]| deferred.not_negative(works.iter().copied());
+        // The second contact of a pair makes up for the first.
         assert_eq!(
-            pay(&[((1, 2), -3.0), ((1, 2), 5.0), ((4, 1), -1.0)]),
+            done(&[((1, 2), -3.0), ((1, 2), 5.0), ((4, 1), -1.0)]),
             [0.0, 2.0, 0.0]
         );
-        // A pair that is apart still owes.
+        // It stays deferred while the pair is apart.
         assert_eq!(
-            pay(&[((0, 9), -1.0), ((1, 2), 1.0), ((5, 1), -2.0)]),
+            done(&[((0, 9), -1.0), ((1, 2), 1.0), ((5, 1), -2.0)]),
             [0.0, 1.0, 0.0]
         );
-        let left = BTreeMap::from(negative.clone());
+        let left = BTreeMap::from(deferred.clone());
         assert_eq!(
             left,
             BTreeMap::from([((0, 9), -1.0), ((4, 1), -1.0), ((5, 1), -2.0)])
         );
-        assert_eq!(NegativeWorks::from(left.clone()).0, negative.0);
+        assert_eq!(DeferredWork::from(left.clone()).0, deferred.0);
         assert_eq!(
-            negative.pay([((4, 1), 0.5), ((5, 1), 3.0)].into_iter()),
+            deferred.not_negative([((4, 1), 0.5), ((5, 1), 3.0)].into_iter()),
             [0.0, 1.0]
         );
-        assert_eq!(negative.0, [((0, 9), -1.0), ((4, 1), -0.5)]);
+        assert_eq!(deferred.0, [((0, 9), -1.0), ((4, 1), -0.5)]);
     }
 }

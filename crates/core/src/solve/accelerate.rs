@@ -8,8 +8,8 @@ use crate::geometry::space::Space;
 
 /// Iterations before Anderson extrapolation starts without momentum.
 const FIRST_ANDERSON: u32 = 20;
-/// Iterations in which the squared residual has to fall by half, or momentum is given up: 10 for each contact, since with momentum an impulse
-/// crosses a row of contacts in about as many iterations, between these bounds.
+/// Iterations in which the squared residual has to fall by half, or momentum is given up. With momentum an impulse crosses n contacts in a row in some n
+/// iterations; ten times that, and both bounds, are from trials (`docs/solvers.md`).
 fn patience(contacts: usize) -> u32 {
     (10 * contacts).clamp(50, 1000) as u32
 }
@@ -108,5 +108,15 @@ impl<S: Space> Acceleration<S> {
             (self.least, self.least_at) = (residual, done);
         }
         done - self.least_at >= self.patience
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::patience;
+
+    #[test]
+    fn few_contacts_need_little_patience() {
+        assert_eq!([1, 20, 100, 10_000].map(patience), [50, 200, 1000, 1000]);
     }
 }

@@ -91,12 +91,12 @@ impl Number for i64 {
     }
 }
 
-/// The bytes of values, one after the other.
-pub(super) fn as_bytes<T: Copy>(values: &[T], of: impl Fn(T) -> [u8; 8]) -> Vec<u8> {
+/// The bytes of values, one after the other. (`flat_map` over bytes is much slower.)
+pub(super) fn to_bytes<T: Copy>(values: &[T], convert: impl Fn(T) -> [u8; 8]) -> Vec<u8> {
     let mut bytes = vec![0; 8 * values.len()];
     let places = bytes.as_chunks_mut::<8>().0;
     for (place, value) in places.iter_mut().zip(values) {
-        *place = of(*value);
+        *place = convert(*value);
     }
     bytes
 }

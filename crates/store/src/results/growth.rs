@@ -4,7 +4,7 @@
 //! The crate syncs the file after each dataset of a flush, some 200 times for a results file. In-place growth
 //! is therefore used only for files too large to be copied.
 
-use super::dataset::{Grown, as_bytes};
+use super::dataset::{Grown, to_bytes};
 use hdf5::FileLocking;
 use hdf5::swmr::SwmrFileWriter;
 use std::path::Path;
@@ -36,7 +36,7 @@ impl Growth {
             let index = self.index(dataset.name())?;
             let (first, count) = (dataset.written(), dataset.rows - dataset.written());
             let buffered = std::mem::take(&mut dataset.buffered);
-            let bytes = as_bytes(&buffered, u64::to_le_bytes);
+            let bytes = to_bytes(&buffered, u64::to_le_bytes);
             let writer = self.writer()?;
             writer.set_extent(index, &dataset.shape(dataset.rows, dataset.width))?;
             let place = dataset.shape(first, 0);

@@ -8,7 +8,7 @@
 //!
 //! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the HDF5 crate.
 
-use super::dataset::{Bytes, Growing, Grown, Number, Slot, as_bytes};
+use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
 use super::declare::group;
 use super::growth::Growth;
 use hdf5::H5File;
@@ -227,7 +227,7 @@ impl Store {
         dataset: Growing,
         values: &[T],
     ) -> Result<(), ResultsError> {
-        let bytes = as_bytes(values, T::bytes);
+        let bytes = to_bytes(values, T::bytes);
         self.append_bytes(dataset.place, &bytes)
     }
 

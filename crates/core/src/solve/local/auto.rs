@@ -32,6 +32,11 @@ const LOOSE: f64 = 40.0;
 const TIGHT: f64 = 20.0;
 /// Cost of Gauss-Seidel without progress, in factorisations, after which Newton is tried at once.
 const STALLED: f64 = 10.0;
+/// Steps of Newton from the first sweeps, and from those of a round.
+const FIRST_NEWTON: u32 = 40;
+const ROUND_NEWTON: u32 = 80;
+/// Steps of the interior point.
+const INTERIOR: u32 = 80;
 
 impl Auto {
     /// Returns the methods used in the last solve, in the order of first use.
@@ -73,9 +78,9 @@ impl<const D: usize> Solver<D> for Auto {
             TIGHT
         };
         let sweeps = (worth * per).clamp(100.0, 1e6) as u32;
-        let bends = Newton::serves(form.laws).is_ok();
+        let newton_serves = Newton::serves(form.laws).is_ok();
         let first = Anderson {
-            patience: bends.then_some((STALLED * per).clamp(100.0, 1e6) as usize),
+            patience: newton_serves.then_some((STALLED * per).clamp(100.0, 1e6) as usize),
             ..Anderson::default()
         };
         let start = state.iterations;
@@ -85,18 +90,18 @@ impl<const D: usize> Solver<D> for Auto {
         let left = sweeps.saturating_sub(state.iterations - start);
         let newton = Newton { alpha: 1e-4 };
         let mut best = Best::of(state);
-        if bends && self.run("newton", &newton, form, state, budget, 40) {
+        if newton_serves && self.run("newton", &newton, form, state, budget, FIRST_NEWTON) {
             return;
         }
         best.keep(state);
         if f64::from(left) > per {
-            // The error stalled, but Newton did not help: the rest of the sweeps, and Newton from there.
+            // The error stalled, but Newton did not help: the rest of the sweeps, if they cost more than a step of Newton, and Newton from there.
             let rest = Anderson::default();
             if self.run("anderson", &rest, form, state, budget, left) {
                 return;
             }
             best.keep(state);
-            if bends && self.run("newton", &newton, form, state, budget, 40) {
+            if newton_serves && self.run("newton", &newton, form, state, budget, FIRST_NEWTON) {
                 return;
             }
             best.keep(state);
@@ -121,13 +126,22 @@ impl<const D: usize> Solver<D> for Auto {
                 return;
             }
             best.keep(state);
-            if bends && self.run("newton", &Newton { alpha: 1e-5 }, form, state, budget, 80) {
+            if newton_serves
+                && self.run(
+                    "newton",
+                    &Newton { alpha: 1e-5 },
+                    form,
+                    state,
+                    budget,
+                    ROUND_NEWTON,
+                )
+            {
                 return;
             }
             best.keep(state);
             // From its own start, which rarely helps where Newton failed, and costs more than a round.
             if round == 0 && Interior::serves(form.laws).is_ok() {
-                if self.run("interior", &Interior, form, state, budget, 80) {
+                if self.run("interior", &Interior, form, state, budget, INTERIOR) {
                     return;
                 }
                 best.keep(state);

@@ -139,7 +139,7 @@ impl Clock {
     }
 
     /// When the phase ends at the latest (s), and the longest step (s) after which its end is judged: infinite where there is none.
-    pub fn ahead(&self, until: &Until) -> [f64; 2] {
+    pub fn bounds(&self, until: &Until) -> [f64; 2] {
         let Some(begun) = self.begun.last() else {
             return [f64::INFINITY; 2];
         };

@@ -70,7 +70,7 @@ impl<S: Space> Simulation<S> {
         let phase = control.phase().checked_sub(1);
         let until = phase.and_then(|k| self.phases.get(k)?.until.as_ref());
         if let Some(until) = until {
-            let [end, longest] = control.clock.ahead(until);
+            let [end, longest] = control.clock.bounds(until);
             step_bounds.event = step_bounds.event.min(end);
             step_bounds.longest = step_bounds.longest.min(longest);
         }

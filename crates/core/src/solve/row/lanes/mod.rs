@@ -18,7 +18,8 @@ use crate::geometry::space::{Dim2, Dim3, Space};
 use std::any::TypeId;
 use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
-/// Vector instructions that a machine has. With AVX-512 (its operations on 256 bits) there are twice as many registers.
+/// Vector instructions that a machine has. AVX-512 is used for its registers, which are twice as many; the code is written for 256 bits. It comes with fused
+/// multiplication and addition, which the compiler does not form from separate operations, so that the bits are the same.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Instructions {
     Avx2,
@@ -28,7 +29,12 @@ pub(super) enum Instructions {
 impl Instructions {
     /// The best that this machine has.
     fn of_this_machine() -> Option<Self> {
-        let avx512 = is_x86_feature_detected!("avx512vl") && is_x86_feature_detected!("avx512dq");
+        // What the features of `all_avx512` imply, too.
+        let avx512 = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512vl")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("f16c");
         if !is_x86_feature_detected!("avx2") {
             None
         } else if avx512 {
@@ -57,7 +63,7 @@ pub fn visit<S: Space, R: Row<S>>(
 /// Visits a block of rows as [`visit`] does.
 ///
 /// # Safety
-/// The machine has the instructions.
+/// The machine has the instructions; bodies and groups are as [`visit`] asks.
 unsafe fn visit_with<S: Space, R: Row<S>>(
     with: Instructions,
     rows: &mut [R],
@@ -122,8 +128,10 @@ unsafe fn all_avx512<W: Wide, V: Visit>(
     unsafe { all(rows, groups, count, solver_bodies, what) }
 }
 
+/// Inlined into the two functions above, which are compiled for their instructions.
+///
 /// # Safety
-/// There are `count` rows, of bodies of `solver_bodies`; their groups are as `visit` says.
+/// There are `count` rows, of bodies of `solver_bodies`; their groups are as `visit` says. Only those two functions call it.
 #[inline(always)]
 unsafe fn all<W: Wide, V: Visit>(
     rows: *mut W,

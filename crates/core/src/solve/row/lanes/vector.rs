@@ -1,6 +1,6 @@
 //! Vectors that hold one number of several contacts, and column-wise access to records.
 //!
-//! The functions are inlined into functions compiled for AVX2 (`mod.rs`), which alone may call them.
+//! The functions are inlined into functions compiled for AVX2 or AVX-512 (`all_avx2` and `all_avx512` in `mod.rs`), which alone may call them.
 
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Neg, Sub};
