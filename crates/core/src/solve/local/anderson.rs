@@ -161,3 +161,48 @@ impl<const D: usize> Solver<D> for Anderson {
         best.restore(form, state);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::error::Norm;
+    use crate::solve::local::Csr;
+    use crate::solve::local::block::BlockMatrix;
+    use crate::solve::local::form::coulomb;
+
+    /// u_1 + u_2 = -2 whatever the impulses are: the error has a lower bound.
+    #[test]
+    fn it_ends_where_the_error_does_not_fall() {
+        let entries = [(0, 0, 1.0), (0, 2, -1.0), (2, 0, -1.0), (2, 2, 1.0)];
+        let entries: Vec<_> = entries
+            .into_iter()
+            .chain([(1, 1, 1.0), (3, 3, 1.0)])
+            .collect();
+        let w = BlockMatrix::<2>::from_csr(&Csr::from_triplets(4, 4, &entries));
+        let (q, laws) = ([[-1.0, 0.0]; 2], coulomb(&[0.3; 2]));
+        let form = Form::new(&w, &q, &laws, Norm::Field);
+        let mut ends = Vec::new();
+        for patience in [Some(50), Some(200), None] {
+            let mut state = State::new(&form, vec![[0.0; 2]; 2]);
+            let mut budget = Budget::new(1e-8, 3000, 10.0);
+            budget.history = Some(Vec::new());
+            let anderson = Anderson {
+                patience,
+                ..Anderson::default()
+            };
+            anderson.solve(&form, &mut state, &mut budget);
+            let errors = budget.history.unwrap_or_default();
+            let least = errors.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
+            // It returns the best that it found.
+            assert!(
+                least > 1e-3 && state.error <= least,
+                "{} {least}",
+                state.error
+            );
+            ends.push(state.iterations);
+        }
+        assert!((50..200).contains(&ends[0]), "{ends:?}");
+        assert!((200..1000).contains(&ends[1]), "{ends:?}");
+        assert_eq!(ends[2], 3000);
+    }
+}
