@@ -113,9 +113,10 @@ impl<S: Space, R: Row<S>> State<R, S> {
     fn visit<V: Visit>(&mut self, groups: Option<(&[u32], Instructions)>, what: &mut V) {
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
         match groups {
-            // SAFETY: the machine has the instructions.
             Some((groups, with)) => {
-                assert!(unsafe { visit_with(with, &mut self.rows, groups, &solver_bodies, what) })
+                // SAFETY: the machine has the instructions, and groups and bodies are as they should be.
+                let can = unsafe { visit_with(with, &mut self.rows, groups, &solver_bodies, what) };
+                assert!(can);
             }
             None => {
                 let rows = self.rows.iter_mut().enumerate();
