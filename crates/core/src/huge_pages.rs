@@ -18,7 +18,7 @@ pub struct HugePages;
 
 /// Asks for huge pages for an allocation, where it is large.
 ///
-/// The advice remains where the system reuses the memory for small blocks; freed memory of the process can then be somewhat larger.
+/// The advice remains where the system reuses the memory for small blocks; the memory that the process holds can then be somewhat larger.
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
     /// A multiple of the page size of any usual machine, which `madvise` asks for.

@@ -10,7 +10,7 @@ pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
 use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::{Dim2, Dim3, Space};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
@@ -98,20 +98,16 @@ impl Camera {
     /// Adapts the window to the current scene, unless the case gives one.
     pub fn follow<S: Steps>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {
-            self.window = match S::in_dimension(simulation) {
-                InDimension::Dim2(s) => Self::whole_plane(s),
-                InDimension::Dim3(s) => Self::whole_space(s),
-            };
+            self.window = Self::whole_of(S::in_dimension(simulation));
         }
     }
 
-    // Functions without a type parameter are compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
-    fn whole_plane(simulation: &Simulation<Dim2>) -> [f64; 4] {
-        Self::whole(simulation)
-    }
-
-    fn whole_space(simulation: &Simulation<Dim3>) -> [f64; 4] {
-        Self::whole(simulation)
+    // Without a type parameter it is compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
+    fn whole_of(simulation: InDimension<'_>) -> [f64; 4] {
+        match simulation {
+            InDimension::Dim2(s) => Self::whole(s),
+            InDimension::Dim3(s) => Self::whole(s),
+        }
     }
 
     fn whole<S: Space>(simulation: &Simulation<S>) -> [f64; 4] {
@@ -186,30 +182,21 @@ impl Camera {
         title: &str,
         caption: Vec<String>,
     ) -> Frame {
-        match S::in_dimension(simulation) {
-            InDimension::Dim2(s) => self.frame_plane(s, subject, title, caption),
-            InDimension::Dim3(s) => self.frame_space(s, subject, title, caption),
+        self.frame_of(S::in_dimension(simulation), subject, title, caption)
+    }
+
+    // As `whole_of`.
+    fn frame_of(
+        &self,
+        simulation: InDimension<'_>,
+        subject: Subject<'_>,
+        title: &str,
+        caption: Vec<String>,
+    ) -> Frame {
+        match simulation {
+            InDimension::Dim2(s) => self.frame_in(s, subject, title, caption),
+            InDimension::Dim3(s) => self.frame_in(s, subject, title, caption),
         }
-    }
-
-    fn frame_plane(
-        &self,
-        simulation: &Simulation<Dim2>,
-        subject: Subject<'_>,
-        title: &str,
-        caption: Vec<String>,
-    ) -> Frame {
-        self.frame_in(simulation, subject, title, caption)
-    }
-
-    fn frame_space(
-        &self,
-        simulation: &Simulation<Dim3>,
-        subject: Subject<'_>,
-        title: &str,
-        caption: Vec<String>,
-    ) -> Frame {
-        self.frame_in(simulation, subject, title, caption)
     }
 
     fn frame_in<S: Space>(

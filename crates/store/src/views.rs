@@ -4,7 +4,7 @@ use super::results::{Header, Part, Results, ResultsError};
 use super::summary::Summary;
 use super::{meshes, shapes};
 use fretwork_core::fields::{Field, FieldList, Fields, GrainPart, Value, orientation, removed};
-use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Kind;
 use fretwork_core::step::{InDimension, Simulation, Steps};
 use fretwork_observe::placement;
@@ -225,29 +225,20 @@ pub fn append<S: Steps>(
     loaded: &Loaded,
     values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
-    match S::in_dimension(s) {
-        InDimension::Dim2(s) => append_plane(results, s, loaded, values),
-        InDimension::Dim3(s) => append_space(results, s, loaded, values),
+    append_known(results, S::in_dimension(s), loaded, values)
+}
+
+// Without a type parameter it is compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
+fn append_known(
+    results: &mut Results,
+    s: InDimension<'_>,
+    loaded: &Loaded,
+    values: Vec<Vec<f64>>,
+) -> Result<(), ResultsError> {
+    match s {
+        InDimension::Dim2(s) => append_in(results, s, loaded, values),
+        InDimension::Dim3(s) => append_in(results, s, loaded, values),
     }
-}
-
-// Functions without a type parameter are compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
-fn append_plane(
-    results: &mut Results,
-    s: &Simulation<Dim2>,
-    loaded: &Loaded,
-    values: Vec<Vec<f64>>,
-) -> Result<(), ResultsError> {
-    append_in(results, s, loaded, values)
-}
-
-fn append_space(
-    results: &mut Results,
-    s: &Simulation<Dim3>,
-    loaded: &Loaded,
-    values: Vec<Vec<f64>>,
-) -> Result<(), ResultsError> {
-    append_in(results, s, loaded, values)
 }
 
 fn append_in<S: Space>(
