@@ -77,6 +77,7 @@
 pub mod cli;
 pub mod interrupt;
 pub mod record;
+pub mod runs;
 pub mod scene;
 pub mod shipped;
 pub mod trade;

@@ -1,7 +1,6 @@
 //! `fretwork check`: the features that a case uses, its size and dimensionless groups; writes no files.
 
 mod bonds;
-pub(super) mod cost;
 mod deformable;
 mod features;
 mod load;
@@ -12,6 +11,7 @@ use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
+use crate::runs::cost::Trial;
 use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
@@ -20,7 +20,6 @@ use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
 use crate::step::{Simulation, Steps};
 use clap::Args;
-use cost::Trial;
 use features::{Features, memory};
 use load::Load;
 use std::fmt::Write as _;

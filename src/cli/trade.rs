@@ -7,22 +7,27 @@ use super::number::{not_negative, share};
 use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
-use crate::laws::SearchPath;
+use crate::runs::RunsError;
+use crate::runs::duration::{parse as duration, seconds};
+use crate::runs::launcher::Launcher;
+use crate::runs::offer::Offer;
+use crate::runs::perturbation::Perturbation;
+use crate::runs::randomness::seed_matters;
+use crate::runs::stored::{Limits, Status};
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
-use crate::trade::chaos::Perturbation;
-use crate::trade::child::{Launcher, Limits, Status};
 use crate::trade::compare::Comparison;
-use crate::trade::offer::Offer;
 use crate::trade::output::Output;
 use crate::trade::parameters::{Solving, StudyParameter};
 use crate::trade::rung::Deformability;
 use crate::trade::setting::Setting;
 use crate::trade::study::{Event, Ledger, Study};
-use crate::trade::{TradeError, figure, files, forecast::Forecast, table, verdict::verdicts};
+use crate::trade::{
+    OWNER, TradeError, figure, files, forecast::Forecast, table, verdict::verdicts,
+};
 use clap::Args;
 use fretwork_observe::standard::Observed;
 use std::collections::BTreeSet;
@@ -78,39 +83,22 @@ pub struct TradeArgs {
     json: bool,
 }
 
-/// Parses `90s`, `10m`, `1h30m`; a bare number is in seconds.
-fn duration(text: &str) -> Result<Duration, String> {
-    let wrong = || format!("`{text}` is not a time; expected for example 90s, 10m, 1h30m");
-    let (mut total, mut digits) = (0.0, String::new());
-    for c in text.trim().chars() {
-        let unit = match c {
-            's' => 1.0,
-            'm' => 60.0,
-            'h' => 3600.0,
-            _ => {
-                digits.push(c);
-                continue;
-            }
-        };
-        total += unit * not_negative(&digits).map_err(|_| wrong())?;
-        digits.clear();
-    }
-    if !digits.is_empty() {
-        total += not_negative(&digits).map_err(|_| wrong())?;
-    }
-    let most = 365.0 * 86400.0;
-    if total > 0.0 && total <= most {
-        Ok(Duration::from_secs_f64(total))
-    } else {
-        Err(wrong())
-    }
-}
-
 impl From<TradeError> for Failure {
     fn from(e: TradeError) -> Self {
         match e {
             TradeError::Input(e) => Self::Input(e),
             TradeError::Usage(text) => Self::Usage(text),
+            TradeError::Runs(e) => e.into(),
+            other => Self::Failed(other.to_string()),
+        }
+    }
+}
+
+impl From<RunsError> for Failure {
+    fn from(e: RunsError) -> Self {
+        match e {
+            RunsError::Input(e) => Self::Input(e),
+            RunsError::Usage(text) => Self::Usage(text),
             other => Self::Failed(other.to_string()),
         }
     }
@@ -123,7 +111,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let scene = loaded.build(&search)?;
     let first = Facts::of(&loaded, &scene);
     let outputs = refuse::outputs(args, &first.offer)?;
-    let random = seed_matters(args, &loaded, &search, &first)?;
+    let random = seed_matters(&loaded, &scene, &search)?;
     let parameters = levels::parameters_of(args, &loaded, &search, &first)?;
     if parameters.is_empty() {
         return Err(Failure::Usage(
@@ -144,9 +132,15 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
         unconverged: args.unconverged,
         residual: args.residual,
     };
-    let _lock = crate::trade::lock::take(&out)?;
+    let _lock = OWNER.take(&out)?;
     let plugins = args.case.plugins.words();
-    let mut launcher = Launcher::new(&loaded, &first.materials, plugins, &out, limits)?;
+    let mut launcher = Launcher::new(
+        &loaded.path,
+        loaded.source.sets(),
+        plugins,
+        &out.join("runs"),
+        limits,
+    )?;
     let own = Setting::own(&parameters).sets(&parameters);
     if let Some(scene) = scene
         && launcher.stored(&own, loaded.case.seed).is_none()
@@ -179,22 +173,6 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     })?;
     let interrupted = stop.load(Ordering::Relaxed);
     report_study(args, &study, &loaded, &out, expected, interrupted)
-}
-
-/// Whether another seed gives another scene; it does if it gives none.
-fn seed_matters(
-    args: &TradeArgs,
-    loaded: &Loaded,
-    search: &SearchPath,
-    first: &Facts,
-) -> Result<bool, Failure> {
-    let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
-    let sets = [args.case.sets.as_slice(), &[other_seed]].concat();
-    let other = load(&args.case.case, &sets)?;
-    Ok(match other.build(search) {
-        Ok(scene) => Facts::of(&other, &scene).drawn != first.drawn,
-        Err(_) => true,
-    })
 }
 
 /// The study before its first run, with the notes that its options call for.
@@ -252,11 +230,11 @@ fn new_study(
 
 /// Reports a run that begins or has ended.
 fn report_event(event: &Event<'_>, started: Instant) {
-    let elapsed = table::seconds(started.elapsed().as_secs_f64());
+    let elapsed = seconds(started.elapsed().as_secs_f64());
     match event {
         Event::Begins(name, seed, expected) => report(&format!(
             "[{elapsed}] {name}, seed {seed}: {} expected",
-            table::seconds(*expected)
+            seconds(*expected)
         )),
         Event::Ended(name, seed, run) => {
             let how = match &run.status {
@@ -266,7 +244,7 @@ fn report_event(event: &Event<'_>, started: Instant) {
             };
             report(&format!(
                 "[{elapsed}] {name}, seed {seed}: {how} in {}",
-                table::seconds(run.seconds)
+                seconds(run.seconds)
             ));
         }
     }
@@ -303,9 +281,9 @@ fn report_study(
     inform(&format!(
         "{} runs in {}, {} reused from earlier studies; the forecast for the reference and one parameter at a time was {}",
         study.fresh,
-        table::seconds(study.started.elapsed().as_secs_f64()),
+        seconds(study.started.elapsed().as_secs_f64()),
         study.reused,
-        table::seconds(expected)
+        seconds(expected)
     ));
     if !complete {
         inform(&incomplete(study, interrupted));
@@ -371,9 +349,6 @@ fn incomplete(study: &Study, interrupted: bool) -> String {
 struct Facts {
     solving: Solving,
     offer: Offer,
-    materials: Vec<(String, String)>,
-    /// Hash of the positions and shapes, which a seed may change.
-    drawn: u64,
 }
 
 impl Facts {
@@ -389,14 +364,6 @@ impl Facts {
         let demands = Demands::of(s);
         let serves =
             |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
-        let mut hash = Hasher(0xcbf2_9ce4_8422_2325);
-        let _ = std::fmt::Write::write_fmt(
-            &mut hash,
-            format_args!(
-                "{:?}{:?}{:?}",
-                s.shapes, s.state.bodies.position, s.state.bodies.velocity
-            ),
-        );
         Self {
             offer: Offer::of(&loaded.case, built),
             solving: Solving {
@@ -404,20 +371,6 @@ impl Facts {
                 tolerance: s.options.solver.tolerance,
                 deformability: Deformability::of(&loaded.case, built),
             },
-            materials: built.materials.clone(),
-            drawn: hash.0,
         }
-    }
-}
-
-/// FNV-1a hash of everything written to it, so that a scene need not be formatted to a string.
-struct Hasher(u64);
-
-impl std::fmt::Write for Hasher {
-    fn write_str(&mut self, text: &str) -> std::fmt::Result {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-        }
-        Ok(())
     }
 }

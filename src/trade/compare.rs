@@ -1,13 +1,14 @@
 //! Comparison with the reference: errors seed by seed with confidence intervals, distinguished from the
 //! scatter among seeds.
 
-use super::child::{Finished, Launcher, Status, summary};
 use super::frontier::frontier;
 use super::interval::Mean;
 use super::output::{Output, Wanted};
 use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use super::study::Ledger;
+use crate::runs::launcher::Launcher;
+use crate::runs::stored::{Finished, Status, summary};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An output of a setting. Errors are fractions of the reference's value if the wanted error is relative,
@@ -166,7 +167,9 @@ impl Compared<'_> {
         let good = self.runs(setting).filter(|(_, r)| r.status == Status::Done);
         good.filter_map(|(seed, r)| {
             let place = self.launcher.place(&r.sets, seed);
-            let value = self.outputs[output].read(&summary(&place), &place)?;
+            let value = self.outputs[output]
+                .quantity
+                .read(&summary(&place), &place)?;
             Some((seed, value))
         })
         .collect()

@@ -73,7 +73,7 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         Wanted::Relative(_) => (100.0, "%"),
         Wanted::Absolute(_) => (1.0, ""),
     };
-    let name = output.name.replace('_', " ");
+    let name = output.name().replace('_', " ");
     let y = Axis::new(format!("error of {name}"), unit).log();
     let x = Axis::new("processor time of a run", "s").log();
     let mut chart = Chart::new(format!("{title}: {name}"), x, y);

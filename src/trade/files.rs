@@ -23,7 +23,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
                 Wanted::Absolute(w) => ("absolute", w),
             };
             json!({
-                "name": o.name, "wanted": wanted, "error": kind, "exact": o.exact,
+                "name": o.name(), "wanted": wanted, "error": kind, "exact": o.exact,
                 "reference": own.as_ref().map(|x| x.value),
                 "reference_error_at_most": own.as_ref().map(|x| number(x.at_most)),
                 "reference_error_from": own.as_ref().map(|x| x.why.clone()),
@@ -46,7 +46,7 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
                             "distinguishable_from_zero": !e.error.may_be_zero(), "frontier": e.on_frontier,
                         })
                     });
-                    (o.name.clone(), json!(told))
+                    (o.name().to_owned(), json!(told))
                 })
                 .collect();
             json!({
@@ -108,7 +108,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
             "_at_most_with_reference",
             "_frontier",
         ];
-        header.extend(columns.map(|c| format!("{}{c}", o.name)));
+        header.extend(columns.map(|c| format!("{}{c}", o.name())));
     }
     table.write_record(&header).map_err(fail)?;
     let reference = Setting::reference(&study.parameters);

@@ -1,10 +1,11 @@
 //! Cost forecast of a setting from short probes, corrected by finished runs.
 
-use super::child::{Ended, Finished, Launcher, Status};
-use super::output::column;
 use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
 use super::{TradeError, study::Ledger};
+use crate::runs::launcher::{Ended, Launcher};
+use crate::runs::quantity::column;
+use crate::runs::stored::{Finished, Status};
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};

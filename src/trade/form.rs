@@ -1,7 +1,7 @@
 //! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the coarsest.
 
 use super::TradeError;
-use super::parameters::{Level, Sense, StudyParameter, openings};
+use super::parameters::{Level, Sense, StudyParameter};
 use crate::scene::case::Case;
 use crate::scene::source::{Source, Tree};
 use crate::scene::{InputError, Loaded, load};
@@ -99,7 +99,7 @@ pub fn variants(
 fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError> {
     let (mine, wanted) = (compared(&loaded.case), compared(&other.case));
     let texts = (mine.to_ron()?, wanted.to_ron()?);
-    let before = [loaded.source.sets(), &openings(loaded)].concat();
+    let before = loaded.source.sets();
     let mut sets: Vec<String> = Vec::new();
     for name in fields(&texts.0).union(&fields(&texts.1)) {
         let (a, b) = (field(&texts.0, name), field(&texts.1, name));

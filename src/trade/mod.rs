@@ -1,13 +1,11 @@
 //! Studies of accuracy against cost: settings of a case are varied, and each is compared with a reference at
 //! the finest setting, over several seeds.
 //!
-//! [`parameters`] defines the varied parameters, [`rung`] and [`form`] those that change the model, [`study`] plans within a budget, [`child`] runs each setting in a
-//! separate process and stores its result, [`output`] reads the compared numbers, [`compare`] compares them
+//! [`parameters`] defines the varied parameters, [`rung`] and [`form`] those that change the model, [`study`] plans within a budget of [`runs`](crate::runs), [`output`] says which numbers are compared and how well, [`compare`] compares them
 //! with the reference, with Student [`interval`]s, [`frontier`] finds the non-dominated settings, [`verdict`]
 //! the cheapest one for a wanted error, and [`table`], [`files`] and [`figure`] report the result.
 
 pub mod chaos;
-pub mod child;
 mod combinations;
 pub mod compare;
 pub mod figure;
@@ -16,8 +14,6 @@ pub mod forecast;
 pub mod form;
 pub mod frontier;
 pub mod interval;
-pub mod lock;
-pub mod offer;
 pub mod output;
 pub mod parameters;
 pub mod rung;
@@ -27,8 +23,17 @@ pub mod table;
 pub mod verdict;
 
 use crate::report::ReportError;
+use crate::runs::RunsError;
+use crate::runs::lock::Owner;
 use crate::scene::InputError;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+/// The owner of folders of studies.
+pub const OWNER: Owner = Owner {
+    command: "fretwork trade",
+    mark: "trade.lock",
+    files: &["plan.json", "trade.json"],
+};
 
 /// Reason why a study cannot be done.
 #[derive(Debug, thiserror::Error)]
@@ -42,14 +47,9 @@ pub enum TradeError {
     /// Every run of the reference failed.
     #[error("{0}")]
     Reference(String),
-    /// A file or folder cannot be written.
-    #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Reason.
-        reason: String,
-    },
+    /// A run cannot be made or kept.
+    #[error(transparent)]
+    Runs(#[from] RunsError),
     /// The figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] ReportError),
@@ -58,9 +58,6 @@ pub enum TradeError {
 impl TradeError {
     /// Error for a file that cannot be written.
     pub(super) fn write(path: &Path, reason: &dyn std::fmt::Display) -> Self {
-        Self::Write {
-            path: path.to_owned(),
-            reason: reason.to_string(),
-        }
+        Self::Runs(RunsError::write(path, reason))
     }
 }

@@ -1,9 +1,7 @@
-//! Numbers that a study compares: from `summary.json` or a column of `statistics.csv`.
+//! Outputs that a study compares, each with the error wanted.
 
 use super::TradeError;
-use crate::scene::source::nearest;
-use serde_json::Value;
-use std::path::Path;
+use crate::runs::quantity::Quantity;
 
 /// The wanted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,38 +12,15 @@ pub enum Wanted {
     Absolute(f64),
 }
 
-/// Location of a number.
-#[derive(Clone, Debug, PartialEq)]
-enum Place {
-    /// In `summary.json`, by its path.
-    Summary(Vec<String>),
-    /// A column of the statistics, and its reduction to a number.
-    Column(String, Take),
-}
-
-/// Reduction of a column to a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Take {
-    /// The mean over the last half of the rows.
-    Mean,
-    /// The largest value.
-    Max,
-    /// The smallest value.
-    Min,
-    /// The last value.
-    Last,
-}
-
 /// An output and its wanted error.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
-    /// Name, as requested.
-    pub name: String,
+    /// The number.
+    pub quantity: Quantity,
     /// The error wanted.
     pub wanted: Wanted,
     /// Exact value, for example from a closed form; if absent, errors are measured against the reference.
     pub exact: Option<f64>,
-    place: Place,
 }
 
 impl Output {
@@ -68,7 +43,7 @@ impl Output {
         let value: f64 = digits
             .trim()
             .parse()
-            .map_err(|_| wrong(&format!("`{}` is not a valid error", wanted.trim())))?;
+            .map_err(|_| wrong(&format!("`{wanted}` is not a valid error")))?;
         if !(value > 0.0 && value.is_finite()) {
             return Err(wrong("the wanted error must be a number above zero"));
         }
@@ -77,12 +52,9 @@ impl Output {
                 "an error as large as the output itself is meaningless; ask for less than 100 %",
             ));
         }
-        let name = name.trim();
-        if name.is_empty() {
-            return Err(wrong("the name is missing"));
-        }
+        let quantity = Quantity::parse(name).map_err(|why| wrong(&why))?;
         // The exact value of an energy residual is zero; its value is the error itself.
-        let (exact, share) = match name {
+        let (exact, relative) = match quantity.name.as_str() {
             "energy_residual_relative" => (Some(0.0), false),
             "energy.residual" if share => {
                 return Err(wrong(
@@ -92,236 +64,27 @@ impl Output {
             "energy.residual" => (Some(0.0), false),
             _ => (None, share),
         };
-        let value = if wanted.ends_with('%') {
-            value / 100.0
-        } else {
-            value
-        };
-        let place = match name.strip_prefix("statistics.") {
-            Some(column) => {
-                let (column, take) = match column.rsplit_once(':') {
-                    None => (column, Take::Mean),
-                    Some((c, "mean")) => (c, Take::Mean),
-                    Some((c, "max")) => (c, Take::Max),
-                    Some((c, "min")) => (c, Take::Min),
-                    Some((c, "last")) => (c, Take::Last),
-                    Some((_, other)) => {
-                        let why = format!("`:{other}` is not one of :mean, :max, :min, :last");
-                        return Err(wrong(&why));
-                    }
-                };
-                Place::Column(column.to_owned(), take)
-            }
-            None => Place::Summary(name.split('.').map(str::to_owned).collect()),
-        };
+        let value = if share { value / 100.0 } else { value };
         Ok(Self {
-            name: name.to_owned(),
-            wanted: if share {
+            quantity,
+            wanted: if relative {
                 Wanted::Relative(value)
             } else {
                 Wanted::Absolute(value)
             },
             exact,
-            place,
         })
     }
 
-    /// Path of its name in `summary.json`; `None` if it is a column of the statistics.
-    pub(super) fn summary_path(&self) -> Option<&[String]> {
-        match &self.place {
-            Place::Summary(path) => Some(path),
-            Place::Column(..) => None,
-        }
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.quantity.name
     }
 
-    /// Its column of the statistics, if it is one.
-    pub(super) fn column_name(&self) -> Option<&str> {
-        match &self.place {
-            Place::Summary(_) => None,
-            Place::Column(name, _) => Some(name),
-        }
+    /// The error of a command line that names an output for which there is a reason to refuse it.
+    pub fn refused(&self, why: &str) -> TradeError {
+        TradeError::Usage(format!("--output {}: {why}", self.name()))
     }
-
-    /// Its value in the folder of a run; `None` if the run has none (null).
-    pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
-        match &self.place {
-            Place::Summary(path) => {
-                let step = |v: &Value, part: &String| match v {
-                    Value::Array(list) => list.get(part.parse::<usize>().ok()?).cloned(),
-                    _ => v.get(part).cloned(),
-                };
-                let found = path.iter().try_fold(summary.clone(), |v, p| step(&v, p))?;
-                found.as_f64().filter(|x| x.is_finite())
-            }
-            Place::Column(name, take) => {
-                let values = column(&folder.join("statistics.csv"), name)?;
-                let found = match take {
-                    Take::Last => values.last().copied(),
-                    Take::Max => values.iter().copied().reduce(f64::max),
-                    Take::Min => values.iter().copied().reduce(f64::min),
-                    Take::Mean => {
-                        let half = &values[values.len() / 2..];
-                        Some(half.iter().sum::<f64>() / half.len() as f64)
-                    }
-                };
-                found.filter(|x| x.is_finite())
-            }
-        }
-    }
-
-    /// Whether it is a result that one of these measures gives at the end of a run.
-    pub(super) fn measured(&self, measures: &[&str]) -> bool {
-        let Place::Summary(path) = &self.place else {
-            return false;
-        };
-        let [group, name] = path.as_slice() else {
-            return false;
-        };
-        let begins = |m: &&str| {
-            let rest = name.strip_prefix(*m);
-            rest.is_some_and(|r| r.is_empty() || r.starts_with('_'))
-        };
-        group == "measures" && measures.iter().any(begins)
-    }
-
-    /// Error for an output that a case does not have, with the nearest existing one.
-    pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> TradeError {
-        let close = nearest(wanted, names.iter().map(String::as_str))
-            .or_else(|| {
-                // Compare the last component alone, since parents may have been omitted.
-                let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
-                names.iter().find(last).map(String::as_str)
-            })
-            .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
-        TradeError::Usage(format!(
-            "--output {}: a run of this case has no such output;{close} {}",
-            self.name,
-            listed(names, prefix)
-        ))
-    }
-
-    /// Checks whether a run has an output of this name; it may be null, or absent because one of the case's `measures` begins later.
-    ///
-    /// # Errors
-    /// A sentence with the nearest name.
-    pub fn check(
-        &self,
-        summary: &Value,
-        folder: &Path,
-        measures: &[&str],
-    ) -> Result<(), TradeError> {
-        match &self.place {
-            Place::Summary(path) => {
-                let mut at = summary;
-                for part in path {
-                    at = match at {
-                        // Groups that are empty after a short run may be filled by a whole one.
-                        Value::Null | Value::Array(_) => return Ok(()),
-                        _ => match at.get(part) {
-                            Some(next) => next,
-                            None if self.measured(measures) => return Ok(()),
-                            None => {
-                                let mut names = Vec::new();
-                                flatten(summary, "", &mut names);
-                                return Err(self.unknown(&names, "", &self.name));
-                            }
-                        },
-                    };
-                }
-                match at {
-                    Value::Number(_) | Value::Null => Ok(()),
-                    _ => Err(TradeError::Usage(format!(
-                        "--output {}: it is not a number but a group; name one of its entries, as {}.NAME",
-                        self.name, self.name
-                    ))),
-                }
-            }
-            Place::Column(name, _) => {
-                let names = header(&folder.join("statistics.csv"));
-                if names.iter().any(|n| n == name) {
-                    Ok(())
-                } else {
-                    Err(self.unknown(&names, "statistics.", name))
-                }
-            }
-        }
-    }
-}
-
-/// List of the existing outputs.
-pub(super) fn listed(names: &[String], prefix: &str) -> String {
-    let more = if prefix.is_empty() {
-        ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
-    } else {
-        ""
-    };
-    if names.is_empty() {
-        return format!("it has none of this kind{more}");
-    }
-    format!("there are {}{more}", names.join(", "))
-}
-
-/// Paths of the numbers in a summary.
-pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
-    // Not useful for a comparison.
-    if [
-        "solver",
-        "bodies",
-        "biaxial",
-        "circuit",
-        "fretting",
-        "jump",
-        "stopped",
-        "cpu_seconds",
-        "time_spent",
-        "plugins",
-        "version",
-        "seed",
-        "threads",
-        "steps",
-        "time",
-        "wall_seconds",
-        "dimension",
-    ]
-    .contains(&path)
-    {
-        return;
-    }
-    match value {
-        Value::Object(map) => {
-            for (key, inner) in map {
-                let path = if path.is_empty() {
-                    key.clone()
-                } else {
-                    format!("{path}.{key}")
-                };
-                flatten(inner, &path, out);
-            }
-        }
-        Value::Number(_) | Value::Null => out.push(path.to_owned()),
-        _ => {}
-    }
-}
-
-/// Names of the columns, without units.
-fn header(path: &Path) -> Vec<String> {
-    let Ok(mut reader) = csv::Reader::from_path(path) else {
-        return Vec::new();
-    };
-    let bare = |h: &str| h.split(" [").next().unwrap_or(h).to_owned();
-    reader
-        .headers()
-        .map(|h| h.iter().map(bare).collect())
-        .unwrap_or_default()
-}
-
-/// Values of a column; only complete rows are read, since the table may still be written to.
-pub(super) fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
-    let place = header(path).iter().position(|n| n == name)?;
-    let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;
-    let rows = reader.records().map_while(Result::ok);
-    let values: Vec<f64> = rows.map_while(|r| r.get(place)?.parse().ok()).collect();
-    (!values.is_empty()).then_some(values)
 }
 
 #[cfg(test)]
@@ -355,34 +118,5 @@ mod tests {
             let said = Output::parse(wrong).unwrap_err().to_string();
             assert!(said.contains(wrong), "{said}");
         }
-    }
-
-    #[test]
-    fn finds_numbers_in_a_summary_and_names_the_nearest() {
-        let summary: Value = serde_json::from_str(
-            r#"{"friction_coefficient": 0.3, "wear": {"Qs": 2.0, "Qe": null}, "cycles": [{"work": 4.0}]}"#,
-        )
-        .unwrap();
-        let none = Path::new("/nowhere");
-        let read = |name: &str| Output::parse(name).unwrap().read(&summary, none);
-        assert_eq!(read("wear.Qs"), Some(2.0));
-        assert_eq!(read("cycles.0.work"), Some(4.0));
-        assert_eq!(read("wear.Qe"), None);
-        let check = |name: &str| {
-            let output = Output::parse(name).unwrap();
-            output.check(&summary, none, &["bulk"])
-        };
-        // A measure that begins later is not in the summary of a short run.
-        assert!(check("measures.bulk_mu").is_ok() && check("measures.bulk").is_ok());
-        assert!(check("measures.bulky").is_err() && check("measures.mu").is_err());
-        assert!(check("wear.Qe").is_ok() && check("cycles.3.work").is_ok());
-        let said = check("frction_coefficient").unwrap_err().to_string();
-        assert!(
-            said.contains("did you mean `friction_coefficient`?"),
-            "{said}"
-        );
-        let said = check("Qs").unwrap_err().to_string();
-        assert!(said.contains("did you mean `wear.Qs`?"), "{said}");
-        assert!(check("wear").is_err());
     }
 }

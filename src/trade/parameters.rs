@@ -364,14 +364,6 @@ fn counted(case: &Case) -> Option<(usize, usize)> {
     all.find_map(|(k, g)| Some((k, count(g)?)))
 }
 
-/// `--set` arguments that write the structs which the case omits: a `--set` can insert a field only into a
-/// struct that is written.
-pub fn openings(loaded: &Loaded) -> Vec<String> {
-    let missing = |group: &&str| loaded.source.position_of(group).is_none();
-    let groups = ["solver", "output"].into_iter().filter(missing);
-    groups.map(|group| format!("{group}=()")).collect()
-}
-
 /// Parses `key.path=a,b,c`: commas within brackets or quotes belong to a value.
 fn listed(
     loaded: &Loaded,
@@ -405,7 +397,7 @@ fn listed(
         number: value.parse().ok(),
     };
     let mut levels: Vec<Level> = values.iter().map(level).collect();
-    let before = [loaded.source.sets(), &openings(loaded)].concat();
+    let before = loaded.source.sets();
     // Compares the text of the case before and after: a value that does not change it is the case's own.
     let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {

@@ -6,12 +6,13 @@
 //! error. Interactions of parameters outside these combinations are not detected.
 
 use super::TradeError;
-use super::child::{Ended, Finished, Launcher, Status};
 use super::compare::{Compared, Comparison, neighbour};
 use super::forecast::Forecast;
 use super::output::Output;
 use super::parameters::{Sense, StudyParameter};
 use super::setting::Setting;
+use crate::runs::launcher::{Ended, Launcher};
+use crate::runs::stored::{Finished, Status};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -95,7 +96,7 @@ impl Study {
             })
             .collect();
         Plan {
-            fingerprint: self.launcher.fingerprint().to_owned(),
+            fingerprint: self.launcher.fingerprint(),
             // A larger budget or more jobs may allow a finer reference.
             parameters: format!(
                 "{levels:?} {} {} {}",
@@ -379,7 +380,7 @@ impl Study {
                         Err(e) => {
                             guard.1.clear();
                             if let Ok(mut failure) = failure.lock() {
-                                *failure = Some(e);
+                                *failure = Some(e.into());
                             }
                         }
                     }

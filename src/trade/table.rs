@@ -5,18 +5,8 @@ use super::output::{Output, Wanted};
 use super::setting::Setting;
 use super::study::Study;
 use super::verdict::{Verdict, amount, three};
+use crate::runs::duration::seconds;
 use std::fmt::Write as _;
-
-/// A duration in readable units.
-pub fn seconds(s: f64) -> String {
-    match s {
-        s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
-        s if s < 99.5 => format!("{s:.1} s"),
-        s if s < 599.5 => format!("{s:.0} s"),
-        s if s < 5940.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
 
 /// Announcement before the study runs.
 pub fn forecast(study: &Study) -> String {
@@ -112,7 +102,7 @@ fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
             Wanted::Relative(_) => " (%)",
             Wanted::Absolute(_) => "",
         };
-        let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name));
+        let _ = write!(out, "  {:>24}", format!("{}{unit}", o.name()));
     }
     out.push('\n');
     for row in &found.rows {
@@ -175,7 +165,7 @@ fn error_cell(error: Option<&OutputError>, output: &Output, of_reference: bool) 
 fn push_outputs(out: &mut String, study: &Study, found: &Comparison) {
     for (own, o) in found.own.iter().zip(&study.outputs) {
         let Some(own) = own else {
-            let _ = writeln!(out, "{}: no value in the reference", o.name);
+            let _ = writeln!(out, "{}: no value in the reference", o.name());
             continue;
         };
         let scatter = own.value.scatter.map_or(String::new(), |s| {
@@ -192,7 +182,7 @@ fn push_outputs(out: &mut String, study: &Study, found: &Comparison) {
         let _ = writeln!(
             out,
             "{}: {:.6} in the reference{scatter}{truth}",
-            o.name,
+            o.name(),
             Shown(own.value.mean)
         );
         if o.exact.is_none() {

@@ -45,14 +45,14 @@ pub fn amount(x: f64, output: &Output) -> String {
 fn verdict(found: &Comparison, outputs: &[Output], set: &[usize], random: bool) -> Verdict {
     let wanted = |o: &usize| {
         let output = &outputs[*o];
-        format!("{} on {}", amount(limit(output), output), output.name)
+        format!("{} on {}", amount(limit(output), output), output.name())
     };
     let names: Vec<String> = set.iter().map(wanted).collect();
     let (row, holds, text) = match idle_output(found, outputs, set) {
         Some(o) => {
             let text = format!(
                 "no verdict: {} is zero in all runs, so there is nothing to compare; name another output, or run the case for longer",
-                outputs[o].name
+                outputs[o].name()
             );
             (None, false, text)
         }
@@ -146,7 +146,7 @@ fn describe_row(row: &Row, outputs: &[Output], set: &[usize], random: bool) -> S
     let errors = set.iter().filter_map(|&o| {
         let (e, output) = (row.errors[o].as_ref()?, &outputs[o]);
         let name = if set.len() > 1 {
-            format!("{}: ", output.name)
+            format!("{}: ", output.name())
         } else {
             String::new()
         };
@@ -166,7 +166,7 @@ fn describe_row(row: &Row, outputs: &[Output], set: &[usize], random: bool) -> S
 fn reference_errors(found: &Comparison, outputs: &[Output], set: &[usize]) -> String {
     let errors = set.iter().filter_map(|&o| {
         let (x, output) = (found.own[o].as_ref()?, &outputs[o]);
-        let name = &output.name;
+        let name = output.name();
         Some(if x.at_most.is_finite() {
             format!("up to {} on {name}", amount(x.at_most, output))
         } else {
@@ -238,7 +238,7 @@ fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: boo
         if reference.errors[o].is_none() {
             return format!(
                 "{} has no value in the reference, or is zero there",
-                output.name
+                output.name()
             );
         }
         let Some((row, e)) = others().min_by(|a, b| a.1.at_most.total_cmp(&b.1.at_most)) else {
@@ -247,12 +247,12 @@ fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: boo
         if !e.at_most.is_finite() {
             return format!(
                 "{} differs from seed to seed, and one seed gives no scatter: give --seeds 3 or more",
-                output.name
+                output.name()
             );
         }
         let nearest = format!(
             "the nearest on {} is {}, at most {}",
-            output.name,
+            output.name(),
             row.name,
             amount(e.at_most, output)
         );

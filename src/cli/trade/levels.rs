@@ -5,7 +5,7 @@ use crate::cli::Failure;
 use crate::laws::SearchPath;
 use crate::scene::{Loaded, load};
 use crate::trade::form::variants;
-use crate::trade::parameters::{Sense, StudyParameter, openings, parameters};
+use crate::trade::parameters::{Sense, StudyParameter, parameters};
 use crate::trade::rung::keep_accepted;
 
 /// The varied parameters, each level of which gives a case that can be built.
@@ -28,7 +28,7 @@ pub fn parameters_of(
     }
     all.sort_by_key(|k| k.sense != Sense::Form);
     for rung in all.iter_mut().filter(|k| k.name == "rung") {
-        let before = [args.case.sets.clone(), openings(loaded)].concat();
+        let before = args.case.sets.clone();
         keep_accepted(rung, |sets| {
             let scene = load(&args.case.case, &[&before[..], sets].concat())
                 .and_then(|case| case.build(search));
@@ -36,7 +36,7 @@ pub fn parameters_of(
         })?;
     }
     one_tolerance(&all)?;
-    check_varied_cases(args, loaded, search, &all)?;
+    check_varied_cases(args, search, &all)?;
     Ok(all)
 }
 
@@ -63,19 +63,18 @@ fn one_tolerance(parameters: &[StudyParameter]) -> Result<(), Failure> {
 /// Builds the case with each value of a `--vary`, so that a wrong one is refused before any run.
 fn check_varied_cases(
     args: &TradeArgs,
-    loaded: &Loaded,
     search: &SearchPath,
     parameters: &[StudyParameter],
 ) -> Result<(), Failure> {
     let varied = |set: &&String| args.vary.iter().any(|v| same_key(set, v));
     let levels = parameters.iter().flat_map(|k| &k.levels);
     for set in levels.flat_map(|l| &l.sets).filter(varied) {
-        let sets = [args.case.sets.clone(), openings(loaded), vec![set.clone()]].concat();
+        let sets = [args.case.sets.clone(), vec![set.clone()]].concat();
         load(&args.case.case, &sets)?.build(search)?;
     }
     let variants = parameters.iter().filter(|k| k.name == "variant");
     for level in variants.flat_map(|k| &k.levels) {
-        let sets = [args.case.sets.clone(), openings(loaded), level.sets.clone()].concat();
+        let sets = [args.case.sets.clone(), level.sets.clone()].concat();
         load(&args.case.case, &sets)?.build(search)?;
     }
     Ok(())

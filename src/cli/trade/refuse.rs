@@ -2,41 +2,44 @@
 
 use super::TradeArgs;
 use crate::cli::Failure;
-use crate::cli::check::cost::Trial;
+use crate::runs::cost::Trial;
+use crate::runs::duration::seconds;
+use crate::runs::launcher::{Ended, Launcher};
+use crate::runs::offer::{Offer, measure_names};
+use crate::runs::stored::summary;
 use crate::scene::build::Built;
 use crate::scene::{Loaded, Scene};
 use crate::step::Steps;
 use crate::trade::TradeError;
-use crate::trade::child::{Ended, Launcher, summary};
-use crate::trade::offer::{Offer, measure_names};
 use crate::trade::output::Output;
-use crate::trade::table::seconds;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// The requested outputs, or the default ones, with their exact values where given; an error if the case does
 /// not have one.
 pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> {
-    let mut outputs = if args.outputs.is_empty() {
-        offer.usual()
-    } else {
-        let all: Result<Vec<Output>, TradeError> =
-            args.outputs.iter().map(|t| Output::parse(t)).collect();
-        all?
+    let asked = args.outputs.iter().map(|t| Output::parse(t));
+    let usual = offer.usual().into_iter().map(Output::parse);
+    let all: Result<Vec<Output>, TradeError> = match args.outputs.is_empty() {
+        true => usual.collect(),
+        false => asked.collect(),
     };
+    let mut outputs = all?;
     if outputs.is_empty() {
         return Err(Failure::Usage(
             "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
         ));
     }
     for (k, output) in outputs.iter().enumerate() {
-        if outputs[..k].iter().any(|o| o.name == output.name) {
+        if outputs[..k].iter().any(|o| o.name() == output.name()) {
             return Err(Failure::Usage(format!(
                 "--output {} is given twice; name it once, with the error wanted",
-                output.name
+                output.name()
             )));
         }
-        offer.check(output)?;
+        offer
+            .check(&output.quantity)
+            .map_err(|why| output.refused(&why))?;
     }
     for text in &args.exact {
         let wrong = |why: &str| {
@@ -53,7 +56,7 @@ pub fn outputs(args: &TradeArgs, offer: &Offer) -> Result<Vec<Output>, Failure> 
             .ok()
             .filter(|v: &f64| v.is_finite())
             .ok_or_else(|| wrong("the value is not a number"))?;
-        let found = outputs.iter_mut().find(|o| o.name == name.trim());
+        let found = outputs.iter_mut().find(|o| o.name() == name.trim());
         found
             .ok_or_else(|| wrong("no --output has this name"))?
             .exact = Some(value);
@@ -120,7 +123,10 @@ pub fn after_two_steps(
         let summary = summary(&place);
         if summary.is_object() {
             for output in outputs {
-                output.check(&summary, &place, &measure_names(&loaded.case))?;
+                output
+                    .quantity
+                    .check(&summary, &place, &measure_names(&loaded.case))
+                    .map_err(|why| output.refused(&why))?;
             }
         }
     }

@@ -4,6 +4,7 @@ mod another_run;
 mod arch;
 mod attraction;
 mod blocks;
+mod contents;
 mod deformed;
 mod elastic;
 mod elastic_grains;

@@ -1,7 +1,6 @@
 //! Outputs that a case has, determined before anything runs.
 
-use super::TradeError;
-use super::output::{Output, flatten, listed};
+use super::quantity::{Quantity, flatten, listed};
 use crate::laws::Interface;
 use crate::record::Summary;
 use crate::record::statistics_columns;
@@ -98,16 +97,16 @@ impl Offer {
         }
     }
 
-    /// The default outputs: friction if the case has a friction test, the damage ratio if it has a damage
-    /// law, the source flow if it has a wear law; at 1 % each.
-    pub fn usual(&self) -> Vec<Output> {
+    /// Names of the default outputs: friction if the case has a friction test, the damage ratio if it has a damage law, the
+    /// source flow if it has a wear law.
+    pub fn usual(&self) -> Vec<&'static str> {
         let names = ["friction_coefficient", "damage_ratio", "wear.Qs"];
         let damaged = self.bonded && self.lack(&["mean_damage".to_owned()]).is_none();
         let there = names.into_iter().filter(|n| {
             let path: Vec<String> = n.split('.').map(str::to_owned).collect();
             self.lack(&path).is_none() && (*n != "damage_ratio" || damaged)
         });
-        there.filter_map(|n| Output::parse(n).ok()).collect()
+        there.collect()
     }
 
     /// What the case lacks for an output.
@@ -133,7 +132,7 @@ impl Offer {
     ///
     /// # Errors
     /// A sentence that says what the case lacks, with the nearest name and the existing ones.
-    pub fn check(&self, output: &Output) -> Result<(), TradeError> {
+    pub fn check(&self, output: &Quantity) -> Result<(), String> {
         if let Some(column) = output.column_name() {
             return if self.columns.iter().any(|c| c == column) {
                 Ok(())
@@ -144,11 +143,10 @@ impl Offer {
         let path = output.summary_path().unwrap_or_default();
         let unknown = || Err(output.unknown(&self.names(), "", &output.name));
         if let Some(why) = self.lack(path) {
-            return Err(TradeError::Usage(format!(
-                "--output {}: {why}, so there is nothing to compare; {}",
-                output.name,
+            return Err(format!(
+                "{why}, so there is nothing to compare; {}",
                 listed(&self.names(), "")
-            )));
+            ));
         }
         if path.first().is_some_and(|p| p == "measures") {
             let measures: Vec<&str> = self.measures.iter().map(String::as_str).collect();
@@ -171,10 +169,10 @@ impl Offer {
         }
         match at {
             Value::Number(_) | Value::Null => Ok(()),
-            Value::Object(_) | Value::Array(_) => Err(TradeError::Usage(format!(
-                "--output {}: it is not a number but a group; name one of its entries, as {}.NAME",
-                output.name, output.name
-            ))),
+            Value::Object(_) | Value::Array(_) => Err(format!(
+                "it is not a number but a group; name one of its entries, as {}.NAME",
+                output.name
+            )),
             _ => unknown(),
         }
     }

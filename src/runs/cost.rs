@@ -1,9 +1,9 @@
 //! Estimate of the run time from a few steps of a copy of the scene, timed for a short while. No files are
 //! written.
 
+use super::duration::seconds;
 use crate::step::Simulation;
 use crate::step::Steps;
-use crate::trade::table::seconds;
 use cpu_time::ThreadTime;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};

@@ -1,0 +1,81 @@
+//! Lock on a folder of runs: one command at a time, and only in a folder that belongs to such commands.
+
+use super::RunsError;
+use std::fs::{File, TryLockError};
+use std::path::Path;
+
+/// What a command calls itself and its files.
+#[derive(Clone, Copy, Debug)]
+pub struct Owner {
+    /// The command, `fretwork trade`.
+    pub command: &'static str,
+    /// The file that is locked.
+    pub mark: &'static str,
+    /// Other files by which its folders are known.
+    pub files: &'static [&'static str],
+}
+
+impl Owner {
+    /// Creates or opens a folder and locks it until the returned file is dropped; the system releases the lock when
+    /// the process ends.
+    ///
+    /// # Errors
+    /// The command runs in it already, it holds other files, or it cannot be written.
+    pub fn take(&self, out: &Path) -> Result<File, RunsError> {
+        let fail = |e: &dyn std::fmt::Display| RunsError::write(out, e);
+        let ours = || {
+            let mut known = [self.mark].into_iter().chain(self.files.iter().copied());
+            known.any(|f| out.join(f).is_file())
+        };
+        let full = std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
+        if full && !ours() {
+            return Err(RunsError::Usage(format!(
+                "{} is not empty and holds no study of {}; give a new or empty folder with --out",
+                out.display(),
+                self.command
+            )));
+        }
+        std::fs::create_dir_all(out).map_err(|e| fail(&e))?;
+        let path = out.join(self.mark);
+        let file = File::options()
+            .create(true)
+            .append(true)
+            .open(&path)
+            .map_err(|e| RunsError::write(&path, &e))?;
+        match file.try_lock() {
+            Err(TryLockError::WouldBlock) => Err(RunsError::Usage(format!(
+                "another {} is running in {}; wait for its end, or give another folder with --out",
+                self.command,
+                out.display()
+            ))),
+            // Continue without a lock on file systems that have none.
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_a_second_study_and_a_strangers_folder() {
+        const OWNER: Owner = Owner {
+            command: "fretwork trade",
+            mark: "trade.lock",
+            files: &["plan.json"],
+        };
+        let out = std::env::temp_dir().join(format!("fretwork-lock-{}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&out);
+        let first = OWNER.take(&out).unwrap();
+        let said = OWNER.take(&out).unwrap_err().to_string();
+        assert!(said.contains("another fretwork trade is running"), "{said}");
+        drop(first);
+        drop(OWNER.take(&out).unwrap());
+        std::fs::remove_file(out.join(OWNER.mark)).unwrap();
+        std::fs::write(out.join("thesis.txt"), "mine").unwrap();
+        let said = OWNER.take(&out).unwrap_err().to_string();
+        assert!(said.contains("holds no study"), "{said}");
+        std::fs::remove_dir_all(&out).unwrap();
+    }
+}

@@ -1,0 +1,217 @@
+//! How a run ended: what is stored of it, and what it is worth by given limits.
+
+use super::quantity::column;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::path::Path;
+
+/// Outcome of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Status {
+    /// It finished, and can be compared.
+    Done,
+    /// It failed, was rejected or is not trustworthy: reason.
+    Failed(String),
+    /// It was stopped after this many seconds, since it took longer than it may.
+    Slow(f64),
+}
+
+/// Limits beyond which a run is not trusted.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Fraction of steps that may miss the tolerance.
+    pub unconverged: f64,
+    /// Energy residual over the largest energy.
+    pub residual: f64,
+}
+
+/// Contents of `run.json` for a run that ended by itself: numbers only, assessed whenever they are read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct StoredRun {
+    sets: Vec<String>,
+    seed: u64,
+    /// Exit code.
+    exit: i32,
+    /// First line of its output on stderr.
+    said: String,
+    steps: Option<f64>,
+    unconverged: f64,
+    uncoupled: f64,
+    /// `None` if the energy is not finite.
+    residual: Option<f64>,
+    seconds: f64,
+    wall: f64,
+    visits: f64,
+    /// Words of the reasons why the run says that it is not trustworthy.
+    #[serde(default)]
+    doubts: Vec<String>,
+}
+
+/// A run that ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finished {
+    /// Outcome.
+    pub status: Status,
+    /// Whether a failure may be temporary: it is not stored, and the next study tries again.
+    pub temporary: bool,
+    /// The `--set` arguments of the run.
+    pub sets: Vec<String>,
+    /// Seed of the run.
+    pub seed: u64,
+    /// Processor time of the steps (s).
+    pub seconds: f64,
+    /// Wall time of the whole run (s).
+    pub wall: f64,
+    /// Contacts times iterations, summed over the steps: a machine-independent measure of cost.
+    pub visits: f64,
+    /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none of one that is.
+    pub doubts: Vec<String>,
+}
+
+impl StoredRun {
+    /// Reads what a run left in its folder; `exit` is `None` if it did not end by itself.
+    pub fn read(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f64) -> Self {
+        let summary = summary(place);
+        let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
+        let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
+        let reasons = summary["reasons"].as_array().into_iter().flatten();
+        let doubts = reasons.filter_map(Value::as_str).map(words).collect();
+        let first = said.lines().next().unwrap_or("no reason was given");
+        Self {
+            sets: sets.to_vec(),
+            seed,
+            exit: exit.unwrap_or(-1),
+            said: first.trim_start_matches("error: ").to_owned(),
+            steps: number("/steps"),
+            unconverged: number("/solver/unconverged_steps").unwrap_or(0.0),
+            uncoupled: number("/solver/uncoupled_steps").unwrap_or(0.0),
+            residual: number("/energy_residual_relative"),
+            seconds: number("/cpu_seconds").unwrap_or(elapsed),
+            wall: elapsed,
+            visits: visits(place, number("/steps").unwrap_or(0.0)),
+            doubts,
+        }
+    }
+
+    /// Whether a repetition may end differently: the run was rejected (files may have changed), could not
+    /// write, or left nothing.
+    pub fn temporary(&self) -> bool {
+        match self.exit {
+            0 => self.steps.is_none(),
+            1 => self.said.contains("cannot write") || self.said.contains("No space left"),
+            _ => true,
+        }
+    }
+
+    /// What it is worth.
+    pub fn assess(self, limits: &Limits) -> Finished {
+        let temporary = self.temporary();
+        let status = match self.exit {
+            0 => self.rejection(limits).map_or(Status::Done, Status::Failed),
+            code => {
+                let what = if code == 2 { "refused" } else { "failed" };
+                Status::Failed(format!("{what}: {}", self.said))
+            }
+        };
+        Finished {
+            status,
+            temporary,
+            sets: self.sets,
+            seed: self.seed,
+            seconds: self.seconds,
+            wall: self.wall,
+            visits: self.visits,
+            doubts: self.doubts,
+        }
+    }
+
+    /// Reason why a finished run is not trusted.
+    fn rejection(&self, limits: &Limits) -> Option<String> {
+        let Some(steps) = self.steps else {
+            return Some("it wrote no summary".into());
+        };
+        let most = limits.unconverged * steps.max(1.0);
+        if self.unconverged > most {
+            let missed = self.unconverged;
+            return Some(format!("{missed} of {steps} steps did not converge"));
+        }
+        if self.uncoupled > most {
+            return Some(format!(
+                "{} of {steps} steps did not converge in the damage coupling",
+                self.uncoupled
+            ));
+        }
+        match self.residual {
+            Some(r) if r.abs() <= limits.residual => None,
+            Some(r) => Some(format!(
+                "its energy residual is {:.1} % of the largest energy",
+                100.0 * r.abs()
+            )),
+            None => Some("its energy is not finite".into()),
+        }
+    }
+}
+
+/// Whether a run reports that a signal ended it.
+pub(super) fn interrupted(place: &Path) -> bool {
+    summary(place)["interrupted"] == Value::Bool(true)
+}
+
+/// The words in capitals that a reason begins with; the reason itself where there are none.
+fn words(reason: &str) -> String {
+    let first = reason.split(':').next().unwrap_or(reason);
+    first.trim().to_owned()
+}
+
+/// Summary of a run; null if there is none.
+pub fn summary(place: &Path) -> Value {
+    std::fs::read_to_string(place.join("summary.json"))
+        .ok()
+        .and_then(|text| serde_json::from_str(&text).ok())
+        .unwrap_or(Value::Null)
+}
+
+/// Contacts times iterations over all steps, estimated from the rows of the statistics.
+fn visits(place: &Path, steps: f64) -> f64 {
+    let path = place.join("statistics.csv");
+    let both = column(&path, "contacts").zip(column(&path, "iterations"));
+    both.map_or(0.0, |(c, i)| {
+        let sum: f64 = c.iter().zip(&i).map(|(c, i)| c * i).sum();
+        steps * sum / c.len() as f64
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A stored run is assessed by the current limits; a failure that may be temporary is not stored.
+    #[test]
+    fn a_stored_run_is_assessed_by_todays_limits() {
+        let run = |exit, said: &str| StoredRun {
+            sets: Vec::new(),
+            seed: 1,
+            exit,
+            said: said.into(),
+            steps: Some(100.0),
+            unconverged: 3.0,
+            uncoupled: 0.0,
+            residual: Some(1e-4),
+            seconds: 1.0,
+            wall: 1.0,
+            visits: 1.0,
+            doubts: Vec::new(),
+        };
+        let status = |unconverged| {
+            let limits = Limits {
+                unconverged,
+                residual: 0.01,
+            };
+            run(0, "").assess(&limits).status
+        };
+        assert!(matches!(status(0.01), Status::Failed(why) if why.contains("3 of 100 steps")));
+        assert_eq!(status(0.05), Status::Done);
+        assert!(run(1, "cannot write x: full").temporary() && run(2, "no such mesh").temporary());
+        assert!(!run(1, "a body left the domain").temporary() && !run(0, "").temporary());
+    }
+}
