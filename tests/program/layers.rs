@@ -5,7 +5,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
-const LAYERS: [(&str, &[&str], &[&str]); 8] = [
+const LAYERS: [(&str, &[&str], &[&str]); 9] = [
+    (
+        "study",
+        &[],
+        &[
+            "rust-hdf5",
+            "clap",
+            "ron",
+            "ariadne",
+            "csv",
+            "plotters",
+            "libloading",
+        ],
+    ),
     (
         "core",
         &[],
