@@ -80,6 +80,7 @@ pub mod record;
 pub mod runs;
 pub mod scene;
 pub mod shipped;
+pub mod study;
 pub mod trade;
 
 pub use fretwork_core::{

@@ -1,4 +1,4 @@
-//! The command line: `run`, `report`, `compare`, `check`, `law`, `solve`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `law`, `solve`, `study`, `trade`.
 //!
 //! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
 
@@ -13,6 +13,7 @@ mod progress;
 mod report;
 mod run;
 mod solve;
+mod study;
 mod trade;
 
 pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
@@ -71,6 +72,12 @@ enum Command {
         after_help = "Exit code: 0 solved, 1 not solved within the limits, 2 wrong input.\n\nExample:\n  fretwork solve tests/fclib/gfc3d_OneContact.hdf5 --tolerance 1e-10 --out solution.hdf5"
     )]
     Solve(solve::SolveArgs),
+    /// Run a case at many points of its factors, here or by another engine, and gather one table
+    #[command(
+        subcommand,
+        after_help = "Exit code: 0 done, also where runs failed (the table says which), 1 interrupted, or a run left no result, 2 wrong input.\n\nExample:\n  fretwork study run studies/friction_of_grains.ron --jobs 2\n\ndocs/study.md says what a study is made of and how to run it on a cluster."
+    )]
+    Study(study::StudyCommand),
     /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
     #[command(
         allow_negative_numbers = true,
@@ -278,6 +285,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Check(args) => check::check(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
+        Command::Study(command) => study::study(&command),
         Command::Trade(args) => trade::trade(&args),
         Command::TryLibraries(args) => args.help(child::try_libraries),
         Command::CertifyApart(args) => args.help(|| certify_asked(&built_in())),

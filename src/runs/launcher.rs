@@ -68,7 +68,7 @@ impl Launcher {
     /// A launcher for a case with `--set` arguments of all runs, which stores in a folder.
     ///
     /// # Errors
-    /// The path of the program cannot be determined, or the folder cannot be created.
+    /// The path of the program cannot be determined.
     pub fn new(
         case: &Path,
         sets: &[String],
@@ -76,7 +76,6 @@ impl Launcher {
         folder: &Path,
         limits: Limits,
     ) -> Result<Self, RunsError> {
-        std::fs::create_dir_all(folder).map_err(|e| RunsError::write(folder, &e))?;
         Ok(Self {
             case: case.to_owned(),
             sets: sets.to_vec(),

@@ -14,6 +14,7 @@ pub mod perturbation;
 pub mod quantity;
 pub mod randomness;
 pub mod stored;
+pub mod unit;
 
 use crate::scene::InputError;
 use std::path::{Path, PathBuf};

@@ -76,7 +76,7 @@ impl Quantity {
     }
 
     /// Its column of the statistics, if it is one.
-    pub(super) fn column_name(&self) -> Option<&str> {
+    pub fn column_name(&self) -> Option<&str> {
         match &self.place {
             Place::Summary(_) => None,
             Place::Column(name, _) => Some(name),
@@ -248,6 +248,16 @@ fn header(path: &Path) -> Vec<String> {
         .headers()
         .map(|h| h.iter().map(bare).collect())
         .unwrap_or_default()
+}
+
+/// Unit of a column of a table of statistics.
+pub fn column_unit(path: &Path, name: &str) -> Option<String> {
+    let mut reader = csv::Reader::from_path(path).ok()?;
+    let headings = reader.headers().ok()?.clone();
+    headings.iter().find_map(|h| {
+        let (bare, unit) = h.split_once(" [")?;
+        (bare == name).then(|| unit.trim_end_matches(']').to_owned())
+    })
 }
 
 /// Values of a column; only complete rows are read, since the table may still be written to.

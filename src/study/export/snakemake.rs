@@ -1,0 +1,46 @@
+//! Snakemake: a rule that makes a chunk of runs, and one that collects.
+
+use super::super::StudyError;
+use super::{Export, Written, absolute, quote, shell};
+
+pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
+    let out = absolute(&export.plan.out);
+    let tasks = export.tasks().len();
+    let (count, chunk) = (export.plan.count(), export.chunk);
+    // Braces are Snakemake's own.
+    let escaped = |words: Vec<String>| shell(&words).replace('{', "{{").replace('}', "}}");
+    let point = escaped(export.call("point", &["RUNS"])?).replace("RUNS", "{params.runs}");
+    let collect = escaped(export.call("collect", &[])?);
+    // A text of JSON is one of Python.
+    let python = |text: &str| serde_json::Value::from(text).to_string();
+    let (point, collect, folder) = (python(&point), python(&collect), python(&out));
+    let text = format!(
+        "# {count} runs in {tasks} tasks of {chunk}; written by fretwork study export --to snakemake.\n\
+         OUT = {folder}\n\
+         TASKS, CHUNK, COUNT = {tasks}, {chunk}, {count}\n\n\
+         def runs(wildcards):\n    \
+             last = int(wildcards.task) * CHUNK\n    \
+             return f\"{{last - CHUNK + 1}}-{{min(last, COUNT)}}\"\n\n\
+         rule all:\n    \
+             input: OUT + \"/table.csv\"\n\n\
+         rule point:\n    \
+             output: touch(OUT + \"/tasks/{{task}}.done\")\n    \
+             params: runs=runs\n    \
+             threads: {}\n    \
+             shell: {point}\n\n\
+         rule collect:\n    \
+             input: expand(OUT + \"/tasks/{{task}}.done\", task=range(1, TASKS + 1))\n    \
+             output: OUT + \"/table.csv\"\n    \
+             shell: {collect}\n",
+        export.plan.launcher.threads
+    );
+    let file = export.put("Snakefile", &text)?;
+    Ok(Written {
+        start: format!(
+            "snakemake --cores all --keep-going --snakefile {} --directory {}",
+            quote(&absolute(&file)),
+            quote(&out)
+        ),
+        files: vec![file],
+    })
+}

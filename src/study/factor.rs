@@ -1,0 +1,268 @@
+//! What varies in a study: a factor turns a number from 0 to 1, or a level, into changes of the case.
+
+use super::spec::{FactorSpec, Keys, OptionSpec, ReadSpec, ScaleSpec};
+use crate::scene::InputError;
+use fretwork_study::design::scale::Scale;
+
+/// A value that a factor takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Value {
+    /// As it stands in tables.
+    pub label: String,
+    /// As a number, if it is one.
+    pub number: Option<f64>,
+    /// `key.path=value` for the case.
+    pub sets: Vec<String>,
+}
+
+/// Which values a factor takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// Numbers of a range.
+    Range {
+        /// Its ends, and how they are spread.
+        scale: Scale,
+        /// How many there are in designs of levels.
+        levels: Option<u16>,
+    },
+    /// Listed values.
+    Listed(Vec<Value>),
+}
+
+/// A factor of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// Name in tables and figures.
+    pub name: String,
+    /// The keys that take its value; none for named alternatives.
+    pub keys: Vec<String>,
+    /// Its values.
+    pub kind: Kind,
+}
+
+/// Digits of a number of a range: more would be noise of the last bit in tables.
+const DIGITS: usize = 10;
+
+impl Factor {
+    /// The factor that a file describes, `path` in it.
+    ///
+    /// # Errors
+    /// A range that is none, a value that is given twice, no values.
+    pub fn of(spec: &FactorSpec, read: &ReadSpec, path: &str) -> Result<Self, InputError> {
+        let fail =
+            |key: &str, text: String| Err(read.source.error_at(&format!("{path}{key}"), text));
+        let named = |name: &Option<String>, Keys(keys): &Keys| match keys.first() {
+            None => Err(read
+                .source
+                .error_at(&format!("{path}.key"), "a key of the case is expected")),
+            Some(first) => Ok((name.clone().unwrap_or_else(|| first.clone()), keys.clone())),
+        };
+        match spec {
+            FactorSpec::Values { name, key, values } => {
+                let (name, keys) = named(name, key)?;
+                if values.is_empty() {
+                    return fail(".values", "a factor takes one value or more".to_owned());
+                }
+                let texts: Vec<&str> = values.iter().map(|v| v.get_ron().trim()).collect();
+                if let Some(k) = (1..texts.len()).find(|&k| texts[..k].contains(&texts[k])) {
+                    return fail(
+                        &format!(".values.{k}"),
+                        format!("{} is given twice", texts[k]),
+                    );
+                }
+                let listed = texts
+                    .into_iter()
+                    .map(|text| value_of(&keys, text))
+                    .collect();
+                Ok(Self {
+                    name,
+                    keys,
+                    kind: Kind::Listed(listed),
+                })
+            }
+            FactorSpec::Range {
+                name,
+                key,
+                low,
+                high,
+                scale,
+                levels,
+            } => {
+                let (name, keys) = named(name, key)?;
+                let (from, to) = (*low, *high);
+                let scale = match scale {
+                    ScaleSpec::Linear => Scale::Linear { from, to },
+                    ScaleSpec::Log => Scale::Logarithmic { from, to },
+                    ScaleSpec::Integer if low.fract() != 0.0 || high.fract() != 0.0 => {
+                        return fail(".low", "a range of whole numbers has whole ends".to_owned());
+                    }
+                    ScaleSpec::Integer => Scale::Integer {
+                        from: from as i64,
+                        to: to as i64,
+                    },
+                };
+                if let Err(e) = scale.check() {
+                    return fail(".low", e.to_string());
+                }
+                if levels.is_some_and(|n| n < 2) {
+                    return fail(
+                        ".levels",
+                        "a range has two levels or more, its ends".to_owned(),
+                    );
+                }
+                let kind = Kind::Range {
+                    scale,
+                    levels: *levels,
+                };
+                Ok(Self { name, keys, kind })
+            }
+            FactorSpec::Options { name, options } => {
+                if options.is_empty() {
+                    return fail(".options", "a factor has one option or more".to_owned());
+                }
+                if let Some(k) = (1..options.len())
+                    .find(|&k| options[..k].iter().any(|o| o.name == options[k].name))
+                {
+                    let name = &options[k].name;
+                    return fail(
+                        &format!(".options.{k}.name"),
+                        format!("`{name}` is given twice"),
+                    );
+                }
+                let value = |o: &OptionSpec| Value {
+                    label: o.name.clone(),
+                    number: None,
+                    sets: o.set.clone(),
+                };
+                let listed = options.iter().map(value).collect();
+                Ok(Self {
+                    name: name.clone(),
+                    keys: Vec::new(),
+                    kind: Kind::Listed(listed),
+                })
+            }
+        }
+    }
+
+    /// A column of a table of points: its name, or the key that it sets.
+    pub fn of_column(key: &str, values: Vec<String>) -> Self {
+        let keys = vec![key.to_owned()];
+        let listed = values.iter().map(|text| value_of(&keys, text)).collect();
+        Self {
+            name: key.to_owned(),
+            keys,
+            kind: Kind::Listed(listed),
+        }
+    }
+
+    /// Its levels; `None` for a range without a number of them.
+    pub fn levels(&self) -> Option<Vec<Value>> {
+        match &self.kind {
+            Kind::Listed(values) => Some(values.clone()),
+            Kind::Range { scale, levels } => {
+                let numbers = scale.levels(usize::from((*levels)?));
+                Some(numbers.into_iter().map(|x| self.value(x)).collect())
+            }
+        }
+    }
+
+    /// The value at a place from 0 to 1: of a range by its scale, with both ends; of listed values in equal parts.
+    pub fn at(&self, place: f64) -> Value {
+        match &self.kind {
+            Kind::Listed(values) => {
+                let k = (place * values.len() as f64) as usize;
+                values[k.min(values.len() - 1)].clone()
+            }
+            Kind::Range { scale, .. } => self.value(scale.at(place)),
+        }
+    }
+
+    /// The value of a table: a number, a level by its label, or any value of its key.
+    pub fn named(&self, text: &str) -> Option<Value> {
+        if let Kind::Listed(values) = &self.kind
+            && let Some(known) = values.iter().find(|v| v.label == text)
+        {
+            return Some(known.clone());
+        }
+        (!self.keys.is_empty()).then(|| value_of(&self.keys, text))
+    }
+
+    fn value(&self, number: f64) -> Value {
+        let rounded: f64 = format!("{number:.*e}", DIGITS - 1)
+            .parse()
+            .unwrap_or(number);
+        let text = match &self.kind {
+            Kind::Range {
+                scale: Scale::Integer { .. },
+                ..
+            } => format!("{rounded:.0}"),
+            _ if rounded != 0.0 && !(1e-3..1e5).contains(&rounded.abs()) => format!("{rounded:e}"),
+            // A field of floats takes a number with a point.
+            _ if rounded.fract() == 0.0 => format!("{rounded:.1}"),
+            _ => format!("{rounded}"),
+        };
+        value_of(&self.keys, &text)
+    }
+}
+
+/// A value of keys from its text.
+fn value_of(keys: &[String], text: &str) -> Value {
+    Value {
+        label: text.trim_matches('"').to_owned(),
+        number: text.parse().ok().filter(|x: &f64| x.is_finite()),
+        sets: keys.iter().map(|key| format!("{key}={text}")).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(scale: Scale, levels: u16) -> Factor {
+        Factor {
+            name: "x".into(),
+            keys: vec!["a".into(), "b".into()],
+            kind: Kind::Range {
+                scale,
+                levels: Some(levels),
+            },
+        }
+    }
+
+    const LINEAR: Scale = Scale::Linear { from: 0.0, to: 1.0 };
+    const LOG: Scale = Scale::Logarithmic {
+        from: 1e-8,
+        to: 1e-6,
+    };
+    const WHOLE: Scale = Scale::Integer { from: 1, to: 3 };
+
+    #[test]
+    fn levels_go_from_end_to_end_in_the_scale_of_the_range() {
+        let labels = |f: &Factor| -> Vec<String> {
+            f.levels().unwrap().into_iter().map(|v| v.label).collect()
+        };
+        assert_eq!(labels(&range(LINEAR, 3)), ["0.0", "0.5", "1.0"]);
+        assert_eq!(labels(&range(LOG, 3)), ["1e-8", "1e-7", "1e-6"]);
+        assert_eq!(labels(&range(WHOLE, 5)), ["1", "2", "3"]);
+        let one = &range(LINEAR, 3).levels().unwrap()[1];
+        assert_eq!(one.sets, ["a=0.5", "b=0.5"]);
+        assert_eq!(one.number, Some(0.5));
+    }
+
+    /// Whole numbers and listed values have equal parts of the way from 0 to 1.
+    #[test]
+    fn places_are_shared_equally() {
+        let three = range(WHOLE, 3);
+        let at = |f: &Factor, x| f.at(x).label;
+        assert_eq!(
+            [0.0, 0.33, 0.34, 0.67, 1.0].map(|x| at(&three, x)),
+            ["1", "1", "2", "3", "3"]
+        );
+        let listed = Factor::of_column("law", vec!["\"mac\"".into(), "\"none\"".into()]);
+        assert_eq!(
+            [0.0, 0.49, 0.5, 1.0].map(|x| at(&listed, x)),
+            ["mac", "mac", "none", "none"]
+        );
+        assert_eq!(listed.at(0.0).sets, ["law=\"mac\""]);
+    }
+}

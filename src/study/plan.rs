@@ -1,0 +1,288 @@
+//! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
+
+use super::StudyError;
+use super::design::{Setting, settings};
+use super::factor::{Factor, Kind, Value};
+use super::spec::ReadSpec;
+use crate::laws::SearchPath;
+use crate::runs::RunsError;
+use crate::runs::launcher::Launcher;
+use crate::runs::offer::{Offer, measure_names};
+use crate::runs::perturbation::Perturbation;
+use crate::runs::quantity::Quantity;
+use crate::runs::randomness::seed_matters;
+use crate::runs::stored::Limits;
+use crate::scene::inputs::{self, Input};
+use crate::scene::{InputError, Loaded, Scene, load};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Levels that are built before a run; of more, only the text is checked.
+const BUILT: usize = 60;
+
+/// A run of a study.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Number of its setting, from 1.
+    pub setting: usize,
+    /// Its seed.
+    pub seed: u64,
+    /// The changes of the case.
+    pub sets: Vec<String>,
+}
+
+/// A study whose runs are known.
+#[derive(Debug)]
+pub struct Plan {
+    /// Title.
+    pub title: String,
+    /// The file of the study.
+    pub file: PathBuf,
+    /// Its folder.
+    pub out: PathBuf,
+    /// What varies.
+    pub factors: Vec<Factor>,
+    /// One value of each factor, for each setting.
+    pub settings: Vec<Setting>,
+    /// Seeds of each setting.
+    pub seeds: Vec<u64>,
+    /// Whether the seed changes the scene.
+    pub random: bool,
+    /// What is compared.
+    pub outputs: Vec<Quantity>,
+    /// Names of the measures of the case.
+    pub measures: Vec<String>,
+    /// Who makes the runs.
+    pub launcher: Launcher,
+    /// The case with what all runs change.
+    pub base: Loaded,
+}
+
+/// What was found out about a study before, so that each of its points need not find it again.
+#[derive(Debug, Serialize, Deserialize, PartialEq)]
+struct Known {
+    /// Key of the case, of the program, and text of the study.
+    fingerprint: String,
+    random: bool,
+    outputs: Vec<String>,
+}
+
+/// Where a study is made.
+#[derive(Debug)]
+pub struct Place<'a> {
+    /// Folder of its results.
+    pub out: &'a Path,
+    /// Folder of its runs, which other studies may share; `runs` in that of the results by default.
+    pub cache: Option<&'a Path>,
+    /// Arguments of plugins for each run.
+    pub plugins: Vec<String>,
+    /// Where laws are looked for.
+    pub search: &'a SearchPath,
+}
+
+impl Plan {
+    /// Plans a study. What takes long is kept in `study.json` of its folder, if there is one, for the next call.
+    ///
+    /// # Errors
+    /// The study, its case, an output or a level that the case refuses.
+    pub fn new(read: &ReadSpec, place: Place<'_>) -> Result<Self, StudyError> {
+        let spec = &read.spec;
+        let case = read.beside(&spec.case);
+        let base = load(&case, &spec.set)?;
+        let mut factors = Vec::new();
+        for (k, factor) in spec.factors.iter().enumerate() {
+            factors.push(Factor::of(factor, read, &format!("factors.{k}"))?);
+        }
+        let inputs = inputs::of(base.source.text()).unwrap_or_default();
+        let own = |factor: &Factor| own_value(factor, &inputs);
+        let settings = settings(read, &mut factors, own)?;
+        if let Some(k) = (1..factors.len()).find(|&k| {
+            factors[..k]
+                .iter()
+                .any(|other| other.name == factors[k].name)
+        }) {
+            let text = format!("two factors are named `{}`", factors[k].name);
+            return Err(read
+                .source
+                .error_at(&format!("factors.{k}.name"), text)
+                .into());
+        }
+        let limits = Limits {
+            unconverged: spec.unconverged,
+            residual: spec.residual,
+        };
+        let own = place.out.join("runs");
+        let folder = place.cache.unwrap_or(&own);
+        let mut launcher = Launcher::new(&case, &spec.set, place.plugins, folder, limits)?;
+        launcher.keep = spec.keep;
+        launcher.threads = spec.threads;
+        let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
+        let file = place.out.join("study.json");
+        let known = std::fs::read_to_string(&file).unwrap_or_default();
+        let known: Option<Known> = serde_json::from_str(&known).ok();
+        let known = match known.filter(|k| k.fingerprint == fingerprint) {
+            Some(known) => known,
+            None => {
+                let scene = base.build(place.search)?;
+                check_levels(read, &base, &factors, place.search)?;
+                let outputs = outputs(read, &base, &scene)?;
+                let known = Known {
+                    fingerprint,
+                    random: seed_matters(&base, &scene, place.search)?,
+                    outputs: outputs.iter().map(|o| o.name.clone()).collect(),
+                };
+                if place.out.is_dir() {
+                    let text = serde_json::to_string_pretty(&known).unwrap_or_default();
+                    std::fs::write(&file, text).map_err(|e| RunsError::write(&file, &e))?;
+                }
+                known
+            }
+        };
+        let first = base.case.seed;
+        launcher.perturbation = (!known.random).then_some(Perturbation {
+            first,
+            step: base.case.time.step,
+        });
+        let outputs = known.outputs.iter().map(|name| Quantity::parse(name));
+        Ok(Self {
+            title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),
+            file: read.path.clone(),
+            out: place.out.to_owned(),
+            factors,
+            settings,
+            seeds: (0..u64::from(spec.seeds))
+                .map(|k| first.wrapping_add(k))
+                .collect(),
+            random: known.random,
+            outputs: outputs
+                .collect::<Result<_, _>>()
+                .map_err(StudyError::Usage)?,
+            measures: measure_names(&base.case)
+                .iter()
+                .map(|m| (*m).to_owned())
+                .collect(),
+            launcher,
+            base,
+        })
+    }
+
+    /// Number of runs.
+    pub fn count(&self) -> usize {
+        self.settings.len() * self.seeds.len()
+    }
+
+    /// The run of a number from 1 to [`count`](Self::count).
+    pub fn point(&self, number: usize) -> Option<Point> {
+        let k = number.checked_sub(1).filter(|k| *k < self.count())?;
+        let (setting, seed) = (k / self.seeds.len(), k % self.seeds.len());
+        let values = self.settings[setting].iter();
+        Some(Point {
+            number,
+            setting: setting + 1,
+            seed: self.seeds[seed],
+            sets: values.flat_map(|v| v.sets.iter().cloned()).collect(),
+        })
+    }
+
+    /// All runs.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        (1..=self.count()).filter_map(|k| self.point(k))
+    }
+
+    /// Folder of a run.
+    pub fn place(&self, point: &Point) -> PathBuf {
+        self.launcher.place(&point.sets, point.seed)
+    }
+
+    /// What a run is, in words: `friction 0.2, speed 1.0, seed 4`.
+    pub fn words(&self, point: &Point) -> String {
+        let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
+        let mut words: Vec<String> = values
+            .map(|(f, v)| format!("{} {}", f.name, v.label))
+            .collect();
+        if self.seeds.len() > 1 {
+            words.push(format!("seed {}", point.seed));
+        }
+        words.join(", ")
+    }
+}
+
+/// The value of a factor that the case has: no changes.
+fn own_value(factor: &Factor, inputs: &[Input]) -> Value {
+    let of_key = |key: &String| inputs.iter().find(|i| i.path == *key);
+    let own = factor.keys.first().and_then(of_key);
+    let text = own.map_or("", |i| i.value.trim_matches('"'));
+    Value {
+        label: if text.is_empty() {
+            "as in the case".to_owned()
+        } else {
+            text.to_owned()
+        },
+        number: text.parse().ok(),
+        sets: Vec::new(),
+    }
+}
+
+/// The outputs that are asked for, or those that the case has.
+fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity>, StudyError> {
+    let offer = match scene {
+        Scene::Dim2(built) => Offer::of(&base.case, built),
+        Scene::Dim3(built) => Offer::of(&base.case, built),
+    };
+    let asked = &read.spec.outputs;
+    if asked.is_empty() {
+        let usual: Result<Vec<Quantity>, String> =
+            offer.usual().into_iter().map(Quantity::parse).collect();
+        let usual = usual.map_err(StudyError::Usage)?;
+        if usual.is_empty() {
+            let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
+            return Err(read.source.error_at("outputs", text).into());
+        }
+        return Ok(usual);
+    }
+    let mut all: Vec<Quantity> = Vec::new();
+    for (k, name) in asked.iter().enumerate() {
+        let refused = |why: String| read.source.error_at(&format!("outputs.{k}"), why);
+        let quantity = Quantity::parse(name).map_err(refused)?;
+        offer.check(&quantity).map_err(refused)?;
+        if all.contains(&quantity) {
+            return Err(refused("it is given twice".to_owned()).into());
+        }
+        all.push(quantity);
+    }
+    Ok(all)
+}
+
+/// Reads, and builds if they are few, the case with each level alone, so that a wrong one is refused before any run.
+fn check_levels(
+    read: &ReadSpec,
+    base: &Loaded,
+    factors: &[Factor],
+    search: &SearchPath,
+) -> Result<(), InputError> {
+    let levels = |f: &Factor| match &f.kind {
+        Kind::Listed(values) => values.clone(),
+        Kind::Range { .. } => vec![f.at(0.0), f.at(1.0)],
+    };
+    let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;
+    for factor in factors {
+        for value in levels(factor) {
+            let sets = [base.source.sets(), &value.sets].concat();
+            let told = load(&base.path, &sets).and_then(|loaded| match built {
+                true => loaded.build(search).map(|_| ()),
+                false => Ok(()),
+            });
+            told.map_err(|e| {
+                e.note(format!(
+                    "with `{}` = {} of {}",
+                    factor.name,
+                    value.label,
+                    read.path.display()
+                ))
+            })?;
+        }
+    }
+    Ok(())
+}
