@@ -15,7 +15,6 @@ pub mod files;
 pub mod forecast;
 pub mod form;
 pub mod frontier;
-pub mod interval;
 pub mod lock;
 pub mod offer;
 pub mod output;
@@ -25,6 +24,8 @@ pub mod setting;
 pub mod study;
 pub mod table;
 pub mod verdict;
+
+pub use fretwork_study::interval;
 
 use crate::report::ReportError;
 use crate::scene::InputError;
