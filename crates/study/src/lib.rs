@@ -12,4 +12,6 @@ pub mod bootstrap;
 pub mod design;
 mod distribution;
 pub mod interval;
+mod least_squares;
 mod random;
+pub mod sensitivity;
