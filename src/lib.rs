@@ -42,7 +42,7 @@
 //! | pictures | [`report`]: charts and pictures |
 //!
 //! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
-//! `fretwork-plot`. Here they meet: [`cli`] is the command line, [`trade`] compares accuracy and cost, [`shipped`] has the laws
+//! `fretwork-plot`, `fretwork-study`. Here they meet: [`cli`] is the command line, [`trade`] compares accuracy and cost, [`shipped`] has the laws
 //! that come with the program.
 //!
 //! # A scene without files

@@ -13,7 +13,6 @@ pub mod files;
 pub mod forecast;
 pub mod form;
 pub mod frontier;
-pub mod interval;
 pub mod output;
 pub mod parameters;
 pub mod rung;
@@ -21,6 +20,8 @@ pub mod setting;
 pub mod study;
 pub mod table;
 pub mod verdict;
+
+pub use fretwork_study::interval;
 
 use crate::report::ReportError;
 use crate::runs::RunsError;

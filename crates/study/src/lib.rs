@@ -8,4 +8,10 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+pub mod bootstrap;
 pub mod design;
+mod distribution;
+pub mod interval;
+mod least_squares;
+mod random;
+pub mod sensitivity;

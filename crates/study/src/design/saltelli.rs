@@ -18,18 +18,23 @@ pub fn rows_per_base(factors: usize) -> usize {
 ///
 /// More than [`MOST_POINTS`](super::sobol::MOST_POINTS) base points, or more than 128 factors.
 pub fn saltelli(bases: usize, factors: usize, seed: u64) -> Result<Vec<Vec<f64>>, DesignError> {
-    let mut rows = Vec::with_capacity(bases * rows_per_base(factors));
-    for both in sobol(bases, 2 * factors, seed)? {
-        let (a, b) = both.split_at(factors);
+    Ok(saltelli_from(&sobol(bases, 2 * factors, seed)?))
+}
+
+/// The same rows from base points of another kind: each has the coordinates of A, then as many of B.
+pub fn saltelli_from(bases: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut rows = Vec::new();
+    for both in bases {
+        let (a, b) = both.split_at(both.len() / 2);
         rows.push(a.to_vec());
-        for (i, other) in b.iter().enumerate() {
+        for (i, other) in b.iter().enumerate().take(a.len()) {
             let mut mixed = a.to_vec();
             mixed[i] = *other;
             rows.push(mixed);
         }
         rows.push(b.to_vec());
     }
-    Ok(rows)
+    rows
 }
 
 #[cfg(test)]

@@ -1,0 +1,63 @@
+//! Quantiles and tail probabilities of the usual distributions; `None` where there are no degrees of freedom.
+
+use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+
+/// Student's t below which the fraction `probability` lies.
+pub(crate) fn student_quantile(probability: f64, degrees: f64) -> Option<f64> {
+    if degrees.is_nan() || degrees < 1.0 {
+        return None;
+    }
+    // statrs gives infinity for infinitely many degrees of freedom.
+    if degrees.is_infinite() {
+        return normal_quantile(probability);
+    }
+    let t = StudentsT::new(0.0, 1.0, degrees).ok()?;
+    Some(t.inverse_cdf(probability))
+}
+
+/// Probability of a |t| at least as large by chance.
+pub(crate) fn student_two_sided(t: f64, degrees: f64) -> Option<f64> {
+    if t.is_nan() || degrees.is_nan() || degrees < 1.0 {
+        return None;
+    }
+    if t.is_infinite() {
+        return Some(0.0);
+    }
+    let distribution = StudentsT::new(0.0, 1.0, degrees).ok()?;
+    Some((2.0 * distribution.cdf(-t.abs())).min(1.0))
+}
+
+/// The value below which the fraction `probability` of a standard normal variate lies.
+pub(crate) fn normal_quantile(probability: f64) -> Option<f64> {
+    let normal = Normal::new(0.0, 1.0).ok()?;
+    Some(normal.inverse_cdf(probability))
+}
+
+/// Probability of a ratio of variances F at least as large by chance.
+pub(crate) fn fisher_upper(f: f64, degrees: f64, of_error: f64) -> Option<f64> {
+    if f.is_nan() || degrees < 1.0 || of_error < 1.0 {
+        return None;
+    }
+    if f.is_infinite() {
+        return Some(0.0);
+    }
+    let distribution = FisherSnedecor::new(degrees, of_error).ok()?;
+    Some(distribution.sf(f.max(0.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Values of any table: t(0.975, 10) = 2.228, t(0.975, infinity) = 1.960, F(0.95; 3, 10) = 3.708.
+    #[test]
+    fn tables() {
+        assert!((student_quantile(0.975, 10.0).unwrap() - 2.228).abs() < 1e-3);
+        assert!((student_quantile(0.975, f64::INFINITY).unwrap() - 1.960).abs() < 1e-3);
+        assert!((student_two_sided(2.228, 10.0).unwrap() - 0.05).abs() < 1e-4);
+        assert!((student_two_sided(-2.228, 10.0).unwrap() - 0.05).abs() < 1e-4);
+        assert!((fisher_upper(3.708, 3.0, 10.0).unwrap() - 0.05).abs() < 1e-4);
+        assert_eq!(student_quantile(0.975, 0.0), None);
+        assert_eq!(fisher_upper(f64::INFINITY, 1.0, 3.0), Some(0.0));
+    }
+}
