@@ -47,10 +47,29 @@
       pen ? ctx.lineTo(x, y) : ctx.moveTo(x, y);
       pen = true;
     }
-    ctx.strokeStyle = colour(s - 1);
+    ctx.strokeStyle = ctx.fillStyle = colour(s - 1);
     ctx.lineWidth = 1.6 * devicePixelRatio;
     ctx.lineJoin = "round";
-    ctx.stroke();
+    const { line, markers, low, high, factor } = u.series[s].style;
+    if (line !== false) ctx.stroke();
+    const end = (values, k) => (Number.isFinite(values[k]) ? u.valToPos(values[k] * factor, "y", true) : null);
+    for (let k = 0; k < xs.length; k++) {
+      if (xs[k] === null || ys[k] === null) continue;
+      const x = u.valToPos(xs[k], "x", true);
+      if (low?.length) {
+        const [a, b] = [end(low, k), end(high, k)], w = 3 * devicePixelRatio;
+        if (a !== null && b !== null) {
+          ctx.beginPath();
+          [[x - w, a, x + w, a], [x, a, x, b], [x - w, b, x + w, b]].forEach(([p, q, r, t]) => { ctx.moveTo(p, q); ctx.lineTo(r, t); });
+          ctx.stroke();
+        }
+      }
+      if (markers) {
+        ctx.beginPath();
+        ctx.arc(x, u.valToPos(ys[k], "y", true), 3.2 * devicePixelRatio, 0, 2 * Math.PI);
+        ctx.fill();
+      }
+    }
     ctx.restore();
     return null;
   };
@@ -105,7 +124,7 @@
         label: y.label, stroke: () => colour(k), width: 1.6, scale: of(y) ? "y2" : "y", spanGaps: spec.gaps === true,
         points: { show: spec.points === true, size: 7, stroke: () => colour(k), fill: () => colour(k) },
         ...(spec.loose
-          ? { facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path,
+          ? { style: { ...y, factor: shown[of(y)].factor }, facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path,
               value: (u, _, s, i) => (i === null || i === undefined ? "–" : `${FW.number(u.data[s][0][i])}, ${FW.number(u.data[s][1][i])}`) }
           : { value: (_, v) => FW.number(v) }),
       }));

@@ -130,7 +130,14 @@
     draw();
   };
 
-  const KINDS = { loops, time, cycles: byCycle, any };
+  const finite = (values) => values.map((v) => (v === null ? NaN : v));
+  const curves = (host, figure) => {
+    const ys = figure.curves.map((c) => ({ label: c.label, unit: figure.y_unit, x: finite(c.x), values: finite(c.values), low: finite(c.low), high: finite(c.high), line: c.line, markers: c.markers }));
+    const x = { label: figure.x, unit: figure.x_unit, values: ys.flatMap((y) => y.x) };
+    FW.chart(host, { title: figure.title, loose: true, x, ys, quantity: figure.y[0] });
+  };
+
+  const KINDS = { loops, time, cycles: byCycle, any, curves };
 
   FW.figures = async () => {
     const heads = FW.data.runs || [{ ...FW.data.series, name: "" }];

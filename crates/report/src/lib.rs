@@ -1,5 +1,5 @@
 //! Reports of runs: [`report`] makes one self-contained HTML page of the folder of a run, [`compare`] one of several runs side by
-//! side.
+//! side; a [`Sheet`] is a page of sections with tables and figures, for studies and fits.
 //!
 //! ```text
 //! folder of a run ─► folder (results.h5, summary.json) ─► series, tables, scene, materials ─► page ─► report.html
@@ -19,10 +19,12 @@ mod page;
 mod results;
 mod scene;
 mod series;
+mod sheet;
 mod tables;
 
 pub use compare::compare;
 pub use laws::{LawInfo, LawParameter};
+pub use sheet::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
 
 use folder::RunFolder;
 use std::path::{Path, PathBuf};
