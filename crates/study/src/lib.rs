@@ -14,4 +14,6 @@ mod distribution;
 pub mod interval;
 mod least_squares;
 mod random;
+pub mod response;
 pub mod sensitivity;
+pub mod tournament;
