@@ -7,9 +7,12 @@ use super::{Failure, PluginArgs, again};
 use crate::interrupt;
 use crate::runs::duration::{parse as duration, seconds};
 use crate::runs::stored::Finished;
+use crate::study::analysis::Analysis;
 use crate::study::execute::{Event, execute, missing};
 use crate::study::export::{Engine, Export};
+use crate::study::figures::draw;
 use crate::study::forecast::Forecast;
+use crate::study::page::sheet;
 use crate::study::plan::{Place, Plan, Point};
 use crate::study::spec::ReadSpec;
 use crate::study::table::{Table, status};
@@ -292,6 +295,19 @@ fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     let (csv, parquet) = (plan.out.join("table.csv"), plan.out.join("table.parquet"));
     crate::study::csv::write(&table, &csv)?;
     crate::study::parquet::write(&table, &parquet)?;
+    let analysis = Analysis::of(plan, &plan.design, &table);
+    let settings = plan.out.join("settings.csv");
+    crate::study::csv::write(&Table::of_settings(plan, &analysis), &settings)?;
+    let page = plan.out.join("study.html");
+    let picture = plan.out.join("study.png");
+    let failed = |e: &dyn std::fmt::Display| Failure::Failed(e.to_string());
+    sheet(plan, &table, &analysis)
+        .write(&page)
+        .map_err(|e| failed(&e))?;
+    if !draw(plan, &analysis, &picture).map_err(|e| failed(&e))? {
+        // A picture of an earlier state would be mistaken for one of this.
+        let _ = std::fs::remove_file(&picture);
+    }
     if json {
         return answer_json(&answers::json(plan, &table));
     }

@@ -51,11 +51,13 @@ impl Factor {
     pub fn of(spec: &FactorSpec, read: &ReadSpec, path: &str) -> Result<Self, InputError> {
         let fail =
             |key: &str, text: String| Err(read.source.error_at(&format!("{path}{key}"), text));
-        let named = |name: &Option<String>, Keys(keys): &Keys| match keys.first() {
-            None => Err(read
-                .source
-                .error_at(&format!("{path}.key"), "a key of the case is expected")),
-            Some(first) => Ok((name.clone().unwrap_or_else(|| first.clone()), keys.clone())),
+        let named = |name: &Option<String>, Keys(keys): &Keys| match name.as_ref().or(keys.first())
+        {
+            None => Err(read.source.error_at(
+                path,
+                "a factor has a `key` of the case, or a `name` for use in `set`",
+            )),
+            Some(first) => Ok((first.clone(), keys.clone())),
         };
         match spec {
             FactorSpec::Values { name, key, values } => {

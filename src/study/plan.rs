@@ -1,9 +1,10 @@
 //! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
 
 use super::StudyError;
+use super::derived::Derived;
 use super::design::{Setting, settings};
 use super::factor::{Factor, Kind, Value};
-use super::spec::ReadSpec;
+use super::spec::{DesignSpec, ReadSpec};
 use crate::laws::SearchPath;
 use crate::runs::RunsError;
 use crate::runs::launcher::Launcher;
@@ -46,12 +47,19 @@ pub struct Plan {
     pub factors: Vec<Factor>,
     /// One value of each factor, for each setting.
     pub settings: Vec<Setting>,
+    /// What follows from the factors, for each setting.
+    derived: Vec<Vec<String>>,
+    units: Vec<String>,
     /// Seeds of each setting.
     pub seeds: Vec<u64>,
     /// Whether the seed changes the scene.
     pub random: bool,
     /// What is compared.
     pub outputs: Vec<Quantity>,
+    /// Texts of the summary that are mapped.
+    pub regimes: Vec<String>,
+    /// Design of the study.
+    pub design: DesignSpec,
     /// Names of the measures of the case.
     pub measures: Vec<String>,
     /// Who makes the runs.
@@ -90,7 +98,9 @@ impl Plan {
     pub fn new(read: &ReadSpec, place: Place<'_>) -> Result<Self, StudyError> {
         let spec = &read.spec;
         let case = read.beside(&spec.case);
-        let base = load(&case, &spec.set)?;
+        let (derived, set): (Vec<String>, Vec<String>) =
+            spec.set.iter().cloned().partition(|s| Derived::is(s));
+        let base = load(&case, &set)?;
         let mut factors = Vec::new();
         for (k, factor) in spec.factors.iter().enumerate() {
             factors.push(Factor::of(factor, read, &format!("factors.{k}"))?);
@@ -109,13 +119,19 @@ impl Plan {
                 .error_at(&format!("factors.{k}.name"), text)
                 .into());
         }
+        let unit = |factor: &Factor| {
+            let known = inputs.iter().find(|i| factor.keys.contains(&i.path));
+            known.map_or("", |i| i.unit).to_owned()
+        };
+        let units = factors.iter().map(unit).collect();
+        let derived = derive(read, &derived, &factors, &settings)?;
         let limits = Limits {
             unconverged: spec.unconverged,
             residual: spec.residual,
         };
         let own = place.out.join("runs");
         let folder = place.cache.unwrap_or(&own);
-        let mut launcher = Launcher::new(&case, &spec.set, place.plugins, folder, limits)?;
+        let mut launcher = Launcher::new(&case, &set, place.plugins, folder, limits)?;
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
@@ -126,7 +142,12 @@ impl Plan {
             Some(known) => known,
             None => {
                 let scene = base.build(place.search)?;
-                check_levels(read, &base, &factors, place.search)?;
+                let first = [
+                    settings[0].iter().flat_map(|v| v.sets.clone()).collect(),
+                    derived[0].clone(),
+                ]
+                .concat();
+                check_levels(read, &base, &factors, &first, place.search)?;
                 let outputs = outputs(read, &base, &scene)?;
                 let known = Known {
                     fingerprint,
@@ -152,6 +173,10 @@ impl Plan {
             out: place.out.to_owned(),
             factors,
             settings,
+            derived,
+            units,
+            regimes: spec.regimes.clone(),
+            design: spec.design.clone(),
             seeds: (0..u64::from(spec.seeds))
                 .map(|k| first.wrapping_add(k))
                 .collect(),
@@ -182,7 +207,11 @@ impl Plan {
             number,
             setting: setting + 1,
             seed: self.seeds[seed],
-            sets: values.flat_map(|v| v.sets.iter().cloned()).collect(),
+            sets: values
+                .flat_map(|v| &v.sets)
+                .chain(&self.derived[setting])
+                .cloned()
+                .collect(),
         })
     }
 
@@ -196,6 +225,11 @@ impl Plan {
         self.launcher.place(&point.sets, point.seed)
     }
 
+    /// SI unit of a factor, if the case has one for its key; empty otherwise.
+    pub fn unit_of(&self, factor: usize) -> String {
+        self.units.get(factor).cloned().unwrap_or_default()
+    }
+
     /// What a run is, in words: `friction 0.2, speed 1.0, seed 4`.
     pub fn words(&self, point: &Point) -> String {
         let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
@@ -207,6 +241,24 @@ impl Plan {
         }
         words.join(", ")
     }
+}
+
+/// What follows from the factors, for each setting.
+fn derive(
+    read: &ReadSpec,
+    texts: &[String],
+    factors: &[Factor],
+    settings: &[Setting],
+) -> Result<Vec<Vec<String>>, InputError> {
+    let refused = |why: String| read.source.error_at("set", why);
+    let parsed = texts.iter().map(|text| Derived::parse(text, factors));
+    let parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let of = |setting: &Setting| parsed.iter().map(|d| d.set(setting)).collect();
+    settings
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(refused)
 }
 
 /// The value of a factor that the case has: no changes.
@@ -255,20 +307,23 @@ fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity
     Ok(all)
 }
 
-/// Reads, and builds if they are few, the case with each level alone, so that a wrong one is refused before any run.
+/// Builds the first setting, and reads, and builds if they are few, the case with each level alone, so that a wrong one is refused
+/// before any run.
 fn check_levels(
     read: &ReadSpec,
     base: &Loaded,
     factors: &[Factor],
+    first: &[String],
     search: &SearchPath,
 ) -> Result<(), InputError> {
     let levels = |f: &Factor| match &f.kind {
         Kind::Listed(values) => values.clone(),
         Kind::Range { .. } => vec![f.at(0.0), f.at(1.0)],
     };
+    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;
     for factor in factors {
-        for value in levels(factor) {
+        for value in levels(factor).into_iter().filter(|v| !v.sets.is_empty()) {
             let sets = [base.source.sets(), &value.sets].concat();
             let told = load(&base.path, &sets).and_then(|loaded| match built {
                 true => loaded.build(search).map(|_| ()),

@@ -27,7 +27,8 @@ pub struct StudySpec {
     pub title: Option<String>,
     /// The case, relative to the file of the study.
     pub case: PathBuf,
-    /// `key.path=value` of all runs, as `--set` takes them.
+    /// `key.path=value` of all runs, as `--set` takes them; with `${...}` in the value what follows from the factors, by their
+    /// names: `bodies.top.mass=${2 * density}`.
     #[serde(default)]
     pub set: Vec<String>,
     /// What varies.
@@ -42,6 +43,10 @@ pub struct StudySpec {
     /// the case has them.
     #[serde(default)]
     pub outputs: Vec<String>,
+    /// Texts of `summary.json` by which runs are told apart on a map, such as `fretting.regime` or `findings.layer_regime`; of a
+    /// sentence what stands before its first colon, comma or semicolon.
+    #[serde(default)]
+    pub regimes: Vec<String>,
     /// Which files of each run are kept.
     #[serde(default)]
     pub keep: Keep,
@@ -65,7 +70,8 @@ pub enum FactorSpec {
         /// Name in tables and figures; the key by default.
         #[serde(default)]
         name: Option<String>,
-        /// The key, or several that take the same value.
+        /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
+        #[serde(default)]
         key: Keys,
         /// The values, as a case has them.
         values: Vec<Box<RawValue>>,
@@ -75,7 +81,8 @@ pub enum FactorSpec {
         /// Name in tables and figures; the key by default.
         #[serde(default)]
         name: Option<String>,
-        /// The key, or several that take the same value.
+        /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
+        #[serde(default)]
         key: Keys,
         /// Lower end.
         low: f64,
@@ -109,7 +116,7 @@ pub struct OptionSpec {
 }
 
 /// One key or several.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Keys(pub Vec<String>);
 
 impl<'de> Deserialize<'de> for Keys {

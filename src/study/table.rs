@@ -1,10 +1,11 @@
 //! One table of all runs of a study: what was asked, what came out, and how each run ended. Failed runs are rows too.
 
+use super::analysis::Analysis;
 use super::plan::Plan;
 use crate::runs::quantity::Quantity;
 use crate::runs::stored::{Finished, Status, summary};
 use crate::runs::unit::unit_of;
-use crate::scene::inputs;
+use fretwork_study::interval::Mean;
 use serde_json::Value;
 
 /// A value of a table.
@@ -110,7 +111,6 @@ impl Table {
             "seed",
             points.iter().map(|p| Cell::Number(p.seed as f64)).collect(),
         ));
-        let units = inputs::of(plan.base.source.text()).unwrap_or_default();
         for (k, factor) in plan.factors.iter().enumerate() {
             let values = points.iter().map(|p| &plan.settings[p.setting - 1][k]);
             let numbers = values.clone().all(|v| v.number.is_some());
@@ -118,10 +118,9 @@ impl Table {
                 Some(x) => Cell::Number(x),
                 None => Cell::Text(v.label.clone()),
             };
-            let known = |i: &&inputs::Input| factor.keys.contains(&i.path);
             columns.push(Column {
                 name: factor.name.clone(),
-                unit: units.iter().find(known).map_or("", |i| i.unit).to_owned(),
+                unit: plan.unit_of(k),
                 kind: if numbers { Type::Real } else { Type::Text },
                 cells: values.map(cell).collect(),
             });
@@ -169,6 +168,9 @@ impl Table {
             kind: Type::Real,
             cells: rows.iter().map(|r| real(r.run.as_ref().map(f))).collect(),
         };
+        for regime in &plan.regimes {
+            columns.push(text(regime, &|r| told(&r.summary, regime)));
+        }
         columns.push(text("status", &|r| status(r.run.as_ref()).0.to_owned()));
         columns.push(text("reason", &|r| status(r.run.as_ref()).1));
         columns.push(text("not_trustworthy", &|r| {
@@ -190,6 +192,69 @@ impl Table {
             let name = r.place.file_name().unwrap_or_default();
             name.to_string_lossy().into_owned()
         }));
+        Self { columns }
+    }
+
+    /// The table of settings: values of the factors, and means over the seeds with half-widths of 95 %, scatter and counts.
+    pub fn of_settings(plan: &Plan, analysis: &Analysis) -> Self {
+        let count = plan.settings.len();
+        let column = |name: String, unit: &str, kind, cells| Column {
+            name,
+            unit: unit.to_owned(),
+            kind,
+            cells,
+        };
+        let numbers = (1..=count).map(|k| Cell::Number(k as f64)).collect();
+        let mut columns = vec![column("setting".to_owned(), "", Type::Whole, numbers)];
+        for (k, factor) in plan.factors.iter().enumerate() {
+            let values = plan.settings.iter().map(|s| &s[k]);
+            let all = values.clone().all(|v| v.number.is_some());
+            let cells = values.map(|v| match v.number.filter(|_| all) {
+                Some(x) => Cell::Number(x),
+                None => Cell::Text(v.label.clone()),
+            });
+            let kind = if all { Type::Real } else { Type::Text };
+            columns.push(column(
+                factor.name.clone(),
+                &plan.unit_of(k),
+                kind,
+                cells.collect(),
+            ));
+        }
+        for output in &analysis.outputs {
+            let of = |f: &dyn Fn(&Mean) -> Option<f64>| -> Vec<Cell> {
+                output
+                    .means
+                    .iter()
+                    .map(|m| real(m.as_ref().and_then(f)))
+                    .collect()
+            };
+            let (name, unit) = (&output.name, output.unit.as_str());
+            columns.push(column(
+                name.clone(),
+                unit,
+                Type::Real,
+                of(&|m| Some(m.mean)),
+            ));
+            columns.push(column(
+                format!("{name}_half_width"),
+                unit,
+                Type::Real,
+                of(&|m| m.half_width),
+            ));
+            columns.push(column(
+                format!("{name}_scatter"),
+                unit,
+                Type::Real,
+                of(&|m| m.scatter),
+            ));
+            columns.push(column(
+                format!("{name}_runs"),
+                "",
+                Type::Whole,
+                of(&|m| Some(m.count as f64)),
+            ));
+        }
         Self { columns }
     }
 
@@ -235,6 +300,14 @@ impl Table {
         };
         values.iter().zip(status).map(value).collect()
     }
+}
+
+/// A text of a summary, up to the first sign that ends a name.
+fn told(summary: &Value, name: &str) -> String {
+    let found = name.split('.').try_fold(summary, |v, part| v.get(part));
+    let text = found.and_then(Value::as_str).unwrap_or_default();
+    let end = text.find([':', ',', ';', '(']).unwrap_or(text.len());
+    text[..end].trim().to_owned()
 }
 
 /// Status of a run that is done and trusted.

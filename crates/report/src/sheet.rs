@@ -110,7 +110,11 @@ impl Sheet {
             for block in &s.blocks {
                 let figure = matches!(block, Block::Figure(_));
                 if figure != open {
-                    inner += if figure { "<div class=\"figures\">\n" } else { "</div>\n" };
+                    inner += if figure {
+                        "<div class=\"figures\">\n"
+                    } else {
+                        "</div>\n"
+                    };
                     open = figure;
                 }
                 inner += &html(block, &mut figures);
@@ -135,13 +139,19 @@ fn html(block: &Block, figures: &mut Vec<Value>) -> String {
     match block {
         Block::Text(text) => format!("<p class=\"lead\">{}</p>\n", escape(text)),
         Block::List(items) => {
-            let items: String = items.iter().map(|i| format!("<li>{}</li>\n", escape(i))).collect();
+            let items: String = items
+                .iter()
+                .map(|i| format!("<li>{}</li>\n", escape(i)))
+                .collect();
             format!("<ul>\n{items}</ul>\n")
         }
         Block::Table(table) => table_html(table),
         Block::Figure(figure) => {
             figures.push(figure_json(figure));
-            format!("<figure class=\"chart\" id=\"figure-{}\"></figure>\n", figures.len() - 1)
+            format!(
+                "<figure class=\"chart\" id=\"figure-{}\"></figure>\n",
+                figures.len() - 1
+            )
         }
     }
 }
@@ -226,9 +236,18 @@ mod tests {
         };
         let page = sheet.page();
         assert!(page.body.contains("<th scope=\"col\">a&lt;b</th>"));
-        assert!(page.body.contains("<th scope=\"row\">1 &amp; 2</th><td>3</td>"));
-        assert_eq!(page.body.matches("<div").count(), page.body.matches("</div>").count());
+        assert!(
+            page.body
+                .contains("<th scope=\"row\">1 &amp; 2</th><td>3</td>")
+        );
+        assert_eq!(
+            page.body.matches("<div").count(),
+            page.body.matches("</div>").count()
+        );
         assert_eq!(page.data["figures"][1]["title"], "two");
-        assert_eq!(page.data["figures"][0]["curves"][0]["values"][0], Value::Null);
+        assert_eq!(
+            page.data["figures"][0]["curves"][0]["values"][0],
+            Value::Null
+        );
     }
 }

@@ -95,7 +95,7 @@ pub fn collected(plan: &Plan, table: &Table) -> String {
     }
     let _ = write!(
         out,
-        "\n{0}/table.csv, {0}/table.parquet",
+        "\n{0}/study.html, {0}/study.png, {0}/table.csv, {0}/table.parquet, {0}/settings.csv",
         plan.out.display()
     );
     out

@@ -1,0 +1,148 @@
+//! The output over each factor that has numbers.
+
+use super::{Data, numeric};
+use crate::study::spec::DesignSpec;
+use fretwork_study::interval::Mean;
+
+/// Lines of a response; of more, the mean over the other factors is shown.
+const LINES: usize = 7;
+
+/// The output over one factor.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// Number of the factor.
+    pub factor: usize,
+    /// What the lines and intervals are, as a sentence.
+    pub note: String,
+    /// Lines, or single points.
+    pub curves: Vec<Curve>,
+    /// Whether points stand alone, since other factors vary between them too.
+    pub scattered: bool,
+}
+
+/// One line.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// What holds along it; empty if there is one only.
+    pub label: String,
+    /// Value of the factor, and the mean output.
+    pub points: Vec<(f64, Mean)>,
+}
+
+/// The responses to all factors with two numbers or more.
+pub(super) fn responses(data: &Data<'_>) -> Vec<Response> {
+    (0..data.plan.factors.len())
+        .filter(|&f| numeric(data.plan, f) && data.labels(f).len() > 1)
+        .map(|f| response(data, f))
+        .collect()
+}
+
+fn response(data: &Data<'_>, factor: usize) -> Response {
+    let seeds = match data.seeds() {
+        1 => "one run each",
+        _ => "means over seeds with intervals of 95 %",
+    };
+    let varied: Vec<usize> = (0..data.plan.factors.len())
+        .filter(|&f| f != factor && data.labels(f).len() > 1)
+        .collect();
+    let of = |note: String, curves, scattered| Response {
+        factor,
+        note,
+        curves,
+        scattered,
+    };
+    match data.design {
+        DesignSpec::OneAtATime => {
+            let own = |k: usize| {
+                let setting = &data.plan.settings[k];
+                varied
+                    .iter()
+                    .all(|&f| setting[f].label == data.plan.settings[0][f].label)
+            };
+            let curve = curve(data, factor, String::new(), own);
+            of(
+                format!("The other factors as in the case; {seeds}."),
+                vec![curve],
+                false,
+            )
+        }
+        DesignSpec::Grid | DesignSpec::Table { .. } if varied.is_empty() => of(
+            format!("{}.", capital(seeds)),
+            vec![curve(data, factor, String::new(), |_| true)],
+            false,
+        ),
+        DesignSpec::Grid if varied.len() == 1 && data.labels(varied[0]).len() <= LINES => {
+            let other = varied[0];
+            let name = &data.plan.factors[other].name;
+            let lines = data.labels(other).into_iter().map(|label| {
+                curve(data, factor, format!("{name} {label}"), |k| {
+                    data.plan.settings[k][other].label == label
+                })
+            });
+            of(format!("{}.", capital(seeds)), lines.collect(), false)
+        }
+        DesignSpec::Grid => {
+            let note =
+                "Means over all combinations of the other factors; intervals are of their scatter.";
+            of(
+                note.to_owned(),
+                vec![curve(data, factor, String::new(), |_| true)],
+                false,
+            )
+        }
+        _ => {
+            let means = data.means();
+            let points = data.plan.settings.iter().zip(means);
+            let points = points.filter_map(|(s, mean)| Some((s[factor].number?, mean?)));
+            let curve = Curve {
+                label: String::new(),
+                points: points.collect(),
+            };
+            of(
+                format!("Each point has other values of the other factors; {seeds}."),
+                vec![curve],
+                true,
+            )
+        }
+    }
+}
+
+/// The mean output by value of a factor, over the settings that are kept.
+fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> bool) -> Curve {
+    let mut groups: Vec<(f64, Vec<f64>, Vec<Option<Mean>>)> = Vec::new();
+    for (k, setting) in data.plan.settings.iter().enumerate() {
+        let Some(x) = setting[factor].number.filter(|_| keep(k)) else {
+            continue;
+        };
+        let values: Vec<f64> = data.of_setting(k).iter().copied().flatten().collect();
+        let mean = Mean::of(&values);
+        match groups.iter_mut().find(|g| g.0 == x) {
+            // The same setting twice says nothing new.
+            Some(group) if group.2.contains(&mean) => {}
+            Some(group) => {
+                group.1.extend(mean.map(|m| m.mean));
+                group.2.push(mean);
+            }
+            None => groups.push((x, mean.map(|m| m.mean).into_iter().collect(), vec![mean])),
+        }
+    }
+    groups.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let point = |(x, means, own): (f64, Vec<f64>, Vec<Option<Mean>>)| {
+        let mean = match own.as_slice() {
+            [one] => *one,
+            _ => Mean::of(&means),
+        };
+        Some((x, mean?))
+    };
+    Curve {
+        label,
+        points: groups.into_iter().filter_map(point).collect(),
+    }
+}
+
+fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars
+        .next()
+        .map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}
