@@ -15,10 +15,11 @@ use crate::study::forecast::Forecast;
 use crate::study::page::sheet;
 use crate::study::plan::{Place, Plan, Point};
 use crate::study::spec::ReadSpec;
-use crate::study::table::{Table, status};
+use crate::study::table::{Cell, Table, status};
 use crate::study::{OWNER, StudyError};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::BTreeSet;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -292,6 +293,14 @@ fn collect(args: &CollectArgs) -> Result<(), Failure> {
 /// Writes the table of the runs that are there, and says what it holds.
 fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     let table = Table::of(plan);
+    let strangers = strangers(plan, &table);
+    if table.counts().missing == plan.count() && strangers > 0 {
+        return Err(Failure::Failed(format!(
+            "none of the {strangers} runs in {} is of this study by this program: its build, its laws, the case or a file that it names is another since; \
+             tables are left as they are, `fretwork study run` makes the runs again",
+            plan.launcher.folder.display()
+        )));
+    }
     let (csv, parquet) = (plan.out.join("table.csv"), plan.out.join("table.parquet"));
     crate::study::csv::write(&table, &csv)?;
     crate::study::parquet::write(&table, &parquet)?;
@@ -312,6 +321,27 @@ fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
         return answer_json(&answers::json(plan, &table));
     }
     answer(&answers::collected(plan, &table))
+}
+
+/// Number of runs in the folder that are no points of the study by this program.
+fn strangers(plan: &Plan, table: &Table) -> usize {
+    let own: BTreeSet<&str> = table
+        .column("folder")
+        .into_iter()
+        .flat_map(|c| &c.cells)
+        .filter_map(|c| match c {
+            Cell::Text(name) => Some(name.as_str()),
+            _ => None,
+        })
+        .collect();
+    let folders = std::fs::read_dir(&plan.launcher.folder)
+        .into_iter()
+        .flatten()
+        .flatten();
+    folders
+        .filter(|f| f.path().join("run.json").is_file())
+        .filter(|f| !own.contains(f.file_name().to_string_lossy().as_ref()))
+        .count()
 }
 
 /// A run, for a line of progress.

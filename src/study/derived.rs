@@ -2,7 +2,15 @@
 
 use super::design::Setting;
 use super::factor::Factor;
-use exmex::{Express, FlatEx};
+use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, literal_matcher_from_pattern};
+
+literal_matcher_from_pattern!(
+    ScientificNumber,
+    r"^(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][+-]?[0-9]+)?"
+);
+
+/// An expression of numbers as a case writes them, `2e-5` too.
+type Parsed = FlatEx<f64, FloatOpsFactory<f64>, ScientificNumber>;
 
 /// A change of the case with expressions in factors.
 #[derive(Clone, Debug)]
@@ -16,7 +24,7 @@ pub struct Derived {
 
 #[derive(Clone, Debug)]
 struct Expression {
-    expression: FlatEx<f64>,
+    expression: Parsed,
     /// Number of the factor of each variable, in the order of the expression.
     factors: Vec<usize>,
 }
@@ -74,8 +82,8 @@ impl Derived {
 
 impl Expression {
     fn parse(text: &str, factors: &[Factor]) -> Result<Self, String> {
-        let expression: FlatEx<f64> =
-            exmex::parse(text).map_err(|e| format!("`{text}` is no expression: {e}"))?;
+        let expression =
+            Parsed::parse(text).map_err(|e| format!("`{text}` is no expression: {e}"))?;
         let number = |name: &String| {
             let place = factors.iter().position(|f| f.name == *name);
             place.ok_or_else(|| {
@@ -111,7 +119,7 @@ mod tests {
         let factors = [factor("strength"), factor("pressure")];
         let setting = vec![factors[0].at(0.0), factors[1].at(1.0)];
         let set = |text: &str| Derived::parse(text, &factors).and_then(|d| d.set(&setting));
-        assert_eq!(set("a.b=${2 * strength + 1}").unwrap(), "a.b=7");
+        assert_eq!(set("a.b=${2e0 * strength + 1}").unwrap(), "a.b=7");
         assert_eq!(
             set("y=Pressure(value: Constant(${-pressure}))").unwrap(),
             "y=Pressure(value: Constant(-1e-9))"

@@ -311,17 +311,11 @@ fn contest_table(contest: &Contest, unit: &str) -> SheetTable {
                 name.clone(),
                 mean.as_ref()
                     .map_or("no run".to_owned(), |m| mean_text(m, unit)),
-                mean.as_ref().map_or(0, |m| m.count).to_string(),
             ]
         });
     SheetTable {
-        note: format!(
-            "Alternatives of {}: means over all runs with intervals of 95 %.",
-            contest.factor
-        ),
-        heads: [contest.factor.as_str(), "mean", "runs"]
-            .map(str::to_owned)
-            .to_vec(),
+        note: format!("Alternatives of {}: {}.", contest.factor, contest.over),
+        heads: vec![contest.factor.clone(), "mean".to_owned()],
         rows: rows.collect(),
     }
 }
@@ -336,9 +330,12 @@ fn pair_table(contest: &Contest, unit: &str) -> SheetTable {
             (None, _) => "one run each: not known".to_owned(),
             (_, true) => "they differ".to_owned(),
             (_, false) => match pair.seeds_needed {
-                Some(n) => format!(
-                    "not known to differ; {n} runs each would tell a difference of this size"
-                ),
+                Some(n) => {
+                    format!(
+                        "not known to differ; {n} {} would tell a difference of this size",
+                        contest.pairs
+                    )
+                }
                 None => "not known to differ".to_owned(),
             },
         };
@@ -352,7 +349,7 @@ fn pair_table(contest: &Contest, unit: &str) -> SheetTable {
         ]
     });
     SheetTable {
-        note: "Differences between runs with the same seed and the same other factors; probabilities by chance are adjusted for the number of pairs (Holm).".to_owned(),
+        note: "Differences, paired; probabilities by chance are adjusted for the number of pairs (Holm).".to_owned(),
         heads: ["pair", "difference", "by chance", ""].map(str::to_owned).to_vec(),
         rows: rows.collect(),
     }
@@ -454,10 +451,6 @@ fn runs_section(table: &Table) -> Section {
 
 fn inputs_section(plan: &Plan) -> Section {
     let text = std::fs::read_to_string(&plan.file).unwrap_or_default();
-    let lines = text
-        .lines()
-        .filter(|l| !l.trim().is_empty())
-        .map(str::to_owned);
     Section {
         title: "The study".to_owned(),
         blocks: vec![
@@ -467,7 +460,7 @@ fn inputs_section(plan: &Plan) -> Section {
                 plan.launcher.program(),
                 plan.file.display()
             )),
-            Block::List(lines.collect()),
+            Block::Code(text),
         ],
     }
 }

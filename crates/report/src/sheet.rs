@@ -34,6 +34,8 @@ pub enum Block {
     Text(String),
     /// Items of a list.
     List(Vec<String>),
+    /// Text as it is, line by line.
+    Code(String),
     /// A table.
     Table(SheetTable),
     /// A figure.
@@ -145,6 +147,7 @@ fn html(block: &Block, figures: &mut Vec<Value>) -> String {
                 .collect();
             format!("<ul>\n{items}</ul>\n")
         }
+        Block::Code(text) => format!("<pre tabindex=\"0\">{}</pre>\n", escape(text)),
         Block::Table(table) => table_html(table),
         Block::Figure(figure) => {
             figures.push(figure_json(figure));

@@ -71,24 +71,33 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
             vec![curve(data, factor, String::new(), |_| true)],
             false,
         ),
-        DesignSpec::Grid if varied.len() == 1 && data.labels(varied[0]).len() <= LINES => {
-            let other = varied[0];
-            let name = &data.plan.factors[other].name;
-            let lines = data.labels(other).into_iter().map(|label| {
-                curve(data, factor, format!("{name} {label}"), |k| {
-                    data.plan.settings[k][other].label == label
-                })
-            });
-            of(format!("{}.", capital(seeds)), lines.collect(), false)
-        }
         DesignSpec::Grid => {
-            let note =
-                "Means over all combinations of the other factors; intervals are of their scatter.";
-            of(
-                note.to_owned(),
-                vec![curve(data, factor, String::new(), |_| true)],
-                false,
-            )
+            // One other factor tells lines apart, best one without numbers; over the rest is averaged.
+            let few = |f: &&usize| data.labels(**f).len() <= LINES;
+            let words = varied.iter().filter(few).find(|&&f| !numeric(data.plan, f));
+            let other = words.or_else(|| varied.iter().find(few)).copied();
+            let rest: Vec<&str> = varied
+                .iter()
+                .filter(|&&f| Some(f) != other)
+                .map(|&f| data.plan.factors[f].name.as_str())
+                .collect();
+            let lines = match other {
+                None => vec![curve(data, factor, String::new(), |_| true)],
+                Some(other) => {
+                    let name = &data.plan.factors[other].name;
+                    let line = |label: &str| {
+                        curve(data, factor, format!("{name} {label}"), |k| {
+                            data.plan.settings[k][other].label == label
+                        })
+                    };
+                    data.labels(other).into_iter().map(line).collect()
+                }
+            };
+            let note = match rest.as_slice() {
+                [] => format!("{}.", capital(seeds)),
+                rest => format!("Averaged over {}; {seeds}.", rest.join(", ")),
+            };
+            of(note, lines, false)
         }
         _ => {
             let means = data.means();
@@ -107,32 +116,27 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
     }
 }
 
-/// The mean output by value of a factor, over the settings that are kept.
+/// The mean output by value of a factor, over the settings that are kept: for each seed the mean over those with that value.
 fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> bool) -> Curve {
-    let mut groups: Vec<(f64, Vec<f64>, Vec<Option<Mean>>)> = Vec::new();
+    let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
     for (k, setting) in data.plan.settings.iter().enumerate() {
         let Some(x) = setting[factor].number.filter(|_| keep(k)) else {
             continue;
         };
-        let values: Vec<f64> = data.of_setting(k).iter().copied().flatten().collect();
-        let mean = Mean::of(&values);
         match groups.iter_mut().find(|g| g.0 == x) {
-            // The same setting twice says nothing new.
-            Some(group) if group.2.contains(&mean) => {}
-            Some(group) => {
-                group.1.extend(mean.map(|m| m.mean));
-                group.2.push(mean);
-            }
-            None => groups.push((x, mean.map(|m| m.mean).into_iter().collect(), vec![mean])),
+            Some(group) => group.1.push(k),
+            None => groups.push((x, vec![k])),
         }
     }
     groups.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let point = |(x, means, own): (f64, Vec<f64>, Vec<Option<Mean>>)| {
-        let mean = match own.as_slice() {
-            [one] => *one,
-            _ => Mean::of(&means),
+    let point = |(x, settings): (f64, Vec<usize>)| {
+        let of_seed = |seed: usize| {
+            let values = settings.iter().map(|&k| data.of_setting(k)[seed]);
+            let values: Option<Vec<f64>> = values.collect();
+            values.map(|v| v.iter().sum::<f64>() / v.len() as f64)
         };
-        Some((x, mean?))
+        let means: Vec<f64> = (0..data.seeds()).filter_map(of_seed).collect();
+        Some((x, Mean::of(&means)?))
     };
     Curve {
         label,

@@ -49,7 +49,11 @@ pub struct Contest {
     pub factor: String,
     /// Names of the alternatives.
     pub names: Vec<String>,
-    /// The comparison, pairs of runs with the same seed and the same other factors.
+    /// What the means are over, as the end of a sentence.
+    pub over: String,
+    /// What is paired: seeds or combinations.
+    pub pairs: &'static str,
+    /// The comparison, seed by seed, or combination by combination of the other factors where there is one seed.
     pub tournament: Tournament,
 }
 
@@ -162,47 +166,74 @@ pub fn logarithmic(factor: &Factor) -> bool {
 
 /// The alternatives of factors without numbers, in designs that have each with the same others.
 fn contests(data: &Data<'_>) -> Vec<Contest> {
-    let plan = data.plan;
-    let of = |factor: usize| {
-        let names = data.labels(factor);
-        if numeric(plan, factor) || names.len() < 2 {
-            return None;
-        }
-        // A block is a combination of all other factors.
-        let others = |k: usize| -> Vec<&str> {
-            let values = plan.settings[k].iter().enumerate();
-            values
-                .filter(|(f, _)| *f != factor)
-                .map(|(_, v)| v.label.as_str())
-                .collect()
-        };
-        let mut blocks: Vec<Vec<&str>> = Vec::new();
-        for k in 0..plan.settings.len() {
-            if !blocks.contains(&others(k)) {
-                blocks.push(others(k));
-            }
-        }
-        let row = |name: &&str| -> Vec<Option<f64>> {
-            let block = |block: &Vec<&str>| {
-                let found = (0..plan.settings.len())
-                    .find(|&k| plan.settings[k][factor].label == *name && others(k) == *block);
-                match found {
-                    Some(k) => data.of_setting(k).to_vec(),
-                    None => vec![None; data.seeds()],
-                }
-            };
-            blocks.iter().flat_map(block).collect()
-        };
-        Some(Contest {
-            factor: plan.factors[factor].name.clone(),
-            names: names.iter().map(|n| (*n).to_owned()).collect(),
-            tournament: Tournament::of(&names.iter().map(row).collect::<Vec<_>>()),
-        })
-    };
     match data.design {
         DesignSpec::Grid | DesignSpec::OneAtATime | DesignSpec::Table { .. } => {
-            (0..plan.factors.len()).filter_map(of).collect()
+            let factors = 0..data.plan.factors.len();
+            factors.filter_map(|f| contest(data, f)).collect()
         }
         _ => Vec::new(),
     }
+}
+
+fn contest(data: &Data<'_>, factor: usize) -> Option<Contest> {
+    let plan = data.plan;
+    let names = data.labels(factor);
+    if numeric(plan, factor) || names.len() < 2 {
+        return None;
+    }
+    // A block is a combination of all other factors.
+    let others = |k: usize| -> Vec<&str> {
+        let values = plan.settings[k].iter().enumerate();
+        values
+            .filter(|(f, _)| *f != factor)
+            .map(|(_, v)| v.label.as_str())
+            .collect()
+    };
+    let setting = |name: &str, block: &[&str]| {
+        let same = |k: &usize| plan.settings[*k][factor].label == name && others(*k) == block;
+        (0..plan.settings.len()).find(same)
+    };
+    let mut blocks: Vec<Vec<&str>> = Vec::new();
+    for block in (0..plan.settings.len()).map(others) {
+        let whole = names.iter().all(|name| setting(name, &block).is_some());
+        if whole && !blocks.contains(&block) {
+            blocks.push(block);
+        }
+    }
+    // By alternative and block, the outputs by seed.
+    let runs = |name: &&str| -> Vec<&[Option<f64>]> {
+        let of = |block: &Vec<&str>| setting(name, block).map(|k| data.of_setting(k));
+        blocks.iter().filter_map(of).collect()
+    };
+    let seeds = data.seeds();
+    // Runs of one seed have one sample: they are not independent, and count as one.
+    let by_seed = seeds > 1;
+    let row = |name: &&str| -> Vec<Option<f64>> {
+        let runs = runs(name);
+        match by_seed {
+            true => (0..seeds)
+                .map(|seed| {
+                    let values: Option<Vec<f64>> = runs.iter().map(|r| r[seed]).collect();
+                    values
+                        .filter(|v| !v.is_empty())
+                        .map(|v| v.iter().sum::<f64>() / v.len() as f64)
+                })
+                .collect(),
+            false => runs.iter().map(|r| r[0]).collect(),
+        }
+    };
+    let over = match (by_seed, blocks.len()) {
+        (true, 1) => format!("means over {seeds} seeds with intervals of 95 %"),
+        (true, n) => format!(
+            "means over {seeds} seeds, each the mean over {n} combinations of the other factors, with intervals of 95 %"
+        ),
+        (false, n) => format!("means over {n} combinations of the other factors, one run each"),
+    };
+    Some(Contest {
+        factor: plan.factors[factor].name.clone(),
+        names: names.iter().map(|n| (*n).to_owned()).collect(),
+        over,
+        pairs: if by_seed { "seeds" } else { "combinations" },
+        tournament: Tournament::of(&names.iter().map(row).collect::<Vec<_>>()),
+    })
 }
