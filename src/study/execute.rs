@@ -2,13 +2,12 @@
 
 use super::StudyError;
 use super::plan::{Plan, Point};
-use crate::runs::RunsError;
 use crate::runs::launcher::Ended;
+use crate::runs::pool::each;
 use crate::runs::stored::Finished;
-use std::collections::{BTreeSet, VecDeque};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Event for a display of progress.
@@ -44,48 +43,17 @@ pub fn execute(
     stop: &AtomicBool,
     watch: &(dyn Fn(&Event<'_>) + Sync),
 ) -> Result<usize, StudyError> {
-    let queue = Mutex::new(VecDeque::from(points));
-    let ended: Mutex<usize> = Mutex::new(0);
-    let failure: Mutex<Option<RunsError>> = Mutex::new(None);
     let deadline = Instant::now() + FOREVER;
-    let next = || match stop.load(Ordering::Relaxed) {
-        true => None,
-        false => queue.lock().ok()?.pop_front(),
-    };
-    let work = || {
-        while let Some(point) = next() {
-            watch(&Event::Begins(&point));
-            match plan
-                .launcher
-                .run(&point.sets, point.seed, deadline, limit, stop)
-            {
-                Ok(Ended::Finished(run)) => {
-                    watch(&Event::Ended(&point, &run));
-                    if let Ok(mut ended) = ended.lock() {
-                        *ended += 1;
-                    }
-                }
-                Ok(Ended::Interrupted) => {}
-                Err(e) => {
-                    if let Ok(mut queue) = queue.lock() {
-                        queue.clear();
-                    }
-                    if let Ok(mut failure) = failure.lock() {
-                        *failure = Some(e);
-                    }
-                }
-            }
+    let one = |point: &Point| {
+        watch(&Event::Begins(point));
+        let ended = plan
+            .launcher
+            .run(&point.sets, point.seed, deadline, limit, stop)?;
+        if let Ended::Finished(run) = &ended {
+            watch(&Event::Ended(point, run));
         }
+        Ok(matches!(ended, Ended::Finished(_)))
     };
-    std::thread::scope(|scope| {
-        for _ in 1..jobs {
-            // Fewer jobs if the system provides no more threads.
-            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
-        }
-        work();
-    });
-    match failure.into_inner() {
-        Ok(Some(e)) => Err(e.into()),
-        _ => Ok(ended.into_inner().unwrap_or(0)),
-    }
+    let ended = each(&points, jobs, stop, &one)?;
+    Ok(ended.into_iter().flatten().filter(|ended| *ended).count())
 }

@@ -1,12 +1,11 @@
 //! Studies: one case run at many points of its factors, here or by another engine, and gathered in one table.
 //!
-//! [`spec`] is the file, [`factor`] what varies, [`derived`] what follows from it, and [`design`] at which points, [`plan`] the numbered runs, [`forecast`] what they
+//! [`spec`] is the file, [`factor`] what varies and [`design`] at which points, [`plan`] the numbered runs, [`forecast`] what they
 //! will take, [`execute`] makes them on this machine and [`export`] writes what other engines take, [`table`] gathers them, [`csv`] and [`parquet`]
 //! write the table, [`analysis`] says what it shows, for the [`page`] and the [`figures`].
 
 pub mod analysis;
 pub mod csv;
-mod derived;
 pub mod design;
 pub mod execute;
 pub mod export;

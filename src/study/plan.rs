@@ -1,12 +1,12 @@
 //! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
 
 use super::StudyError;
-use super::derived::Derived;
 use super::design::{Setting, settings};
 use super::factor::{Factor, Kind, Value};
 use super::spec::{DesignSpec, ReadSpec};
 use crate::laws::SearchPath;
 use crate::runs::RunsError;
+use crate::runs::expression::Derived;
 use crate::runs::launcher::Launcher;
 use crate::runs::offer::{Offer, measure_names};
 use crate::runs::perturbation::Perturbation;
@@ -251,9 +251,13 @@ fn derive(
     settings: &[Setting],
 ) -> Result<Vec<Vec<String>>, InputError> {
     let refused = |why: String| read.source.error_at("set", why);
-    let parsed = texts.iter().map(|text| Derived::parse(text, factors));
+    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+    let parsed = texts.iter().map(|text| Derived::parse(text, &names));
     let parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(refused)?;
-    let of = |setting: &Setting| parsed.iter().map(|d| d.set(setting)).collect();
+    let of = |setting: &Setting| {
+        let numbers: Vec<Option<f64>> = setting.iter().map(|v| v.number).collect();
+        parsed.iter().map(|d| d.set(&numbers)).collect()
+    };
     settings
         .iter()
         .map(of)
