@@ -11,6 +11,7 @@
 pub mod bootstrap;
 pub mod design;
 mod distribution;
+pub mod fit;
 pub mod interval;
 mod least_squares;
 mod random;
