@@ -1,6 +1,6 @@
 //! Quantiles and tail probabilities of the usual distributions; `None` where there are no degrees of freedom.
 
-use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 /// Student's t below which the fraction `probability` lies.
 pub(crate) fn student_quantile(probability: f64, degrees: f64) -> Option<f64> {
@@ -45,6 +45,15 @@ pub(crate) fn fisher_upper(f: f64, degrees: f64, of_error: f64) -> Option<f64> {
     Some(distribution.sf(f.max(0.0)))
 }
 
+/// Probability of a chi-squared at least as large by chance.
+pub(crate) fn chi_squared_upper(chi_squared: f64, degrees: f64) -> Option<f64> {
+    if chi_squared.is_nan() || degrees < 1.0 {
+        return None;
+    }
+    let distribution = ChiSquared::new(degrees).ok()?;
+    Some(distribution.sf(chi_squared.max(0.0)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -57,6 +66,8 @@ mod tests {
         assert!((student_two_sided(2.228, 10.0).unwrap() - 0.05).abs() < 1e-4);
         assert!((student_two_sided(-2.228, 10.0).unwrap() - 0.05).abs() < 1e-4);
         assert!((fisher_upper(3.708, 3.0, 10.0).unwrap() - 0.05).abs() < 1e-4);
+        // 95 % of chi-squared with 10 degrees of freedom: 18.307.
+        assert!((chi_squared_upper(18.307, 10.0).unwrap() - 0.05).abs() < 1e-4);
         assert_eq!(student_quantile(0.975, 0.0), None);
         assert_eq!(fisher_upper(f64::INFINITY, 1.0, 3.0), Some(0.0));
     }
