@@ -12,7 +12,7 @@ const MOST_ITERATIONS: usize = 200;
 const UNDETERMINED: f64 = 0.5;
 
 /// Share of an eigenvalue that must remain when the part of noise is taken off.
-const ABOVE_NOISE: f64 = 0.25;
+const ABOVE_NOISE: f64 = 0.5;
 
 /// 97.5 % of the normal distribution.
 const NORMAL: f64 = 1.959_964;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 const NAMED: f64 = 0.2;
 
 /// Component of an undetermined direction from which a parameter is undetermined.
-const INVOLVED: f64 = 0.1;
+const INVOLVED: f64 = 0.2;
 
 /// An end of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub struct Estimate {
 /// A combination of parameters in unit coordinates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Direction {
-    /// Parameters with their components, the largest first and positive; together the squares of all components are 1. Small
+    /// Parameters with their components, the largest first (to a tenth) and positive; together the squares of all components are 1. Small
     /// components are left out.
     pub parts: Vec<(usize, f64)>,
     /// Singular value: how many standard errors of the data a step over the whole range changes them.
@@ -250,9 +250,9 @@ fn correlation(information: &Information, free: &[usize], i: usize, j: usize) ->
 fn directions(information: &Information) -> Vec<Direction> {
     let direction = |axis: &super::information::Axis| {
         let mut parts: Vec<(usize, f64)> = axis.vector.iter().copied().enumerate().collect();
-        // Of components equal but for round-off the first counts as the largest.
+        // Of components that are about equal the first parameter's counts as the largest.
         parts.sort_by(|a, b| {
-            let size = |c: f64| (c.abs() * 1e6).round();
+            let size = |c: f64| (c.abs() * 10.0).round();
             size(b.1).total_cmp(&size(a.1)).then(a.0.cmp(&b.0))
         });
         let sign = parts.first().map_or(1.0, |p| p.1.signum());

@@ -1,18 +1,20 @@
 //! A polynomial in the parameters for each simulated value, from the runs near a point.
 //!
 //! With d = (u - c) / rho, the distance of a run from the centre in units of the radius of the neighbourhood, each value is
-//! fitted as f(d) = b_0 + sum_i b_i d_i, with the terms d_i d_j too where there are enough runs. A small neighbourhood has few runs
-//! and large errors by noise, a large one errors of the polynomial. The variance s^2(rho) of the residuals shows both: where it
-//! is above the smallest of all neighbourhoods the excess is an error of the polynomial. The neighbourhood taken has the smallest
+//! fitted as f(d) = b_0 + sum_i b_i d_i, with the terms d_i d_j too where there are twice as many runs as terms. A small neighbourhood has few runs
+//! and large errors by noise, a large one errors of the polynomial. The variance s^2 of the residuals, of nu degrees of freedom,
+//! shows both. The smallest upper limit of noise s_0^2 = s^2 nu / chi^2 (of 99.9 %) of all neighbourhoods is taken as the noise, what
+//! is above it as an error of the polynomial; the neighbourhood taken has the smallest
 //!
 //! ```text
-//! h s^2 + max(0, s^2 - 1.2 s_min^2),
+//! h s_0^2 + max(0, s^2 - s_0^2),
 //! ```
 //!
-//! h s^2 being the variance of the polynomial at the centre; all that are small beside the errors of the measurement count the same,
-//! and of these the largest is taken.
+//! h s_0^2 being the variance of the polynomial at the centre. All that are small beside the errors of the measurement count the
+//! same, and of these the largest is taken.
 
 use super::Run;
+use crate::distribution::chi_squared_quantile;
 use crate::least_squares::pseudo_inverse;
 use nalgebra::{DMatrix, DVector};
 
@@ -21,6 +23,9 @@ const SHRINK: f64 = 0.8;
 
 /// Error of the polynomial, in standard errors of the estimate, that is small beside the measurement.
 const SMALL: f64 = 0.1;
+
+/// Probability that the upper limit of the noise is below the noise.
+const LUCK: f64 = 0.001;
 
 /// The polynomials of all values.
 pub(super) struct Surrogate {
@@ -75,7 +80,7 @@ impl Surrogate {
             }
             let chosen: Vec<&Run> = near[..inside].iter().map(|r| r.1).collect();
             for quadratic in [false, true] {
-                if 2 * inside >= 3 * Self::terms(n, quadratic) {
+                if inside >= 2 * Self::terms(n, quadratic) {
                     found.extend(Self::of(&chosen, centre, radius, quadratic, sigma));
                 }
             }
@@ -84,16 +89,24 @@ impl Surrogate {
                 break;
             }
         }
-        let least = found.iter().map(|s| s.spread).fold(f64::MAX, f64::min);
+        // Linear polynomials only where no neighbourhood has enough runs for others.
+        if found.iter().any(|s| s.quadratic) {
+            found.retain(|s| s.quadratic);
+        }
+        // Values of a run may scatter together, so that only the runs count as degrees of freedom.
+        let limit = |s: &Self| {
+            let degrees = s.degrees as f64;
+            Some(s.spread * degrees / chi_squared_quantile(LUCK, degrees)?)
+        };
+        let noise = found.iter().filter_map(limit).fold(f64::MAX, f64::min);
         // What an error of the estimate of one standard error makes, mean over the values.
         let enough = SMALL * SMALL * n as f64 / sigma.len() as f64;
         let error = |s: &Self| {
-            let noise = s.spread * s.covariance[(0, 0)];
-            let excess = (s.spread - 1.2 * least).max(0.0);
-            (noise + excess).max(enough)
+            let excess = (s.spread - noise).max(0.0);
+            (s.covariance[(0, 0)] * noise + excess).max(enough)
         };
         let best = found.iter().map(error).fold(f64::MAX, f64::min);
-        // Radii fall, so that the first is the largest; of one radius the last has the fewest terms left to chance.
+        // Radii fall, so that the first is the largest, and of one radius the one with fewer terms.
         found.into_iter().find(|s| error(s) <= best)
     }
 
