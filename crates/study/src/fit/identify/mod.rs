@@ -1,7 +1,7 @@
 //! How well data determine the parameters of a fit, from the runs that the fit has made.
 //!
 //! Near the minimum each simulated value is replaced by a polynomial in the unit coordinates u of the parameters, fitted to the
-//! runs there ([`surrogate`]); its noise over seeds averages out. The estimate minimises the weighted squares of this model,
+//! runs there (`surrogate.rs`); its noise over seeds averages out. The estimate minimises the weighted squares of this model,
 //! within the region. With its derivatives J there, W = diag(g_j / sigma_j^2) and the residuals E of the polynomial,
 //!
 //! ```text
