@@ -19,6 +19,20 @@ pub(crate) struct LeastSquares {
 
 /// `None` where there are fewer rows than columns, or the columns are linearly dependent.
 pub(crate) fn least_squares(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<LeastSquares> {
+    let inverse = pseudo_inverse(x)?;
+    let coefficients = &inverse * y;
+    let residual = (x * &coefficients - y).norm_squared();
+    Some(LeastSquares {
+        coefficients,
+        covariance: &inverse * inverse.transpose(),
+        residual,
+        degrees: x.nrows() - x.ncols(),
+    })
+}
+
+/// (X^T X)^-1 X^T, which gives the coefficients from y; its product with its transpose is (X^T X)^-1. `None` where there are fewer
+/// rows than columns, or the columns are linearly dependent.
+pub(crate) fn pseudo_inverse(x: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let (rows, columns) = x.shape();
     if rows < columns || columns == 0 {
         return None;
@@ -35,17 +49,9 @@ pub(crate) fn least_squares(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<LeastS
     if values.min() < DEPENDENT * values.max() {
         return None;
     }
-    let inverse = |i: usize, j: usize| vt[(j, i)] / values[j] / lengths[i];
-    // Rows of V S^-1, in the units of the coefficients.
-    let root = DMatrix::from_fn(columns, columns, inverse);
-    let coefficients = &root * u.tr_mul(y);
-    let residual = (x * &coefficients - y).norm_squared();
-    Some(LeastSquares {
-        coefficients,
-        covariance: &root * root.transpose(),
-        residual,
-        degrees: rows - columns,
-    })
+    // V S^-1, in the units of the coefficients.
+    let root = DMatrix::from_fn(columns, columns, |i, j| vt[(j, i)] / values[j] / lengths[i]);
+    Some(root * u.transpose())
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ pub mod design;
 mod distribution;
 pub mod fit;
 pub mod interval;
+mod jacobi;
 mod least_squares;
 mod random;
 pub mod response;

@@ -6,5 +6,6 @@
 
 pub mod bounds;
 pub mod cma_es;
+pub mod identify;
 pub mod residuals;
 pub mod seeds;

@@ -24,12 +24,12 @@
 //!
 //! **Limits** of the region: [`bounds`](super::bounds) maps any point into it.
 
-mod jacobi;
 mod stop;
 mod strategy;
 
 pub use stop::{Limits, Stop};
 
+use crate::jacobi;
 use crate::random::normal;
 use nalgebra::DMatrix;
 use rand::SeedableRng;
