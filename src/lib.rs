@@ -75,6 +75,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;
+pub mod fit;
 pub mod interrupt;
 pub mod record;
 pub mod runs;

@@ -6,6 +6,7 @@ mod again;
 mod check;
 mod compare;
 mod ending;
+mod fit;
 mod law;
 mod number;
 mod output;
@@ -78,6 +79,11 @@ enum Command {
         after_help = "Exit code: 0 done, also where runs failed (the table says which), 1 interrupted, or a run left no result, 2 wrong input.\n\nExample:\n  fretwork study run studies/friction_of_grains.ron --jobs 2\n\ndocs/study.md says what a study is made of and how to run it on a cluster."
     )]
     Study(study::StudyCommand),
+    /// Find parameters of a case for which its runs give measured curves, with intervals
+    #[command(
+        after_help = "Exit code: 0 done, also where the measurements do not determine a parameter (it says so), 1 interrupted, or nothing was found, 2 wrong input.\n\nExample:\n  fretwork fit fits/bond_opening.ron --jobs 2\n\ndocs/fit.md says what a fit is made of and what its intervals mean."
+    )]
+    Fit(fit::FitArgs),
     /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
     #[command(
         allow_negative_numbers = true,
@@ -286,6 +292,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Study(command) => study::study(&command),
+        Command::Fit(args) => fit::fit(&args),
         Command::Trade(args) => trade::trade(&args),
         Command::TryLibraries(args) => args.help(child::try_libraries),
         Command::CertifyApart(args) => args.help(|| certify_asked(&built_in())),

@@ -120,7 +120,7 @@ fn difference(loaded: &Loaded, other: &Loaded) -> Result<Vec<String>, InputError
         });
         sets.extend(text.map(|text| format!("{name}={text}")));
     }
-    let all = [&before[..], &sets].concat();
+    let all = [before, &sets].concat();
     if compared(&load(&loaded.path, &all)?.case) != wanted {
         return Err(InputError::about(
             other.path.display(),

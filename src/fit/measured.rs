@@ -1,0 +1,139 @@
+//! Measured curves from CSV files.
+
+use super::FitError;
+use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
+use fretwork_study::fit::residuals::Measurement;
+use std::path::Path;
+
+/// Reads a measured curve. Lines that begin with `#` are comments, headings may have a unit, `stress [MPa]`.
+///
+/// # Errors
+/// A file, column or number that is not there.
+pub fn read(
+    name: &str,
+    spec: &MeasuredSpec,
+    path: &Path,
+    along: AlongSpec,
+) -> Result<Measurement, FitError> {
+    let fail = |why: String| FitError::Usage(format!("{}: {why}", path.display()));
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+        .map_err(|e| fail(e.to_string()))?;
+    let headings = reader.headers().map_err(|e| fail(e.to_string()))?;
+    let names: Vec<String> = headings
+        .iter()
+        .map(|h| h.split(" [").next().unwrap_or(h).trim().to_owned())
+        .collect();
+    let place = |column: &str| {
+        let place = names.iter().position(|n| n == column);
+        place.ok_or_else(|| {
+            fail(format!(
+                "there is no column `{column}`; there are {}",
+                names.join(", ")
+            ))
+        })
+    };
+    let (x, y) = (place(&spec.x)?, place(&spec.y)?);
+    let sigma = match &spec.sigma {
+        SigmaSpec::Column(column) => Some(place(column)?),
+        _ => None,
+    };
+    let mut rows: Vec<[f64; 3]> = Vec::new();
+    for (line, record) in reader.records().enumerate() {
+        let record = record.map_err(|e| fail(e.to_string()))?;
+        let number = |k: usize| {
+            let text = record.get(k).unwrap_or_default();
+            text.parse::<f64>()
+                .ok()
+                .filter(|v| v.is_finite())
+                .ok_or_else(|| {
+                    fail(format!(
+                        "point {}, `{}`: `{text}` is no number",
+                        line + 1,
+                        names[k]
+                    ))
+                })
+        };
+        let row = [number(x)?, number(y)?, sigma.map_or(Ok(0.0), number)?];
+        if spec
+            .within
+            .is_none_or(|(low, high)| (low..=high).contains(&row[0]))
+        {
+            rows.push(row);
+        }
+    }
+    if rows.is_empty() {
+        return Err(fail(
+            "no point lies within the range that is used".to_owned(),
+        ));
+    }
+    let largest = rows.iter().fold(0.0f64, |m, r| m.max(r[1].abs()));
+    let sigma = |row: &[f64; 3]| match spec.sigma {
+        SigmaSpec::Column(_) => row[2],
+        SigmaSpec::Value(value) => value,
+        SigmaSpec::OfLargest(share) => share * largest,
+    };
+    let mut abscissae: Vec<f64> = rows.iter().map(|r| r[0]).collect();
+    if along == AlongSpec::Path {
+        abscissae = path_along(&abscissae);
+    }
+    Ok(Measurement {
+        name: name.to_owned(),
+        x: abscissae,
+        y: rows.iter().map(|r| r[1]).collect(),
+        sigma: rows.iter().map(sigma).collect(),
+        weight: 1.0,
+    })
+}
+
+/// The way along an abscissa from its first value.
+pub(super) fn path_along(x: &[f64]) -> Vec<f64> {
+    let mut way = 0.0;
+    let mut last = x.first().copied().unwrap_or(0.0);
+    x.iter()
+        .map(|x| {
+            way += (x - last).abs();
+            last = *x;
+            way
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_is_read_with_its_uncertainty() {
+        let path =
+            std::env::temp_dir().join(format!("fretwork-measured-{}.csv", std::process::id()));
+        let text = "# a shear test\nu [mm], tau [MPa], s\n0, 0, 1\n0.1, 50, 2\n0.2, -80, 3\n";
+        std::fs::write(&path, text).unwrap();
+        let spec = |y: &str, sigma| MeasuredSpec {
+            file: path.clone(),
+            x: "u".into(),
+            y: y.into(),
+            sigma,
+            within: Some((0.05, 1.0)),
+        };
+        let of = |y: &str, sigma| read("shear", &spec(y, sigma), &path, AlongSpec::Abscissa);
+        let curve = of("tau", SigmaSpec::Column("s".into())).unwrap();
+        assert_eq!(
+            (curve.x, curve.y, curve.sigma),
+            (vec![0.1, 0.2], vec![50.0, -80.0], vec![2.0, 3.0])
+        );
+        assert_eq!(
+            of("tau", SigmaSpec::OfLargest(0.1)).unwrap().sigma,
+            [8.0, 8.0]
+        );
+        let said = of("sigma", SigmaSpec::Value(1.0)).unwrap_err().to_string();
+        assert!(
+            said.contains("no column `sigma`; there are u, tau, s"),
+            "{said}"
+        );
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(path_along(&[1.0, 2.0, -1.0, 0.0]), [0.0, 1.0, 4.0, 5.0]);
+    }
+}

@@ -1,0 +1,181 @@
+//! The curve that a run gives, from its statistics.
+
+use super::measured::path_along;
+use super::spec::{AlongSpec, ModelSpec, RowsSpec};
+use crate::runs::expression::Expression;
+use std::path::Path;
+
+/// Appended to the name of a column for its value in the first row that is used.
+const START: &str = "_start";
+
+/// A curve as expressions in columns.
+#[derive(Clone, Debug)]
+pub struct Model {
+    x: Expression,
+    y: Expression,
+    columns: Vec<String>,
+    rows: RowsSpec,
+    smooth: usize,
+    along: AlongSpec,
+}
+
+impl Model {
+    /// The model of a case whose statistics have these columns.
+    ///
+    /// # Errors
+    /// Which of its two expressions is wrong (`x`, `y` or `rows`), and why.
+    pub fn new(spec: &ModelSpec, columns: &[String]) -> Result<Self, (&'static str, String)> {
+        let starts = columns.iter().map(|c| format!("{c}{START}"));
+        let names: Vec<String> = columns.iter().cloned().chain(starts).collect();
+        let known = |why: String| match why.split_once("; there are ") {
+            Some((why, _)) => format!(
+                "{why}; there are {}, and each with {START} for its value in the first row",
+                columns.join(", ")
+            ),
+            None => why,
+        };
+        if spec.rows == RowsSpec::LastCycle && !columns.iter().any(|c| c == "cycle") {
+            return Err((
+                "rows",
+                "the case has no friction test with cycles".to_owned(),
+            ));
+        }
+        Ok(Self {
+            x: Expression::parse(&spec.x, &names).map_err(|why| ("x", known(why)))?,
+            y: Expression::parse(&spec.y, &names).map_err(|why| ("y", known(why)))?,
+            columns: columns.to_vec(),
+            rows: spec.rows,
+            smooth: usize::from(spec.smooth),
+            along: spec.along,
+        })
+    }
+
+    /// Abscissae that increase, and values, from the table of statistics of a run.
+    ///
+    /// # Errors
+    /// Why there is none, as a sentence.
+    pub fn curve(&self, statistics: &Path) -> Result<(Vec<f64>, Vec<f64>), String> {
+        let rows = self.read(statistics)?;
+        let first = rows
+            .first()
+            .ok_or("no row of the statistics lies in the part that is used")?;
+        let starts = first.clone();
+        let values = |row: &Vec<f64>| -> Vec<Option<f64>> {
+            row.iter()
+                .chain(&starts)
+                .map(|v| v.is_finite().then_some(*v))
+                .collect()
+        };
+        let mut xs = Vec::new();
+        let mut ys = Vec::new();
+        for row in &rows {
+            let values = values(row);
+            if let (Some(x), Some(y)) = (self.x.value(&values), self.y.value(&values)) {
+                xs.push(x);
+                ys.push(y);
+            }
+        }
+        if self.along == AlongSpec::Path {
+            xs = path_along(&xs);
+        }
+        let ys = smoothed(&ys, self.smooth);
+        // Only what goes on: small steps back are noise of the motion.
+        let mut curve = (Vec::new(), Vec::new());
+        for (x, y) in xs.into_iter().zip(ys) {
+            if curve.0.last().is_none_or(|last| x > *last) {
+                curve.0.push(x);
+                curve.1.push(y);
+            }
+        }
+        match curve.0.len() {
+            0 => Err("its expressions have no finite value in any row".to_owned()),
+            _ => Ok(curve),
+        }
+    }
+
+    /// Rows of the columns in the order of the names.
+    fn read(&self, statistics: &Path) -> Result<Vec<Vec<f64>>, String> {
+        let missing = |e: &dyn std::fmt::Display| format!("{}: {e}", statistics.display());
+        let mut reader = csv::Reader::from_path(statistics).map_err(|e| missing(&e))?;
+        let headings = reader.headers().map_err(|e| missing(&e))?;
+        let names: Vec<&str> = headings
+            .iter()
+            .map(|h| h.split(" [").next().unwrap_or(h))
+            .collect();
+        let places: Vec<Option<usize>> = self
+            .columns
+            .iter()
+            .map(|c| names.iter().position(|n| n == c))
+            .collect();
+        let place = |name: &str| self.columns.iter().position(|c| c == name);
+        let (time, cycle) = (place("time"), place("cycle"));
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for record in reader.records().map_while(Result::ok) {
+            let number = |p: &Option<usize>| {
+                p.and_then(|k| record.get(k)?.parse().ok())
+                    .unwrap_or(f64::NAN)
+            };
+            rows.push(places.iter().map(number).collect());
+        }
+        let at = |row: &Vec<f64>, place: Option<usize>| place.map_or(f64::NAN, |k| row[k]);
+        match self.rows {
+            RowsSpec::All => {}
+            RowsSpec::From(from) => rows.retain(|r| at(r, time) >= from),
+            RowsSpec::Between(from, to) => rows.retain(|r| (from..=to).contains(&at(r, time))),
+            RowsSpec::LastCycle => {
+                let last = rows.iter().map(|r| at(r, cycle)).fold(0.0, f64::max);
+                // The last one may have been cut short.
+                let count = |c: f64| rows.iter().filter(|r| at(r, cycle) == c).count();
+                let whole = if count(last) * 20 >= count(last - 1.0) * 19 {
+                    last
+                } else {
+                    last - 1.0
+                };
+                rows.retain(|r| at(r, cycle) == whole);
+            }
+        }
+        Ok(rows)
+    }
+}
+
+/// Means over an odd number of neighbours, fewer at the ends.
+fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
+    let mean = |k: usize| {
+        let reach = (width / 2).min(k).min(values.len() - 1 - k);
+        let near = &values[k - reach..=k + reach];
+        near.iter().sum::<f64>() / near.len() as f64
+    };
+    (0..values.len()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_is_made_of_columns() {
+        let path = std::env::temp_dir().join(format!("fretwork-model-{}.csv", std::process::id()));
+        let text =
+            "step,time [s],delta [m],Q [N]\n1,0.1,5.0,1\n2,0.2,6.0,2\n3,0.3,5.5,9\n4,0.4,8.0,4\n";
+        std::fs::write(&path, text).unwrap();
+        let columns: Vec<String> = ["step", "time", "delta", "Q"].map(str::to_owned).to_vec();
+        let spec = |x: &str, rows| ModelSpec {
+            x: x.into(),
+            y: "Q / 2".into(),
+            rows,
+            smooth: 1,
+            along: AlongSpec::Abscissa,
+        };
+        let of = |x: &str, rows| Model::new(&spec(x, rows), &columns).unwrap().curve(&path);
+        let curve = of("delta - delta_start", RowsSpec::From(0.15)).unwrap();
+        assert_eq!(curve, (vec![0.0, 2.0], vec![1.0, 2.0]));
+        assert!(of("delta", RowsSpec::From(9.0)).is_err());
+        let (key, said) = Model::new(&spec("dlta", RowsSpec::All), &columns).unwrap_err();
+        assert!(
+            key == "x" && said.contains("`dlta`") && said.contains("delta, Q"),
+            "{said}"
+        );
+        std::fs::remove_file(&path).unwrap();
+        assert_eq!(smoothed(&[1.0, 2.0, 6.0, 4.0], 3), [1.0, 3.0, 4.0, 4.0]);
+    }
+}

@@ -1,0 +1,162 @@
+//! What the measurements say of the parameters: estimates with intervals, from runs around the best point.
+
+use super::FitError;
+use super::search::{Evaluation, Found, Search, Stage};
+use fretwork_study::fit::identify::{self as mathematics, Data, Identification, Run};
+use fretwork_study::fit::residuals::over_seeds;
+
+/// Half-width of the first neighbourhood, of the range of each parameter.
+const FIRST: f64 = 0.1;
+
+/// Smallest and largest half-width of a neighbourhood.
+const NARROWEST: f64 = 2e-3;
+const WIDEST: f64 = 0.25;
+
+/// A neighbourhood fits intervals that are up to this factor wider or narrower.
+const ALIKE: f64 = 3.0;
+
+/// Neighbourhoods that are tried.
+const ROUNDS: u64 = 4;
+
+/// A fit.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Estimates, intervals, correlations, directions.
+    pub identification: Identification,
+    /// Number of the evaluation at the estimate.
+    pub best: usize,
+}
+
+impl Outcome {
+    /// Values of the parameters.
+    pub fn values(&self) -> Vec<f64> {
+        self.identification
+            .estimates
+            .iter()
+            .map(|e| e.value)
+            .collect()
+    }
+}
+
+/// Runs points around the best one, in a neighbourhood as wide as the intervals that follow from them, and says what the
+/// measurements determine; `None` if no point gave all curves, or if it was interrupted.
+///
+/// # Errors
+/// A run cannot be started, or too few of the runs around the best point succeed.
+pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome>, FitError> {
+    if found.best.is_none() {
+        return Ok(None);
+    }
+    let count = search.tests.bounds.len();
+    let mut widths = vec![FIRST; count];
+    let mut identification = None;
+    for round in 1..=ROUNDS {
+        let centre = found.best;
+        let local = search.around(found, &widths, round)?;
+        if search.stop.load(std::sync::atomic::Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let runs = runs(&found.evaluations[local]);
+        let place = match centre {
+            Some(best) => found.evaluations[best].place.clone(),
+            None => return Ok(None),
+        };
+        let told = from_runs(search, &runs, &place)?;
+        let estimate: Vec<f64> = told.estimates.iter().map(|e| e.value).collect();
+        let first = found.evaluations.len();
+        search.candidate(found, &estimate)?;
+        if search.stop.load(std::sync::atomic::Ordering::Relaxed) {
+            return Ok(None);
+        }
+        // The estimate is where the runs around say that the least squares are; it may not be if these are too far around.
+        let better = found.least(first..found.evaluations.len());
+        let squares = |k: usize| found.evaluations[k].chi_squared.unwrap_or(f64::INFINITY);
+        if let (Some(new), Some(old)) = (better, found.best)
+            && squares(new) <= squares(old) + 1.0
+        {
+            found.best = Some(new);
+        }
+        let wanted: Vec<f64> = half_widths(search, &told)
+            .iter()
+            .map(|w| w.clamp(NARROWEST, WIDEST))
+            .collect();
+        let alike = |(w, now): (&f64, &f64)| *w <= ALIKE * now && *now <= ALIKE * w;
+        let settled = !told.at_edge && wanted.iter().zip(&widths).all(alike);
+        identification = Some(told);
+        if settled {
+            break;
+        }
+        widths = wanted;
+    }
+    Ok(identification
+        .zip(found.best)
+        .map(|(identification, best)| Outcome {
+            identification,
+            best,
+        }))
+}
+
+/// One run for each seed of each point that gave all curves.
+fn runs(evaluations: &[Evaluation]) -> Vec<Run> {
+    let of = |e: &Evaluation| -> Vec<Run> {
+        let values = e.samples.iter().filter_map(|s| s.as_ref().ok());
+        values
+            .map(|v| Run {
+                point: e.place.clone(),
+                simulated: v.clone(),
+            })
+            .collect()
+    };
+    evaluations
+        .iter()
+        .filter(|e| e.stage == Stage::Local)
+        .flat_map(of)
+        .collect()
+}
+
+fn from_runs(
+    search: &Search<'_>,
+    runs: &[Run],
+    minimum: &[f64],
+) -> Result<Identification, FitError> {
+    let target = &search.tests.target;
+    let (measured, sigma, weights) = (target.measured(), target.sigma(), target.weights());
+    let data = Data {
+        measured: &measured,
+        sigma: Some(&sigma),
+        weights: Some(&weights),
+        specimen_scatters: search.tests.specimen_scatters,
+    };
+    mathematics::identify(&search.tests.bounds, runs, minimum, &data)
+        .map_err(|e| FitError::Failed(e.to_string()))
+}
+
+/// Half-widths of the intervals in the unit cube.
+fn half_widths(search: &Search<'_>, told: &Identification) -> Vec<f64> {
+    let low: Vec<f64> = told.estimates.iter().map(|e| e.interval.low).collect();
+    let high: Vec<f64> = told.estimates.iter().map(|e| e.interval.high).collect();
+    let places = (
+        search.tests.bounds.point(&low),
+        search.tests.bounds.point(&high),
+    );
+    places
+        .0
+        .iter()
+        .zip(&places.1)
+        .map(|(a, b)| 0.5 * (b - a))
+        .collect()
+}
+
+/// Mean over the seeds of an evaluation, and the standard deviation of one run where there are several.
+pub fn mean_of(evaluation: &Evaluation) -> Option<(Vec<f64>, Option<Vec<f64>>)> {
+    let rows: Vec<Vec<f64>> = evaluation
+        .samples
+        .iter()
+        .filter_map(|s| s.as_ref().ok().cloned())
+        .collect();
+    let over = over_seeds(&rows)?;
+    let deviation = over
+        .variance
+        .map(|v| v.into_iter().map(f64::sqrt).collect());
+    Some((over.mean, deviation))
+}

@@ -1,0 +1,340 @@
+//! The search: points of a Latin hypercube over the whole region, then CMA-ES from the best of them, with as many seeds as tell the
+//! points apart; at the end runs around the best point, from which its intervals follow.
+//!
+//! All choices follow from the seed of the search, and runs are kept by what determines them: the same command goes on after an
+//! interruption, and makes no run twice.
+
+use super::FitError;
+use super::evaluate::{Sample, Tests};
+use super::spec::SearchSpec;
+use fretwork_study::design::latin_hypercube::maximin_latin_hypercube;
+use fretwork_study::fit::cma_es::{Cma, Limits};
+use fretwork_study::fit::residuals::over_seeds;
+use fretwork_study::fit::seeds::SeedsPerPoint;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Latin hypercubes of which the one with the widest distances is taken.
+const TRIES: usize = 20;
+
+/// The search ends where the sums of squares of its points differ by less: a difference of one is one standard deviation of a
+/// parameter.
+const FLAT: f64 = 0.02;
+
+/// And where it moves parameters by less than this share of their ranges.
+const CLOSE: f64 = 1e-4;
+
+/// Points of a local design for each coefficient of a quadratic in the parameters.
+const PER_COEFFICIENT: usize = 3;
+
+/// A point that was run.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    /// Values of the parameters.
+    pub values: Vec<f64>,
+    /// Its place in the unit cube.
+    pub place: Vec<f64>,
+    /// Numbers of its seeds.
+    pub seeds: Range<u64>,
+    /// Simulated values by seed, or why a run gave none.
+    pub samples: Vec<Result<Vec<f64>, String>>,
+    /// Sum of squares of the mean over the seeds; `None` if a run failed.
+    pub chi_squared: Option<f64>,
+    /// Which part of the search made it.
+    pub stage: Stage,
+}
+
+/// A part of the search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// Latin hypercube over the region.
+    Region,
+    /// A generation of CMA-ES, from 1.
+    Generation(u32),
+    /// The candidates for the best point, with all seeds.
+    Candidates,
+    /// Around the best point.
+    Local,
+}
+
+impl Stage {
+    /// A word for tables.
+    pub fn word(self) -> String {
+        match self {
+            Self::Region => "region".to_owned(),
+            Self::Generation(k) => format!("generation {k}"),
+            Self::Candidates => "candidates".to_owned(),
+            Self::Local => "around the best".to_owned(),
+        }
+    }
+}
+
+/// What a search found.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// All points in the order of their runs.
+    pub evaluations: Vec<Evaluation>,
+    /// Number of the best point among them.
+    pub best: Option<usize>,
+    /// Why the search ended, as a sentence.
+    pub ended: String,
+}
+
+/// A search on a set of tests.
+pub struct Search<'a> {
+    /// The tests.
+    pub tests: &'a Tests,
+    /// How it goes.
+    pub spec: SearchSpec,
+    /// Smallest and largest number of seeds of a point.
+    pub seeds: (u16, u16),
+    /// Runs at a time.
+    pub jobs: usize,
+    /// Whether it is to stop.
+    pub stop: &'a AtomicBool,
+    /// Told what goes on.
+    pub told: &'a (dyn Fn(&Progress) + Sync),
+}
+
+impl std::fmt::Debug for Search<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Search")
+            .field("spec", &self.spec)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Progress of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// A stage begins with this many runs.
+    Begins(Stage, usize),
+    /// A run ended.
+    Run,
+    /// A stage ended: least sum of squares so far, failed points of the stage.
+    Ended(Stage, Option<f64>, usize),
+}
+
+impl Search<'_> {
+    /// Searches; what was found until `stop` is set is returned too.
+    ///
+    /// # Errors
+    /// A run cannot be started, or all of the region fails.
+    pub fn run(&self) -> Result<Found, FitError> {
+        let count = self.tests.bounds.len();
+        let mut found = Found::default();
+        let (fewest, most) = self.seeds_of_points();
+        let points = self.spec.points.map_or(10 * count, |n| n as usize);
+        let cube = maximin_latin_hypercube(points, count, self.spec.seed, TRIES);
+        self.evaluate(&mut found, cube, 0..fewest as u64, Stage::Region)?;
+        if self.stopped() {
+            return Ok(self.interrupted(found));
+        }
+        let Some(start) = found.least(0..found.evaluations.len()) else {
+            let why = found
+                .evaluations
+                .iter()
+                .flat_map(|e| &e.samples)
+                .find_map(|s| s.as_ref().err());
+            return Err(FitError::Failed(format!(
+                "no point of the region gave all curves; the first says: {}",
+                why.map_or("nothing", String::as_str)
+            )));
+        };
+        // As far apart as the points of the hypercube are.
+        let step = (0.5 * (points as f64).powf(-1.0 / count as f64)).clamp(0.05, 0.3);
+        let failed = |e: &dyn std::fmt::Display| FitError::Failed(e.to_string());
+        let population = self.spec.population.map(|n| n as usize);
+        let mut cma = Cma::new(
+            &found.evaluations[start].place,
+            step,
+            population,
+            self.spec.seed,
+        )
+        .map_err(|e| failed(&e))?
+        .with_largest_step(0.5)
+        .with_limits(Limits {
+            step: CLOSE,
+            value: FLAT,
+            ..Limits::default()
+        });
+        let mut seeds = SeedsPerPoint::new(fewest, most);
+        // Each generation has seeds of its own, so that the minimum is not that of one set of samples.
+        let mut next = most as u64;
+        found.ended = format!("after {} generations", self.spec.generations);
+        for generation in 1..=self.spec.generations {
+            let here = if self.tests.random {
+                next..next + seeds.count() as u64
+            } else {
+                0..1
+            };
+            next = here.end.max(next);
+            let stage = Stage::Generation(generation);
+            let asked: Vec<Vec<f64>> = cma.ask();
+            let first = found.evaluations.len();
+            self.evaluate(&mut found, asked, here, stage)?;
+            if self.stopped() {
+                return Ok(self.interrupted(found));
+            }
+            let values: Vec<Option<f64>> = found.evaluations[first..]
+                .iter()
+                .map(|e| e.chi_squared)
+                .collect();
+            cma.tell(&values).map_err(|e| failed(&e))?;
+            let by_seed: Vec<Vec<Option<f64>>> = found.evaluations[first..]
+                .iter()
+                .map(|e| self.by_seed(e))
+                .collect();
+            seeds.update(&by_seed);
+            if let Some(stop) = cma.stop() {
+                found.ended = stop.to_string();
+                break;
+            }
+            if self.tests.random && seeds.exhausted() {
+                found.ended = format!("points can no longer be told apart with {most} seeds each");
+                break;
+            }
+        }
+        self.finish(found, &cma, most)
+    }
+
+    /// Runs the candidates with all seeds, and points around the best of them.
+    fn finish(&self, mut found: Found, cma: &Cma, most: usize) -> Result<Found, FitError> {
+        let mut candidates = vec![cma.mean().to_vec()];
+        candidates.extend(cma.best().map(|(place, _)| place.to_vec()));
+        candidates.extend(
+            found
+                .least(0..found.evaluations.len())
+                .map(|k| found.evaluations[k].place.clone()),
+        );
+        candidates.dedup();
+        let first = found.evaluations.len();
+        self.evaluate(&mut found, candidates, 0..most as u64, Stage::Candidates)?;
+        found.best = found.least(first..found.evaluations.len());
+        if self.stopped() || found.best.is_none() {
+            return Ok(self.interrupted(found));
+        }
+        Ok(found)
+    }
+
+    /// Runs values of the parameters with all seeds.
+    ///
+    /// # Errors
+    /// A run cannot be started.
+    pub fn candidate(&self, found: &mut Found, values: &[f64]) -> Result<(), FitError> {
+        let place = self.tests.bounds.point(values);
+        let (_, most) = self.seeds_of_points();
+        self.evaluate(found, vec![place], 0..most as u64, Stage::Candidates)
+    }
+
+    /// Runs points around the best one, within a half-width for each coordinate of the unit cube.
+    ///
+    /// # Errors
+    /// A run cannot be started.
+    pub fn around(
+        &self,
+        found: &mut Found,
+        half_widths: &[f64],
+        round: u64,
+    ) -> Result<Range<usize>, FitError> {
+        let first = found.evaluations.len();
+        let Some(best) = found.best else {
+            return Ok(first..first);
+        };
+        let count = half_widths.len();
+        let coefficients = 1 + count + count * (count + 1) / 2;
+        let seed = self.spec.seed.wrapping_add(round);
+        let cube = maximin_latin_hypercube(PER_COEFFICIENT * coefficients, count, seed, TRIES);
+        let centre = found.evaluations[best].place.clone();
+        let point = |unit: Vec<f64>| -> Vec<f64> {
+            let places = unit.iter().zip(half_widths).zip(&centre);
+            places.map(|((u, h), c)| c + h * (2.0 * u - 1.0)).collect()
+        };
+        let points = cube.into_iter().map(point).collect();
+        let (fewest, _) = self.seeds_of_points();
+        self.evaluate(found, points, 0..fewest as u64, Stage::Local)?;
+        Ok(first..found.evaluations.len())
+    }
+
+    /// Seeds of a point: one for a model without randomness.
+    fn seeds_of_points(&self) -> (usize, usize) {
+        match self.tests.random {
+            true => (usize::from(self.seeds.0), usize::from(self.seeds.1)),
+            false => (1, 1),
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    fn interrupted(&self, mut found: Found) -> Found {
+        found.ended = "interrupted".to_owned();
+        found
+    }
+
+    fn evaluate(
+        &self,
+        found: &mut Found,
+        places: Vec<Vec<f64>>,
+        seeds: Range<u64>,
+        stage: Stage,
+    ) -> Result<(), FitError> {
+        let bounds = &self.tests.bounds;
+        let values: Vec<Vec<f64>> = places.iter().map(|p| bounds.values(p)).collect();
+        let runs =
+            places.len() * (seeds.end - seeds.start) as usize * self.tests.target.tests().len();
+        (self.told)(&Progress::Begins(stage, runs));
+        let told = || (self.told)(&Progress::Run);
+        let all = self
+            .tests
+            .run(&values, seeds.clone(), self.jobs, self.stop, &told)?;
+        let mut failed = 0;
+        for (values, samples) in values.into_iter().zip(all) {
+            let samples: Option<Vec<Sample>> = samples.into_iter().collect();
+            // What an interruption left out is no evaluation.
+            let Some(samples) = samples else { continue };
+            let samples: Vec<Result<Vec<f64>, String>> =
+                samples.into_iter().map(|s| s.values).collect();
+            let chi_squared = self.chi_squared(&samples);
+            failed += usize::from(chi_squared.is_none());
+            found.evaluations.push(Evaluation {
+                place: bounds.point(&values),
+                values,
+                seeds: seeds.clone(),
+                samples,
+                chi_squared,
+                stage,
+            });
+        }
+        let least = found.least(0..found.evaluations.len());
+        let least = least.and_then(|k| found.evaluations[k].chi_squared);
+        (self.told)(&Progress::Ended(stage, least, failed));
+        Ok(())
+    }
+
+    /// Of the mean over the seeds.
+    fn chi_squared(&self, samples: &[Result<Vec<f64>, String>]) -> Option<f64> {
+        let rows: Option<Vec<Vec<f64>>> =
+            samples.iter().map(|s| s.as_ref().ok().cloned()).collect();
+        let mean = over_seeds(&rows?)?.mean;
+        self.tests.target.chi_squared(&mean, None).ok()
+    }
+
+    /// Of each seed alone.
+    fn by_seed(&self, evaluation: &Evaluation) -> Vec<Option<f64>> {
+        let one = |s: &Result<Vec<f64>, String>| {
+            let values = s.as_ref().ok()?;
+            self.tests.target.chi_squared(values, None).ok()
+        };
+        evaluation.samples.iter().map(one).collect()
+    }
+}
+
+impl Found {
+    /// The evaluation with the least sum of squares in a part of them.
+    pub fn least(&self, part: Range<usize>) -> Option<usize> {
+        let known = part.filter_map(|k| Some((k, self.evaluations[k].chi_squared?)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
+    }
+}
