@@ -19,9 +19,23 @@ PLANTS = {
         case="cases/verification/bond_mode_1.ron",
         sets=["time.step=2e-8", "coupling=Midpoint", "output.every=1",
               "interfaces.grain.parameters.cohesion.c_n=1.5e12", "interfaces.grain.parameters.damage.w=0.08"],
-        x=lambda r: 1e6 * (r["grip_y"] - 2), y=lambda r: -1e-6 * r["grip_fy"] / 0.5,
+        x=lambda r: 1e6 * (r["grip_y"] - 2 - 0.5 * 0.045 * 2e-8), y=lambda r: -1e-6 * r["grip_fy"] / 0.5,
         at=[0.02 * k for k in range(1, 16)] + [0.3 + 0.1 * k for k in range(1, 20)], noise=0.01,
-        headings=("opening [um]", "traction [MPa]", "uncertainty [MPa]"),
+        headings=("opening [um]", "traction [MPa]", "uncertainty [MPa]"), truth={"stiffness": 1.5e12, "energy": 0.08},
+    ),
+    "falling_friction": dict(
+        case="fits/cases/falling_friction.ron",
+        sets=["time.step=5e-5", "output.every=5", "interfaces.dry.parameters.contact.mu_0=0.5", "interfaces.dry.parameters.contact.a=0.3",
+              "interfaces.dry.parameters.contact.b=0.9"],
+        x=lambda r: r["slider_vx"], y=lambda r: r["mu"], at=[0.1 * k for k in range(1, 40)], noise=0.01,
+        headings=("velocity [m/s]", "friction", "uncertainty"), truth={"mu_0": 0.5, "a": 0.3, "b": 0.9},
+    ),
+    "fretting_loop": dict(
+        case="fits/cases/fretting_loop.ron",
+        sets=["time.step=5e-6", "output.every=4", "interfaces.dry.parameters.contact.ratio=0.7", "interfaces.dry.parameters.contact.mu=0.6"],
+        # The second cycle by its path; the measured loop is told in um and N, in the order in which it is run through.
+        loop=True, x=lambda r: 1e6 * r["delta"], y=lambda r: r["Q"], at=[0.25 + 0.5 * k for k in range(39)], noise=15.0,
+        headings=("displacement [um]", "force [N/m]", "uncertainty [N/m]"), truth={"ratio": 0.7, "friction": 0.6},
     ),
 }
 
@@ -34,26 +48,45 @@ def curve(plant):
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         with open(pathlib.Path(folder) / "statistics.csv") as file:
             rows = [{k.partition(" [")[0]: float(v) for k, v in row.items()} for row in csv.DictReader(file)]
-    points = [(plant["x"](r), plant["y"](r)) for r in rows]
+    if plant.get("loop"):
+        rows = [r for r in rows if r["cycle"] == 2]
+        return along_path([(plant["x"](r), plant["y"](r)) for r in rows])
+    points = [(plant["x"](r), plant["y"](r), plant["x"](r)) for r in rows]
     return [p for k, p in enumerate(points) if k == 0 or p[0] > points[k - 1][0]]
 
 
+def along_path(points):
+    """Points with the path along the abscissa first, and the abscissa last."""
+    path, out, last = 0.0, [], points[0][0]
+    for x, y in points:
+        path, last = path + abs(x - last), x
+        if not out or path > out[-1][0]:
+            out.append((path, y, x))
+    return out
+
+
 def interpolate(points, x):
-    for (x0, y0), (x1, y1) in zip(points, points[1:]):
+    for (x0, y0, a0), (x1, y1, a1) in zip(points, points[1:]):
         if x0 <= x <= x1:
-            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+            share = (x - x0) / (x1 - x0)
+            return a0 + (a1 - a0) * share, y0 + (y1 - y0) * share
     raise SystemExit(f"{x} lies outside the curve, {points[0][0]} to {points[-1][0]}")
 
 
-def plant(name, seed):
-    chosen = PLANTS[name]
-    points = curve(chosen)
+def noisy(plant, points, seed):
     noise = random.Random(seed)
-    return chosen["headings"], [(x, interpolate(points, x) + noise.gauss(0, chosen["noise"]), chosen["noise"]) for x in chosen["at"]]
+    rows = []
+    if plant.get("loop"):
+        rows.append((points[0][2], points[0][1] + noise.gauss(0, plant["noise"]), plant["noise"]))
+    for x in plant["at"]:
+        abscissa, value = interpolate(points, x)
+        rows.append((abscissa, value + noise.gauss(0, plant["noise"]), plant["noise"]))
+    return rows
 
 
-def write(name, seed, path):
-    headings, rows = plant(name, seed)
+def write(name, seed, path, points=None):
+    chosen = PLANTS[name]
+    headings, rows = chosen["headings"], noisy(chosen, points or curve(chosen), seed)
     with open(path, "w", newline="") as file:
         file.write(f"# planted: fits/plant.py {name} {seed}\n")
         table = csv.writer(file, lineterminator="\n")

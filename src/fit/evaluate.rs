@@ -3,7 +3,7 @@
 use super::FitError;
 use super::measured;
 use super::model::Model;
-use super::spec::{AlongSpec, ReadFit, TestSpec};
+use super::spec::{ReadFit, TestSpec};
 use crate::laws::SearchPath;
 use crate::record::statistics_columns;
 use crate::runs::RunsError;
@@ -123,8 +123,9 @@ impl Tests {
                     let columns: Vec<String> = columns.into_iter().map(|c| c.name).collect();
                     let made = Model::new(model, &columns)
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
-                    let curve = measured::read(name, from, &read.beside(&from.file), model.along)?;
-                    (Yield::Curve(made), curve)
+                    let (curve, reach) =
+                        measured::read(name, from, &read.beside(&from.file), model.along)?;
+                    (Yield::Curve(made.reaching(reach)), curve)
                 }
                 TestSpec::Value {
                     output,
@@ -369,9 +370,4 @@ fn bounds(read: &ReadFit) -> Result<Bounds, FitError> {
         .collect();
     let bounds = Bounds::new(parameters.collect(), &orders?);
     bounds.map_err(|e| read.source.error_at("parameters", e.to_string()).into())
-}
-
-/// Whether curves of a test are compared by the path along the abscissa.
-pub fn along_path(test: &TestSpec) -> bool {
-    matches!(test, TestSpec::Curve { model, .. } if model.along == AlongSpec::Path)
 }

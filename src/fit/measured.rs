@@ -1,11 +1,12 @@
 //! Measured curves from CSV files.
 
 use super::FitError;
+use super::branches::laid_out;
 use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
 use fretwork_study::fit::residuals::Measurement;
 use std::path::Path;
 
-/// Reads a measured curve. Lines that begin with `#` are comments, headings may have a unit, `stress [MPa]`.
+/// Reads a measured curve, and its largest distance from 0, which sets the distance of branches. Lines that begin with `#` are comments, headings may have a unit, `stress [MPa]`.
 ///
 /// # Errors
 /// A file, column or number that is not there.
@@ -14,7 +15,7 @@ pub fn read(
     spec: &MeasuredSpec,
     path: &Path,
     along: AlongSpec,
-) -> Result<Measurement, FitError> {
+) -> Result<(Measurement, f64), FitError> {
     let fail = |why: String| FitError::Usage(format!("{}: {why}", path.display()));
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -76,29 +77,20 @@ pub fn read(
         SigmaSpec::OfLargest(share) => share * largest,
     };
     let mut abscissae: Vec<f64> = rows.iter().map(|r| r[0]).collect();
-    if along == AlongSpec::Path {
-        abscissae = path_along(&abscissae);
+    let reach = abscissae.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    if along == AlongSpec::Branches {
+        abscissae = laid_out(&abscissae, reach);
     }
-    Ok(Measurement {
-        name: name.to_owned(),
-        x: abscissae,
-        y: rows.iter().map(|r| r[1]).collect(),
-        sigma: rows.iter().map(sigma).collect(),
-        weight: 1.0,
-    })
-}
-
-/// The way along an abscissa from its first value.
-pub(super) fn path_along(x: &[f64]) -> Vec<f64> {
-    let mut way = 0.0;
-    let mut last = x.first().copied().unwrap_or(0.0);
-    x.iter()
-        .map(|x| {
-            way += (x - last).abs();
-            last = *x;
-            way
-        })
-        .collect()
+    Ok((
+        Measurement {
+            name: name.to_owned(),
+            x: abscissae,
+            y: rows.iter().map(|r| r[1]).collect(),
+            sigma: rows.iter().map(sigma).collect(),
+            weight: 1.0,
+        },
+        reach,
+    ))
 }
 
 #[cfg(test)]
@@ -119,13 +111,14 @@ mod tests {
             within: Some((0.05, 1.0)),
         };
         let of = |y: &str, sigma| read("shear", &spec(y, sigma), &path, AlongSpec::Abscissa);
-        let curve = of("tau", SigmaSpec::Column("s".into())).unwrap();
+        let (curve, reach) = of("tau", SigmaSpec::Column("s".into())).unwrap();
+        assert_eq!(reach, 0.2);
         assert_eq!(
             (curve.x, curve.y, curve.sigma),
             (vec![0.1, 0.2], vec![50.0, -80.0], vec![2.0, 3.0])
         );
         assert_eq!(
-            of("tau", SigmaSpec::OfLargest(0.1)).unwrap().sigma,
+            of("tau", SigmaSpec::OfLargest(0.1)).unwrap().0.sigma,
             [8.0, 8.0]
         );
         let said = of("sigma", SigmaSpec::Value(1.0)).unwrap_err().to_string();
@@ -134,6 +127,5 @@ mod tests {
             "{said}"
         );
         std::fs::remove_file(&path).unwrap();
-        assert_eq!(path_along(&[1.0, 2.0, -1.0, 0.0]), [0.0, 1.0, 4.0, 5.0]);
     }
 }

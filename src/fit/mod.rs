@@ -1,9 +1,10 @@
 //! Fits: parameters of a case, such as those of a law, for which its runs give measured curves.
 //!
-//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a run, [`evaluate`] runs points of
+//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a run, [`branches`] lays loops out, [`evaluate`] runs points of
 //! the parameters over their seeds, [`search`] looks for the best one, and [`outcome`] says how well the measurements determine it.
 //! [`page`] and [`files`] tell it.
 
+mod branches;
 pub mod evaluate;
 
 pub mod files;

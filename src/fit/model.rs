@@ -1,6 +1,6 @@
 //! The curve that a run gives, from its statistics.
 
-use super::measured::path_along;
+use super::branches::laid_out;
 use super::spec::{AlongSpec, ModelSpec, RowsSpec};
 use crate::runs::expression::Expression;
 use std::path::Path;
@@ -17,6 +17,8 @@ pub struct Model {
     rows: RowsSpec,
     smooth: usize,
     along: AlongSpec,
+    /// Largest distance of the measured abscissae from 0.
+    reach: f64,
 }
 
 impl Model {
@@ -47,7 +49,13 @@ impl Model {
             rows: spec.rows,
             smooth: usize::from(spec.smooth),
             along: spec.along,
+            reach: 0.0,
         })
+    }
+
+    /// The same for a measured curve that reaches so far from 0.
+    pub fn reaching(self, reach: f64) -> Self {
+        Self { reach, ..self }
     }
 
     /// Abscissae that increase, and values, from the table of statistics of a run.
@@ -75,8 +83,8 @@ impl Model {
                 ys.push(y);
             }
         }
-        if self.along == AlongSpec::Path {
-            xs = path_along(&xs);
+        if self.along == AlongSpec::Branches {
+            xs = laid_out(&xs, self.reach);
         }
         let ys = smoothed(&ys, self.smooth);
         // Only what goes on: small steps back are noise of the motion.
@@ -89,7 +97,11 @@ impl Model {
         }
         match curve.0.len() {
             0 => Err("its expressions have no finite value in any row".to_owned()),
-            _ => Ok(curve),
+            _ => {
+                continue_ends(&mut curve.0);
+                continue_ends(&mut curve.1);
+                Ok(curve)
+            }
         }
     }
 
@@ -138,6 +150,16 @@ impl Model {
     }
 }
 
+/// Continues a list at both ends by the distance of its last two: rows stand between the ends of a run, a row apart.
+fn continue_ends(list: &mut Vec<f64>) {
+    if let [first, second, ..] = list[..] {
+        list.insert(0, 2.0 * first - second);
+    }
+    if let [.., before, last] = list[..] {
+        list.push(2.0 * last - before);
+    }
+}
+
 /// Means over an odd number of neighbours, fewer at the ends.
 fn smoothed(values: &[f64], width: usize) -> Vec<f64> {
     let mean = |k: usize| {
@@ -168,7 +190,7 @@ mod tests {
         };
         let of = |x: &str, rows| Model::new(&spec(x, rows), &columns).unwrap().curve(&path);
         let curve = of("delta - delta_start", RowsSpec::From(0.15)).unwrap();
-        assert_eq!(curve, (vec![0.0, 2.0], vec![1.0, 2.0]));
+        assert_eq!(curve, (vec![-2.0, 0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0, 3.0]));
         assert!(of("delta", RowsSpec::From(9.0)).is_err());
         let (key, said) = Model::new(&spec("dlta", RowsSpec::All), &columns).unwrap_err();
         assert!(

@@ -22,7 +22,7 @@ const TRIES: usize = 20;
 const FLAT: f64 = 0.02;
 
 /// And where it moves parameters by less than this share of their ranges.
-const CLOSE: f64 = 1e-4;
+const CLOSE: f64 = 1e-3;
 
 /// Points of a local design for each coefficient of a quadratic in the parameters.
 const PER_COEFFICIENT: usize = 3;

@@ -174,8 +174,8 @@ pub enum AlongSpec {
     /// By the abscissa, which increases.
     #[default]
     Abscissa,
-    /// By the path along the abscissa from the first point, for loops: the measured one must begin at the same place of the cycle.
-    Path,
+    /// By branch and abscissa, for loops: the measured one must begin on the same branch.
+    Branches,
 }
 
 /// What is sought.
