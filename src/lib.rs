@@ -43,7 +43,7 @@
 //!
 //! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
 //! `fretwork-plot`. Here they meet: [`cli`] is the command line, [`trade`] compares accuracy and cost, [`shipped`] has the laws
-//! that come with the program.
+//! that come with the program, [`contact_patch`] has contact patches in closed form.
 //!
 //! # A scene without files
 //!
@@ -75,6 +75,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;
+pub mod contact_patch;
 pub mod interrupt;
 pub mod record;
 pub mod scene;

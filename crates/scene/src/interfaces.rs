@@ -247,7 +247,7 @@ fn build_interface(
         let plugin = find_law(case, kind, name, path)?;
         let friction = friction_of(&laws);
         let mut numbers = given_numbers(kind.word(), name, of_file, own);
-        let coefficient = (kind == Kind::Wear)
+        let coefficient = (kind == Kind::WEAR)
             .then(|| wear_from_hardness(&plugin, &mut numbers, (sides, spec), friction))
             .transpose()?
             .flatten();

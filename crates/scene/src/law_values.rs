@@ -78,7 +78,7 @@ pub(super) fn properties_of_sides<'a>(
 
 /// `mu` of the contact law, if it has one.
 pub(super) fn friction_of(laws: &[Loaded]) -> Option<f64> {
-    let contact = laws.iter().find(|l| l.plugin.kind == Kind::Contact)?;
+    let contact = laws.iter().find(|l| l.plugin.kind == Kind::CONTACT)?;
     let place = contact
         .plugin
         .parameters
