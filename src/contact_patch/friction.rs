@@ -2,10 +2,9 @@
 
 use super::question::{Question, range};
 use super::range::Range;
+use super::runs;
 use crate::trade::interval::Mean;
 use serde::Serialize;
-use serde_json::Value;
-use std::path::Path;
 
 /// A friction coefficient with its interval.
 #[derive(Clone, Debug, Serialize)]
@@ -39,55 +38,18 @@ impl Friction {
     }
 }
 
-/// What the summary of a run says of its friction coefficient: value, scatter within the run, numerical error.
-fn of_run(folder: &Path) -> Result<(f64, Option<f64>, Option<f64>), String> {
-    let path = folder.join("summary.json");
-    let text = std::fs::read_to_string(&path).map_err(|e| {
-        format!(
-            "friction of a run: cannot read {}: {e}; give the folder of a finished run",
-            path.display()
-        )
-    })?;
-    let summary: Value = serde_json::from_str(&text)
-        .map_err(|e| format!("friction of a run: {} is damaged: {e}", path.display()))?;
-    if !summary["stopped"].is_null() || summary["interrupted"] == true {
-        return Err(format!(
-            "friction of a run: {} did not reach its end; run it again",
-            folder.display()
-        ));
-    }
-    let value = summary["friction_coefficient"].as_f64().ok_or_else(|| {
-        format!(
-            "friction of a run: {} has no friction coefficient; its case needs `friction`",
-            folder.display()
-        )
-    })?;
-    let error = &summary["uncertainty"]["friction_coefficient"];
-    let parts = ["step", "tolerance", "coupling"].map(|name| error[name].as_f64());
-    let numerical = match parts {
-        [None, None, None] => None,
-        parts => Some(parts.into_iter().flatten().sum()),
-    };
-    Ok((value, error["scatter"].as_f64(), numerical))
-}
-
 fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
-    let mut values = Vec::new();
-    let (mut within, mut numerical) = (None, Some(0.0f64));
-    for folder in folders {
-        let (value, scatter, error) = of_run(folder)?;
-        values.push(value.abs());
-        within = scatter;
-        numerical = numerical.zip(error).map(|(a, b)| a.max(b));
-    }
+    let runs = runs::read(folders)?;
+    let values: Vec<f64> = runs.iter().map(|r| r.friction).collect();
     let mean = Mean::of(&values).ok_or("friction of runs: there is no run")?;
-    let scatter = match values.len() {
-        1 => within,
+    let scatter = match runs.as_slice() {
+        [one] => one.scatter,
         _ => mean.half_width,
     };
+    let numerical = runs::largest(&runs, |r| r.numerical);
     let half = scatter.unwrap_or(0.0) + numerical.unwrap_or(0.0);
     let value = mean.mean;
-    if !(value - half > 0.0) {
+    if half.is_nan() || value <= half {
         return Err(format!(
             "friction of runs: {value:.4} +- {half:.4} contains zero; more runs with other seeds, or longer ones, narrow the interval"
         ));
@@ -98,7 +60,7 @@ fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
             value,
             high: value + half,
         },
-        runs: values.len(),
+        runs: runs.len(),
         scatter,
         numerical,
     })
@@ -111,25 +73,35 @@ mod tests {
     #[test]
     fn runs_give_their_mean_with_scatter_and_numerical_error() {
         let folder = std::env::temp_dir().join(format!("fretwork-patch-{}", std::process::id()));
-        let mut runs = Vec::new();
+        let mut folders = Vec::new();
         for (k, (value, step)) in [(0.30, 0.01), (0.34, 0.02)].into_iter().enumerate() {
             let run = folder.join(k.to_string());
             std::fs::create_dir_all(&run).unwrap();
             let text = format!(
                 r#"{{"friction_coefficient": {value}, "stopped": null, "interrupted": false,
-                "uncertainty": {{"friction_coefficient": {{"scatter": 0.1, "step": {step}, "tolerance": 0.005, "coupling": null}}}}}}"#
+                "wear": {{"bodies": [{{"body": "rail", "specific_rate": {value}e-13}}, {{"body": "wheel", "specific_rate": null}}]}},
+                "uncertainty": {{"friction_coefficient": {{"scatter": 0.1, "step": {step}, "tolerance": 0.005, "coupling": null}},
+                "wear": {{"value": 2.0, "step": 0.2, "tolerance": null, "coupling": null}}}}}}"#
             );
             std::fs::write(run.join("summary.json"), text).unwrap();
-            runs.push(run);
+            folders.push(run);
         }
-        let got = of_runs(&runs).unwrap();
-        let one = of_runs(&runs[..1]).unwrap();
+        let got = of_runs(&folders).unwrap();
+        let one = of_runs(&folders[..1]).unwrap();
+        let worn = runs::wear_rates(&runs::read(&folders).unwrap());
         std::fs::remove_dir_all(&folder).unwrap();
+        // 0.32e-13 with the same scatter, and a tenth by the step.
+        let [(body, rate)] = worn.as_slice() else {
+            panic!("{worn:?}")
+        };
+        assert!(body == "rail" && (rate.value / 0.32e-13 - 1.0).abs() < 1e-12);
+        let high = 0.32 + 12.706_205 * 0.02 + 0.032;
+        assert!((rate.high / (high * 1e-13) - 1.0).abs() < 1e-6, "{rate:?}");
         // Two values 0.04 apart: s/sqrt(2) = 0.02, Student's t with one degree of freedom is 12.706.
         assert!((got.scatter.unwrap() / (12.706_205 * 0.02) - 1.0).abs() < 1e-6);
         assert!((got.numerical.unwrap() - 0.025).abs() < 1e-15);
         assert!((got.coefficient.value - 0.32).abs() < 1e-15);
         assert!((one.coefficient.high - 0.415).abs() < 1e-12);
-        assert!(of_runs(&runs[..1]).is_err_and(|e| e.contains("summary.json")));
+        assert!(of_runs(&folders[..1]).is_err_and(|e| e.contains("summary.json")));
     }
 }

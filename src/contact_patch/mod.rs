@@ -18,6 +18,7 @@
 mod friction;
 mod question;
 mod range;
+mod runs;
 mod slip;
 mod text;
 mod warnings;
@@ -27,7 +28,7 @@ pub use friction::Friction;
 pub use question::Question;
 pub use range::Range;
 pub use slip::{Rolling, Tangential, Window};
-pub use wear::{BodyWear, EnergyMap, Wear};
+pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
 
 use crate::elastic::patch::{self, LinePatch, PointPatch};
 use question::Body;

@@ -110,6 +110,7 @@ impl Answer {
         }
         self.slip_lines(force, energy, &mut add);
         self.wear_lines(line, &mut add);
+        self.carried_lines(line, &mut add);
         self.window_lines(&mut add);
         for warning in &self.warnings {
             let (heading, text) = warning.split_once(": ").unwrap_or(("WARNING", warning));
@@ -205,6 +206,22 @@ impl Answer {
                 );
             }
             add("wear, Archard", format!("{}: {text}", body.body));
+        }
+    }
+
+    fn carried_lines(&self, line: bool, add: &mut impl FnMut(&str, String)) {
+        let unit = if line { "m3/m" } else { "m3" };
+        for body in self.wear.iter().flat_map(|w| &w.window) {
+            add(
+                "wear, window",
+                format!(
+                    "{}: {} mm3/(N m), {} a metre rolled; {} in 1e6 passages",
+                    body.body,
+                    ranged(&body.specific_rate.map(|k| 1e9 * k), ""),
+                    ranged(&body.volume, unit),
+                    ranged(&body.depth_per_passage.map(|d| 1e6 * d), "m")
+                ),
+            );
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::question::{Question, range};
 use super::range::Range;
+use super::runs;
 use super::{Contact, Friction, Rolling, Theory};
 use crate::laws::{Kind, Plugin};
 use crate::shipped::search_path;
@@ -14,6 +15,21 @@ pub struct Wear {
     pub archard: Vec<BodyWear>,
     /// By the map of the law `t-gamma`; none of a line contact, which has no area.
     pub energy_map: Option<EnergyMap>,
+    /// Of each first body of the runs from which the friction coefficient is, by its specific wear rate there.
+    pub window: Vec<WindowWear>,
+}
+
+/// Wear of a first body of a window, carried over to the patch.
+#[derive(Clone, Debug, Serialize)]
+pub struct WindowWear {
+    /// Its name in the case.
+    pub body: String,
+    /// Specific wear rate (m³/(N m)), volume over load times slip of the window.
+    pub specific_rate: Range,
+    /// Volume per metre rolled (m³/m; m³/m² of a line).
+    pub volume: Range,
+    /// Depth (m) by which a point wears as it passes the patch, the mean over the width of the patch.
+    pub depth_per_passage: Range,
 }
 
 /// Wear of a body by Archard's law.
@@ -78,24 +94,45 @@ impl Wear {
             Theory::Point(point) => Some(EnergyMap::of(&energy, point.area())?),
             Theory::Line(_) => None,
         };
-        Ok((!archard.is_empty() || map.is_some()).then_some(Self {
+        let window = carried_over(contact, &runs::read(&question.runs)?, &slipped);
+        let any = !archard.is_empty() || map.is_some() || !window.is_empty();
+        Ok(any.then_some(Self {
             archard,
             energy_map: map,
+            window,
         }))
+    }
+}
+
+/// The specific wear rates of a window times load and slip of the patch.
+fn carried_over(contact: &Contact, runs: &[runs::Run], slipped: &Range) -> Vec<WindowWear> {
+    let of = |(body, specific_rate): (String, Range)| {
+        let volume = Range::of(&specific_rate, slipped, |k, s| k * s);
+        WindowWear {
+            body,
+            specific_rate,
+            volume,
+            depth_per_passage: volume.map(|v| v / width(contact)),
+        }
+    };
+    runs::wear_rates(runs).into_iter().map(of).collect()
+}
+
+/// Width of the patch across the motion (m); 1 of a line, whose rates are per metre.
+fn width(contact: &Contact) -> f64 {
+    match &contact.theory {
+        Theory::Line(_) => 1.0,
+        Theory::Point(point) => 2.0 * point.across,
     }
 }
 
 /// V = K/H times load and slip, of each body with its own hardness.
 fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
-    let width = match &contact.theory {
-        Theory::Line(_) => 1.0,
-        Theory::Point(point) => 2.0 * point.across,
-    };
     let of = |body: &super::Body| {
         let hardness = body.hardness?;
         let coefficient = k.map(|k| k / hardness);
         let volume = Range::of(&coefficient, slipped, |k, s| k * s);
-        let depth = volume.map(|v| v / width);
+        let depth = volume.map(|v| v / width(contact));
         let curvature = body.curvature[0];
         let round = std::f64::consts::TAU / curvature;
         Some(BodyWear {
