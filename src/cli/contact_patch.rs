@@ -26,7 +26,7 @@ Exit code: 0 answered, 2 wrong input. docs/steel_to_number.md goes from such a p
 #[derive(Args, Debug)]
 pub struct ContactPatchArgs {
     /// Normal load: a force, or a force per length for a line contact
-    #[arg(long, value_name = "FORCE")]
+    #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     load: String,
     /// Radii of the two bodies along the motion; `flat` is a plane, a negative radius is concave, one alone is against a plane
     #[arg(
