@@ -80,26 +80,33 @@ pub(super) fn largest(runs: &[Run], of: impl Fn(&Run) -> Option<f64>) -> Option<
     runs.iter().map(of).try_fold(0.0f64, |a, b| Some(a.max(b?)))
 }
 
-/// The specific wear rate of each first body (m³/(N m)): the mean over the runs, with Student's 95 % interval and the numerical error;
-/// of a single run with the latter alone.
+/// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over the runs, with Student's 95 %
+/// interval and the numerical error; of a single run with the latter alone. Which body wears may differ from sample to sample where
+/// the sum does not.
 pub(super) fn wear_rates(runs: &[Run]) -> Vec<(String, Range)> {
     let Some(first) = runs.first() else {
         return Vec::new();
     };
     let error = largest(runs, |r| r.wear_error).unwrap_or(0.0);
-    let of = |name: &String| {
-        let own = |r: &Run| r.wear.iter().find(|w| w.0 == *name).map(|w| w.1);
-        let values: Option<Vec<f64>> = runs.iter().map(own).collect();
+    let of = |name: &str, rate: &dyn Fn(&Run) -> Option<f64>| {
+        let values: Option<Vec<f64>> = runs.iter().map(rate).collect();
         let mean = Mean::of(&values?)?;
         let half = mean.half_width.unwrap_or(0.0) + error * mean.mean;
-        Some(Range {
+        let range = Range {
             low: (mean.mean - half).max(0.0),
             value: mean.mean,
             high: mean.mean + half,
-        })
+        };
+        Some((name.to_owned(), range))
     };
-    let bodies = first.wear.iter();
-    bodies
-        .filter_map(|(name, _)| Some((name.clone(), of(name)?)))
-        .collect()
+    let names: Vec<&str> = first.wear.iter().map(|w| w.0.as_str()).collect();
+    let own = |name: &&str| of(name, &|r| r.wear.iter().find(|w| w.0 == *name).map(|w| w.1));
+    let all = of(&names.join(" and "), &|r| {
+        Some(r.wear.iter().map(|w| w.1).sum())
+    });
+    let mut out: Vec<_> = names.iter().filter_map(own).collect();
+    if out.len() > 1 {
+        out.extend(all);
+    }
+    out
 }
