@@ -34,7 +34,7 @@ pub fn quantity(text: &str, wanted: &str) -> Result<f64, UnitError> {
                     .filter(|x| digit && x.is_finite())?,
             ))
         })
-        .last();
+        .next_back();
     let Some((end, value)) = number else {
         return Err(UnitError {
             message: format!("`{text}` is not a number with a unit"),
