@@ -42,8 +42,9 @@
 //! | pictures | [`report`]: charts and pictures |
 //!
 //! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
-//! `fretwork-plot`, `fretwork-study`. Here they meet: [`cli`] is the command line, [`trade`] compares accuracy and cost, [`shipped`] has the laws
-//! that come with the program.
+//! `fretwork-plot`, `fretwork-study`. Here they meet: [`cli`] is the command line, [`runs`] makes runs of a case in processes of their own,
+//! [`trade`] compares their accuracy and cost, [`study`] varies a case, [`fit`] finds its parameters, [`shipped`] has the laws that come
+//! with the program, [`contact_patch`] has contact patches in closed form.
 //!
 //! # A scene without files
 //!
@@ -75,6 +76,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;
+pub mod contact_patch;
 pub mod fit;
 pub mod interrupt;
 pub mod record;

@@ -15,6 +15,7 @@ import sys as _sys
 from . import _fretwork, law
 from ._case import Case
 from ._check import Check
+from ._contact_patch import contact_patch
 from ._errors import Error, InputError, MissingPackageError, RunError
 from ._fretwork import __version__
 from ._observers import Column, Observer, Stop
@@ -46,6 +47,7 @@ __all__ = [
     "Stop",
     "__version__",
     "compare",
+    "contact_patch",
     "law",
     "report",
 ]

@@ -7,6 +7,7 @@ mod array;
 mod case;
 mod columns;
 mod command_line;
+mod contact_patch;
 mod errors;
 mod infinity;
 mod law;
@@ -31,6 +32,7 @@ fn _fretwork(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(run::default_folder, module)?)?;
     module.add_function(wrap_pyfunction!(report::report, module)?)?;
     module.add_function(wrap_pyfunction!(report::compare, module)?)?;
+    module.add_function(wrap_pyfunction!(contact_patch::contact_patch, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::declare, module)?)?;
     module.add_function(wrap_pyfunction!(command_line::command_line, module)?)?;
     law::add(module)

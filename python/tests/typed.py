@@ -1,6 +1,7 @@
 """Uses of the package whose types a checker confirms; see test.sh."""
 
 from collections.abc import Callable
+from typing import Any
 
 import fretwork
 
@@ -23,7 +24,8 @@ def uses(case: fretwork.Case) -> float:
     report: fretwork.StepReport = case.simulation(threads=2).step(3)
     check: list[str] = case.check()["dimension"]
     energy: dict[str, float] = case.simulation().energy
-    return report.error + len(check) + energy["friction"] + float(results.statistics["time"].iloc[-1])
+    patch: dict[str, Any] = fretwork.contact_patch("75 kN", 0.46, ("flat", 0.3), material="rail_steel_r260", friction=(0.3, 0.5))
+    return float(patch["load"]) + report.error + len(check) + energy["friction"] + float(results.statistics["time"].iloc[-1])
 
 
 def errors() -> int | None:

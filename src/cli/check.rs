@@ -125,6 +125,12 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     methods(s, &mut line);
     line("error", solver.norm.formula().into());
     interfaces(s, &mut line);
+    for w in &built.wear_coefficients {
+        line(
+            "wear coefficient",
+            format!("{}, {}: {}", w.interface, w.law, w.derivation),
+        );
+    }
     for pair in without_interface(case, s) {
         line("no interface", pair);
     }

@@ -1,10 +1,11 @@
-//! The command line: `run`, `report`, `compare`, `check`, `law`, `solve`, `study`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `law`, `solve`, `study`, `fit`, `trade`.
 //!
 //! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
 
 mod again;
 mod check;
 mod compare;
+mod contact_patch;
 mod ending;
 mod fit;
 mod law;
@@ -64,6 +65,9 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Print what a case uses and what it will cost, without running it or writing files
     Check(check::CheckArgs),
+    /// From load, radii and moduli to a contact patch: pressure, size, slip, friction and wear against creepage
+    #[command(after_help = contact_patch::EXAMPLES)]
+    ContactPatch(contact_patch::ContactPatchArgs),
     /// Interface laws: list, show, make, drive and certify them
     #[command(subcommand)]
     Law(law::LawCommand),
@@ -289,6 +293,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Report(args) => report::report(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
+        Command::ContactPatch(args) => contact_patch::contact_patch(&args),
         Command::Law(command) => law::law(&command),
         Command::Solve(args) => solve::solve(&args),
         Command::Study(command) => study::study(&command),

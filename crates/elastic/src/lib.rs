@@ -1,5 +1,5 @@
 //! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large rotation, and in large strain, and
-//! elastic half-spaces.
+//! elastic half-spaces; and contact patches in closed form.
 
 pub mod body;
 pub mod compiled;
@@ -19,6 +19,7 @@ mod model;
 pub mod neo_hookean;
 mod newton;
 mod panels;
+pub mod patch;
 pub mod rigid;
 pub mod small_strain;
 pub mod spec;

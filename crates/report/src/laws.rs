@@ -4,6 +4,7 @@ use crate::folder::RunFolder;
 use crate::materials::Files;
 use fretwork_scene::Case;
 use fretwork_scene::source::Source;
+use fretwork_scene::wear_coefficient;
 
 /// A law, as its library describes it.
 #[derive(Clone, Debug, Default)]
@@ -107,7 +108,15 @@ pub(crate) fn interfaces(
             Used {
                 kind: kind.word().to_owned(),
                 name: name.clone(),
-                parameters: parameters(&case, spec, kind.word(), name, info.as_ref(), files),
+                parameters: parameters(
+                    &case,
+                    spec,
+                    kind.word(),
+                    name,
+                    info.as_ref(),
+                    files,
+                    &run.summary,
+                ),
             }
         });
         Interface {
@@ -119,7 +128,18 @@ pub(crate) fn interfaces(
     case.interfaces.iter().map(of).collect()
 }
 
-/// Parameters of a law: those of the case win over those of the file, properties of materials and defaults.
+/// What a run derived from `K` for the wear law of an interface.
+fn derived_wear<'a>(
+    summary: &'a serde_json::Value,
+    interface: &str,
+    law: &str,
+) -> Option<&'a serde_json::Value> {
+    let list = summary["wear_coefficients"].as_array()?;
+    list.iter()
+        .find(|w| w["interface"] == *interface && w["law"] == *law)
+}
+
+/// Parameters of a law: those that a run derived from a hardness, then those of the case win over those of the file, properties of materials and defaults.
 fn parameters(
     case: &Case,
     spec: &fretwork_scene::case::InterfaceSpec,
@@ -127,6 +147,7 @@ fn parameters(
     name: &str,
     info: Option<&LawInfo>,
     files: &Files,
+    summary: &serde_json::Value,
 ) -> Vec<[String; 5]> {
     let own: Vec<(String, f64, String)> = spec
         .parameters
@@ -150,6 +171,11 @@ fn parameters(
             names.push(given.clone());
         }
     }
+    let gives_k = names.iter().any(|n| n == wear_coefficient::NAME);
+    let schema_fields = info.iter().flat_map(|i| &i.parameters);
+    let schema_fields = schema_fields.map(|p| (p.name.as_str(), p.unit.as_str()));
+    let from_hardness = wear_coefficient::parameter(schema_fields).filter(|_| gives_k);
+    let derived = derived_wear(summary, &spec.name, name);
     let row = |parameter: String| {
         let schema = info.and_then(|i| i.parameters.iter().find(|p| p.name == parameter));
         let si = || schema.map(|s| s.unit.clone()).unwrap_or_default();
@@ -162,7 +188,11 @@ fn parameters(
         };
         let doc = schema.map(|s| s.doc.clone()).unwrap_or_default();
         let (value, unit, from) =
-            if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
+            if let Some(w) = derived.filter(|w| kind == "wear" && w["parameter"] == *parameter) {
+                let text = |key: &str| w[key].as_str().unwrap_or_default().to_owned();
+                let value = w["value"].as_f64().unwrap_or(f64::NAN);
+                (value, text("unit"), text("derivation"))
+            } else if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
                 (*value, unit(given), "the case".to_owned())
             } else if let Some((_, number)) = of_file.iter().find(|f| f.0 == parameter) {
                 (number.value, unit(&number.unit), number.source.clone())
@@ -172,6 +202,9 @@ fn parameters(
                     unit(&number.unit),
                     format!("material {material}: {}", number.source),
                 )
+            } else if kind == "wear" && from_hardness.is_some_and(|(name, _)| name == parameter) {
+                let why = "from K and the hardness; the run left no summary that has the value";
+                return [parameter, String::new(), si(), why.to_owned(), doc];
             } else {
                 let default = schema.map_or(f64::NAN, |s| s.default);
                 (default, si(), "default of the law".to_owned())

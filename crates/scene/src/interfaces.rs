@@ -1,9 +1,13 @@
 //! Interface laws of a case: finds the plugins, resolves and checks their parameters.
 
 use super::case::{Case, InterfaceSpec};
-use super::material::{self, Given, InterfaceParameters, MaterialLibrary, Sourced};
+use super::law_values::{
+    GivenNumber, InterfaceError, Sides, friction_of, given_numbers, parameter_value,
+    properties_of_sides, wear_from_hardness,
+};
+use super::material::{InterfaceParameters, MaterialLibrary, Sourced};
 use super::source::{InputError, Source, ValidationError, nearest};
-use super::units;
+use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::space::Space;
@@ -21,6 +25,8 @@ pub struct Laws {
     pub table: LawTable,
     /// Name and text of the parameter files that were read.
     pub files: Vec<(String, String)>,
+    /// Wear coefficients that follow from the hardness of materials.
+    pub wear_coefficients: Vec<WearCoefficient>,
 }
 
 /// Builds the interfaces.
@@ -39,6 +45,7 @@ pub fn build(
         interfaces: Vec::new(),
         table: LawTable::new(materials.len()),
         files: Vec::new(),
+        wear_coefficients: Vec::new(),
     };
     check_pins(case).map_err(|f| source.locate(f))?;
     let wanted = case.interfaces.iter().flat_map(laws_of);
@@ -84,12 +91,12 @@ pub fn build(
         let (parameters, file) =
             read_parameters(spec, library, &mut out.files, source, &here, &at)?;
         let sides = pair.map(|m| &properties[usize::from(m)]);
-        let interface = build_interface(case, spec, &parameters, &sides, path).map_err(
-            |error| match &file {
-                Some(file) if error.in_file => file.locate(error.fault),
-                _ => at(error.fault),
-            },
-        )?;
+        let derived = &mut out.wear_coefficients;
+        let built = build_interface(case, spec, &parameters, &sides, path, derived);
+        let interface = built.map_err(|error| match &file {
+            Some(file) if error.in_file => file.locate(error.fault),
+            _ => at(error.fault),
+        })?;
         out.table.set(pair[0], pair[1], k as u16);
         out.interfaces.push(interface);
     }
@@ -202,27 +209,13 @@ fn read_parameters(
     Ok((parsed, Some(file)))
 }
 
-/// An error in the case or in its parameter file.
-struct InterfaceError {
-    fault: ValidationError,
-    in_file: bool,
-}
-
-impl From<ValidationError> for InterfaceError {
-    fn from(fault: ValidationError) -> Self {
-        Self {
-            fault,
-            in_file: false,
-        }
-    }
-}
-
 fn build_interface(
     case: &Case,
     spec: &InterfaceSpec,
     file: &InterfaceParameters,
     sides: &Sides<'_>,
     path: &SearchPath,
+    derived: &mut Vec<WearCoefficient>,
 ) -> Result<Interface, InterfaceError> {
     if let BondRule::At(time) = spec.bonds
         && !(time.is_finite() && time >= 0.0)
@@ -247,12 +240,20 @@ fn build_interface(
         }
     }
     let none = BTreeMap::new();
-    let mut laws = Vec::new();
+    let mut laws: Vec<Loaded> = Vec::new();
     for (kind, name) in laws_of(spec) {
         let of_file = file.slots.get(kind).and_then(|laws| laws.get(name));
         let own = spec.parameters.get(kind).unwrap_or(&none);
         let plugin = find_law(case, kind, name, path)?;
-        laws.push(load_law(case, plugin, of_file, own, (sides, spec))?);
+        let friction = friction_of(&laws);
+        let mut numbers = given_numbers(kind.word(), name, of_file, own);
+        let coefficient = (kind == Kind::WEAR)
+            .then(|| wear_from_hardness(&plugin, &mut numbers, (sides, spec), friction))
+            .transpose()?
+            .flatten();
+        let given = (&numbers, coefficient.as_ref());
+        laws.push(load_law(case, plugin, given, (sides, spec))?);
+        derived.extend(coefficient);
     }
     // What does not fit is said of the damage law, or of `healing`.
     let unfit = |e: LawError| InterfaceError::from(ValidationError::new("damage", e.to_string()));
@@ -266,65 +267,11 @@ fn build_interface(
         .map_err(unfit)
 }
 
-/// Properties of the two materials of an interface, in its order.
-type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
-
-/// Parameters that are properties of materials, where neither the case nor the parameter file gives them: `young_1` is `young` of the
-/// first material of the interface, `young_2` that of the second.
-fn properties_of_sides<'a>(
-    plugin: &'a Plugin,
-    given: &BTreeMap<&str, f64>,
-    sides: &Sides<'_>,
-    spec: &InterfaceSpec,
-) -> Result<Vec<(&'a str, f64)>, ValidationError> {
-    let mut out = Vec::new();
-    let names = [&spec.between.0, &spec.between.1];
-    for field in &plugin.parameters {
-        let name = field.name.as_str();
-        let Some((property, side)) = name.strip_suffix("_1").map(|p| (p, 0)).or_else(|| {
-            let property = name.strip_suffix("_2")?;
-            Some((property, 1))
-        }) else {
-            continue;
-        };
-        if !material::is_property(property) || given.contains_key(name) {
-            continue;
-        }
-        let slot = plugin.kind.word();
-        let Some(sourced) = sides[side].get(property) else {
-            let message = format!(
-                "the {slot} law `{}` needs `{property}` of the material `{}`",
-                plugin.name, names[side]
-            );
-            return Err(ValidationError::new(slot, message).expected(format!(
-                "`{property}` among the properties of the material's file, or `{name}` in the parameters of the law"
-            )));
-        };
-        let number = GivenNumber {
-            value: sourced.value,
-            unit: &sourced.unit,
-            at: slot.to_owned(),
-            in_case: true,
-        };
-        let value = parameter_value(plugin, plugin.kind, name, &number).map_err(|mut fault| {
-            fault.path = slot.to_owned();
-            fault.message = format!(
-                "{}, a property of the material `{}`",
-                fault.message, names[side]
-            );
-            fault
-        })?;
-        out.push((name, value));
-    }
-    Ok(out)
-}
-
 /// Resolves the parameters of a law and has it check them.
 fn load_law(
     case: &Case,
     plugin: Plugin,
-    file: Option<&BTreeMap<String, Sourced>>,
-    own: &BTreeMap<String, Given>,
+    (numbers, coefficient): (&BTreeMap<&str, GivenNumber<'_>>, Option<&WearCoefficient>),
     (sides, spec): (&Sides<'_>, &InterfaceSpec),
 ) -> Result<Loaded, InterfaceError> {
     let (kind, name) = (plugin.kind, plugin.name.as_str());
@@ -339,13 +286,16 @@ fn load_law(
         }
     }
     let mut values: BTreeMap<&str, f64> = BTreeMap::new();
-    for (parameter, number) in &given_numbers(slot, name, file, own) {
+    for (parameter, number) in numbers {
         let value =
             parameter_value(&plugin, kind, parameter, number).map_err(|fault| InterfaceError {
                 fault,
                 in_file: !number.in_case,
             })?;
         values.insert(parameter, value);
+    }
+    if let Some(coefficient) = coefficient {
+        values.insert(&coefficient.parameter, coefficient.value);
     }
     let of_materials = properties_of_sides(&plugin, &values, sides, spec)?;
     values.extend(of_materials);
@@ -384,83 +334,4 @@ fn find_law(
         LawError::Pinned { .. } => ValidationError::new(format!("pins.{key}"), e.to_string()),
         other => ValidationError::new(slot, other.to_string()),
     })
-}
-
-/// A number that a case or its parameter file gives a parameter of a law.
-struct GivenNumber<'a> {
-    value: f64,
-    unit: &'a str,
-    /// Path in the case or in the file.
-    at: String,
-    /// Whether it is written in the case itself.
-    in_case: bool,
-}
-
-/// Numbers by parameter; those of the case win over those of the file.
-fn given_numbers<'a>(
-    slot: &str,
-    law: &str,
-    file: Option<&'a BTreeMap<String, Sourced>>,
-    own: &'a BTreeMap<String, Given>,
-) -> BTreeMap<&'a str, GivenNumber<'a>> {
-    let of_file = file.into_iter().flatten().map(|(name, number)| {
-        let given = GivenNumber {
-            value: number.value,
-            unit: &number.unit,
-            at: format!("{slot}.{law}.{name}"),
-            in_case: false,
-        };
-        (name.as_str(), given)
-    });
-    let of_case = own.iter().map(|(name, number)| {
-        let given = GivenNumber {
-            value: number.value,
-            unit: number.unit.as_deref().unwrap_or_default(),
-            at: format!("parameters.{slot}.{name}"),
-            in_case: true,
-        };
-        (name.as_str(), given)
-    });
-    of_file.chain(of_case).collect()
-}
-
-/// The value of a parameter in the unit of the law.
-fn parameter_value(
-    plugin: &Plugin,
-    kind: Kind,
-    parameter: &str,
-    given: &GivenNumber<'_>,
-) -> Result<f64, ValidationError> {
-    let (law, at) = (&plugin.name, &given.at);
-    let plain_number = given.in_case && given.unit.is_empty();
-    let at_value = match plain_number {
-        true => at.clone(),
-        false => format!("{at}.value"),
-    };
-    let Some(field) = plugin.parameters.iter().find(|p| p.name == *parameter) else {
-        let names = || plugin.parameters.iter().map(|p| p.name.as_str());
-        return Err(ValidationError::new(
-            at_value,
-            format!("the {kind} law `{law}` has no parameter `{parameter}`"),
-        )
-        .expected(format!("one of {}", names().collect::<Vec<_>>().join(", ")))
-        .nearest(nearest(parameter, names())));
-    };
-    let value = units::convert(given.value, given.unit, &field.unit).map_err(|e| {
-        let mut fault = e.at(format!("{at}.unit"));
-        fault.message = format!("`{parameter}` of the {kind} law `{law}`: {}", fault.message);
-        fault
-    })?;
-    if !value.is_finite() || !(field.minimum..=field.maximum).contains(&value) {
-        let range = format!(
-            "a value between {:e} and {:e} {}",
-            field.minimum, field.maximum, field.unit
-        );
-        return Err(ValidationError::new(
-            at_value,
-            format!("`{parameter}` of the {kind} law `{law}` is {value}"),
-        )
-        .expected(range.trim_end()));
-    }
-    Ok(value)
 }

@@ -1,7 +1,7 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 10] = [
+pub const FILES: [(&str, &str); 11] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
@@ -29,6 +29,10 @@ pub const FILES: [(&str, &str); 10] = [
     (
         "rail_steel_r260",
         include_str!("../../../materials/rail_steel_r260.ron"),
+    ),
+    (
+        "rail_steel_r350ht",
+        include_str!("../../../materials/rail_steel_r350ht.ron"),
     ),
     (
         "verification_grain",

@@ -282,6 +282,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             case: case.name.clone(),
             dimension: S::D,
             plugins: stamps(&simulation.laws),
+            wear_coefficients: std::mem::take(&mut built.wear_coefficients),
             threads: options.threads,
             seed: case.seed,
             identity: checkpoint_writer.name(),

@@ -40,6 +40,12 @@ impl Summary {
             let text = format!("{} {} {} ({hash}), {certified}", p.kind, p.name, p.version);
             lines.add("law", text);
         }
+        for w in &self.wear_coefficients {
+            lines.add(
+                "wear coefficient",
+                format!("{}, {}: {}", w.interface, w.law, w.derivation),
+            );
+        }
         lines.add(
             "made with",
             format!(

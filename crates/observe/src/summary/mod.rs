@@ -28,6 +28,7 @@ use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
 use fretwork_core::step::control::Begun;
 use fretwork_scene::sampling::UnresolvedDrive;
+use fretwork_scene::wear_coefficient::WearCoefficient;
 use serde::Serialize;
 
 /// A loaded plugin.
@@ -199,6 +200,9 @@ pub struct Summary {
     pub solver: SolverSummary,
     /// Laws.
     pub plugins: Vec<PluginStamp>,
+    /// Wear coefficients that follow from the hardness of materials; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wear_coefficients: Vec<WearCoefficient>,
     /// Threads.
     pub threads: usize,
     /// Seed.

@@ -32,6 +32,7 @@ use super::methods::{Demands, Service};
 use super::recorded::{Deformed, RecordReader, ShapedGrain};
 use super::scene_file::{self, SceneFile};
 use super::source::{InputError, Source, ValidationError};
+use super::wear_coefficient::WearCoefficient;
 use fretwork_core::bodies::{Bodies, DynamicalSystem};
 use fretwork_core::contact::detect::LawTable;
 use fretwork_core::geometry::periodic::Periodic;
@@ -85,6 +86,8 @@ pub struct Built<S: Space> {
     pub origins: Vec<Origin>,
     /// The grains that deform, without load, in the order of their systems.
     pub deforming: Vec<ShapedGrain>,
+    /// Wear coefficients that follow from the hardness of materials.
+    pub wear_coefficients: Vec<WearCoefficient>,
 }
 
 impl Loaded {
@@ -182,6 +185,7 @@ impl Loaded {
             samples,
             origins,
             deforming,
+            wear_coefficients: laws.wear_coefficients,
         })
     }
 

@@ -1,0 +1,65 @@
+//! Contact patches in closed form: Hertz' pressure and size, where gross slip begins, and friction against creepage.
+//!
+//! Two smooth elastic bodies touch over a patch that is small against their radii. K. L. Johnson, Contact Mechanics (1985), has all
+//! of it but Kalker's coefficients: chapter 4 (Hertz), 7.2 (Cattaneo, Mindlin), 8.3 (Carter).
+
+mod ellipse;
+mod hertz;
+mod partial_slip;
+mod rolling;
+
+pub use hertz::{LinePatch, PointPatch, line, point};
+pub use partial_slip::{PartialSlip, stuck_strip};
+pub use rolling::{Creep, kalker_c11};
+
+/// An isotropic elastic body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solid {
+    /// Young's modulus (Pa).
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+}
+
+impl Solid {
+    /// Shear modulus (Pa).
+    pub fn shear(&self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+}
+
+/// E* (Pa) of two bodies: 1/E* = (1 - nu1²)/E1 + (1 - nu2²)/E2 (Johnson, 4.19).
+pub fn effective_modulus(bodies: &[Solid; 2]) -> f64 {
+    1.0 / bodies
+        .iter()
+        .map(|s| (1.0 - s.poisson * s.poisson) / s.young)
+        .sum::<f64>()
+}
+
+/// Shear modulus (Pa) and Poisson's ratio of the two like bodies that are as compliant in shear as these two: 2/G = 1/G1 + 1/G2,
+/// 2 nu/G = nu1/G1 + nu2/G2 (J. J. Kalker, Three-dimensional elastic bodies in rolling contact, 1990, 1.1).
+pub fn like_bodies(bodies: &[Solid; 2]) -> Solid {
+    let compliance = bodies.iter().map(|s| 1.0 / s.shear()).sum::<f64>() / 2.0;
+    let poisson = bodies.iter().map(|s| s.poisson / s.shear()).sum::<f64>() / (2.0 * compliance);
+    Solid {
+        young: 2.0 * (1.0 + poisson) / compliance,
+        poisson,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_equal_bodies_are_like_themselves() {
+        let steel = Solid {
+            young: 210e9,
+            poisson: 0.3,
+        };
+        let like = like_bodies(&[steel, steel]);
+        assert!((like.young / steel.young - 1.0).abs() < 1e-14);
+        assert!((like.poisson - steel.poisson).abs() < 1e-15);
+        assert!((effective_modulus(&[steel, steel]) / (105e9 / 0.91) - 1.0).abs() < 1e-14);
+    }
+}

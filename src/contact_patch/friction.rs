@@ -1,0 +1,107 @@
+//! The friction coefficient of the patch: given, or that of runs with other seeds.
+
+use super::question::{Question, range};
+use super::range::Range;
+use super::runs;
+use crate::trade::interval::Mean;
+use serde::Serialize;
+
+/// A friction coefficient with its interval.
+#[derive(Clone, Debug, Serialize)]
+pub struct Friction {
+    /// The coefficient: of runs, their mean and the sum of both half-widths below.
+    pub coefficient: Range,
+    /// Number of runs that it is from; 0 if it was given.
+    pub runs: usize,
+    /// Half-width of the 95 % interval of the mean over runs (Student), or over the cycles of a single run.
+    pub scatter: Option<f64>,
+    /// Largest half-width of the runs' own estimates of the error by step, tolerance and coupling.
+    pub numerical: Option<f64>,
+}
+
+impl Friction {
+    /// That of a question, if it gives one.
+    pub(super) fn of(question: &Question) -> Result<Option<Self>, String> {
+        match (&question.friction, question.runs.as_slice()) {
+            (None, []) => Ok(None),
+            (Some(_), [_, ..]) => Err(
+                "friction: give the coefficient, or the runs that it is from, not both".to_owned(),
+            ),
+            (Some(text), []) => Ok(Some(Self {
+                coefficient: range("friction", text)?,
+                runs: 0,
+                scatter: None,
+                numerical: None,
+            })),
+            (None, folders) => of_runs(folders).map(Some),
+        }
+    }
+}
+
+fn of_runs(folders: &[std::path::PathBuf]) -> Result<Friction, String> {
+    let runs = runs::read(folders)?;
+    let values: Vec<f64> = runs.iter().map(|r| r.friction).collect();
+    let mean = Mean::of(&values).ok_or("friction of runs: there is no run")?;
+    let scatter = match runs.as_slice() {
+        [one] => one.scatter,
+        _ => mean.half_width,
+    };
+    let numerical = runs::largest(&runs, |r| r.numerical);
+    let half = scatter.unwrap_or(0.0) + numerical.unwrap_or(0.0);
+    let value = mean.mean;
+    if half.is_nan() || value <= half {
+        return Err(format!(
+            "friction of runs: {value:.4} +- {half:.4} contains zero; more runs with other seeds, or longer ones, narrow the interval"
+        ));
+    }
+    Ok(Friction {
+        coefficient: Range {
+            low: value - half,
+            value,
+            high: value + half,
+        },
+        runs: runs.len(),
+        scatter,
+        numerical,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_give_their_mean_with_scatter_and_numerical_error() {
+        let folder = std::env::temp_dir().join(format!("fretwork-patch-{}", std::process::id()));
+        let mut folders = Vec::new();
+        for (k, (value, step)) in [(0.30, 0.01), (0.34, 0.02)].into_iter().enumerate() {
+            let run = folder.join(k.to_string());
+            std::fs::create_dir_all(&run).unwrap();
+            let text = format!(
+                r#"{{"friction_coefficient": {value}, "stopped": null, "interrupted": false,
+                "wear": {{"bodies": [{{"body": "rail", "specific_rate": {value}e-13}}, {{"body": "wheel", "specific_rate": null}}]}},
+                "uncertainty": {{"friction_coefficient": {{"scatter": 0.1, "step": {step}, "tolerance": 0.005, "coupling": null}},
+                "wear": {{"value": 2.0, "step": 0.2, "tolerance": null, "coupling": null}}}}}}"#
+            );
+            std::fs::write(run.join("summary.json"), text).unwrap();
+            folders.push(run);
+        }
+        let got = of_runs(&folders).unwrap();
+        let one = of_runs(&folders[..1]).unwrap();
+        let worn = runs::wear_rates(&runs::read(&folders).unwrap());
+        std::fs::remove_dir_all(&folder).unwrap();
+        // 0.32e-13 with the same scatter, and a tenth by the step.
+        let [(body, rate)] = worn.as_slice() else {
+            panic!("{worn:?}")
+        };
+        assert!(body == "rail" && (rate.value / 0.32e-13 - 1.0).abs() < 1e-12);
+        let high = 0.32 + 12.706_205 * 0.02 + 0.032;
+        assert!((rate.high / (high * 1e-13) - 1.0).abs() < 1e-6, "{rate:?}");
+        // Two values 0.04 apart: s/sqrt(2) = 0.02, Student's t with one degree of freedom is 12.706.
+        assert!((got.scatter.unwrap() / (12.706_205 * 0.02) - 1.0).abs() < 1e-6);
+        assert!((got.numerical.unwrap() - 0.025).abs() < 1e-15);
+        assert!((got.coefficient.value - 0.32).abs() < 1e-15);
+        assert!((one.coefficient.high - 0.415).abs() < 1e-12);
+        assert!(of_runs(&folders[..1]).is_err_and(|e| e.contains("summary.json")));
+    }
+}

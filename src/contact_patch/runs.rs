@@ -1,0 +1,112 @@
+//! What the summaries of runs of a window say: friction, and the wear of its first bodies.
+
+use super::range::Range;
+use crate::trade::interval::Mean;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// A run of a window.
+pub(super) struct Run {
+    /// Friction coefficient.
+    pub friction: f64,
+    /// Half-width of its interval within the run.
+    pub scatter: Option<f64>,
+    /// Half-width of its error by step, tolerance and coupling.
+    pub numerical: Option<f64>,
+    /// First bodies with their specific wear rates (m³/(N m)).
+    wear: Vec<(String, f64)>,
+    /// Half-width of the error of wear by step, tolerance and coupling, as a share.
+    wear_error: Option<f64>,
+}
+
+/// Reads the runs in these folders.
+///
+/// # Errors
+/// A sentence about the first folder without the summary of a complete run with a friction test.
+pub(super) fn read(folders: &[PathBuf]) -> Result<Vec<Run>, String> {
+    folders.iter().map(|f| of(f)).collect()
+}
+
+fn of(folder: &Path) -> Result<Run, String> {
+    let path = folder.join("summary.json");
+    let text = std::fs::read_to_string(&path).map_err(|e| {
+        format!(
+            "friction of a run: cannot read {}: {e}; give the folder of a finished run",
+            path.display()
+        )
+    })?;
+    let summary: Value = serde_json::from_str(&text)
+        .map_err(|e| format!("friction of a run: {} is damaged: {e}", path.display()))?;
+    if !summary["stopped"].is_null() || summary["interrupted"] == true {
+        return Err(format!(
+            "friction of a run: {} did not reach its end; run it again",
+            folder.display()
+        ));
+    }
+    let value = summary["friction_coefficient"].as_f64().ok_or_else(|| {
+        format!(
+            "friction of a run: {} has no friction coefficient; its case needs `friction`",
+            folder.display()
+        )
+    })?;
+    let of_friction = &summary["uncertainty"]["friction_coefficient"];
+    let of_wear = &summary["uncertainty"]["wear"];
+    let worn = of_wear["value"].as_f64().filter(|v| *v > 0.0);
+    let bodies = summary["wear"]["bodies"].as_array();
+    let rate = |body: &Value| {
+        let rate = body["specific_rate"].as_f64()?;
+        Some((body["body"].as_str()?.to_owned(), rate))
+    };
+    Ok(Run {
+        friction: value.abs(),
+        scatter: of_friction["scatter"].as_f64(),
+        numerical: numerical(of_friction),
+        wear: bodies.into_iter().flatten().filter_map(rate).collect(),
+        wear_error: numerical(of_wear).zip(worn).map(|(e, v)| e / v),
+    })
+}
+
+/// The sum of the half-widths by step, tolerance and coupling, as far as the run estimated them.
+fn numerical(of: &Value) -> Option<f64> {
+    let parts = ["step", "tolerance", "coupling"].map(|name| of[name].as_f64());
+    match parts {
+        [None, None, None] => None,
+        parts => Some(parts.into_iter().flatten().sum()),
+    }
+}
+
+/// The largest of a number that all runs have.
+pub(super) fn largest(runs: &[Run], of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
+    runs.iter().map(of).try_fold(0.0f64, |a, b| Some(a.max(b?)))
+}
+
+/// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over the runs, with Student's 95 %
+/// interval and the numerical error; of a single run with the latter alone. Which body wears may differ from sample to sample where
+/// the sum does not.
+pub(super) fn wear_rates(runs: &[Run]) -> Vec<(String, Range)> {
+    let Some(first) = runs.first() else {
+        return Vec::new();
+    };
+    let error = largest(runs, |r| r.wear_error).unwrap_or(0.0);
+    let of = |name: &str, rate: &dyn Fn(&Run) -> Option<f64>| {
+        let values: Option<Vec<f64>> = runs.iter().map(rate).collect();
+        let mean = Mean::of(&values?)?;
+        let half = mean.half_width.unwrap_or(0.0) + error * mean.mean;
+        let range = Range {
+            low: (mean.mean - half).max(0.0),
+            value: mean.mean,
+            high: mean.mean + half,
+        };
+        Some((name.to_owned(), range))
+    };
+    let names: Vec<&str> = first.wear.iter().map(|w| w.0.as_str()).collect();
+    let own = |name: &&str| of(name, &|r| r.wear.iter().find(|w| w.0 == *name).map(|w| w.1));
+    let all = of(&names.join(" and "), &|r| {
+        Some(r.wear.iter().map(|w| w.1).sum())
+    });
+    let mut out: Vec<_> = names.iter().filter_map(own).collect();
+    if out.len() > 1 {
+        out.extend(all);
+    }
+    out
+}

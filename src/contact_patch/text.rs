@@ -1,0 +1,254 @@
+//! The answer as lines of text.
+
+use super::{Answer, Range};
+use fretwork_observe::quantity::{number, quantity};
+use std::fmt::Write as _;
+
+/// A number with its interval, in the unit of its middle.
+fn ranged(range: &Range, unit: &str) -> String {
+    let middle = quantity(range.value, unit);
+    match range.is_wide() {
+        false => middle,
+        true => format!(
+            "{middle} ({} to {})",
+            quantity(range.low, unit),
+            quantity(range.high, unit)
+        ),
+    }
+}
+
+/// A share as per cent.
+fn percent(range: &Range) -> String {
+    let one = |x: f64| format!("{} %", number(100.0 * x, 3));
+    match range.is_wide() {
+        false => one(range.value),
+        true => format!(
+            "{} ({} to {})",
+            one(range.value),
+            one(range.low),
+            one(range.high)
+        ),
+    }
+}
+
+impl Answer {
+    /// The answer as text.
+    pub fn text(&self) -> String {
+        let line = self.shape == "line";
+        let (force, energy) = if line { ("N/m", "J/m2") } else { ("N", "J/m") };
+        let title = format!(
+            "contact patch of {} on {}: {}, {}",
+            self.bodies[0],
+            self.bodies[1],
+            self.shape,
+            quantity(self.load, force)
+        );
+        let mut out = title;
+        let mut add = |label: &str, text: String| {
+            let _ = write!(out, "\n  {label:<22} {text}");
+        };
+        let p = &self.patch;
+        add(
+            "Hertz pressure",
+            format!(
+                "{} (mean {})",
+                quantity(p.pressure, "Pa"),
+                quantity(p.mean_pressure, "Pa")
+            ),
+        );
+        add(
+            "size",
+            match p.semi_axis_across {
+                None => format!("half-width {}", quantity(p.semi_axis, "m")),
+                Some(b) => format!(
+                    "semi-axes {} along the motion, {} across; {} mm2",
+                    quantity(p.semi_axis, "m"),
+                    quantity(b, "m"),
+                    number(1e6 * p.area.unwrap_or_default(), 4)
+                ),
+            },
+        );
+        add(
+            "approach",
+            match p.approach {
+                Some(d) => quantity(d, "m"),
+                None => "depends on the form of the bodies at a distance".to_owned(),
+            },
+        );
+        add("E*", quantity(self.effective_modulus, "Pa"));
+        if let Some(s) = &self.strength {
+            let of = if s.estimated {
+                ", estimated as hardness/2.8"
+            } else {
+                ""
+            };
+            add(
+                "limits of the pressure",
+                format!(
+                    "first yield {}, shakedown {}, yield stress {}{of}",
+                    quantity(s.first_yield, "Pa"),
+                    quantity(s.shakedown, "Pa"),
+                    quantity(s.yield_stress, "Pa")
+                ),
+            );
+        }
+        if let Some(f) = &self.friction {
+            let part = |x: Option<f64>| x.map_or("not known".to_owned(), |x| number(x, 2));
+            let from = match f.runs {
+                0 => String::new(),
+                n => format!(
+                    ", from {n} run{}: scatter {}, numerical error {}",
+                    if n == 1 { "" } else { "s" },
+                    part(f.scatter),
+                    part(f.numerical)
+                ),
+            };
+            add(
+                "friction coefficient",
+                format!("{}{from}", ranged(&f.coefficient, "")),
+            );
+        }
+        self.slip_lines(force, energy, &mut add);
+        self.wear_lines(line, &mut add);
+        self.carried_lines(line, &mut add);
+        self.window_lines(&mut add);
+        for warning in &self.warnings {
+            let (heading, text) = warning.split_once(": ").unwrap_or(("WARNING", warning));
+            add(heading, text.to_owned());
+        }
+        out
+    }
+
+    fn slip_lines(&self, force: &str, energy: &str, add: &mut impl FnMut(&str, String)) {
+        if let Some(t) = &self.tangential {
+            let at = match &t.slip_displacement {
+                Some(d) => format!(", displaced by {}", ranged(d, "m")),
+                None => "; the displacement depends on the form of the bodies at a distance".into(),
+            };
+            add(
+                "gross slip from",
+                format!("{}{at}", ranged(&t.slip_force, force)),
+            );
+            if let (Some(share), Some(stuck)) = (&t.share, &t.stuck) {
+                let state = match (share.low >= 1.0, share.high < 1.0) {
+                    (true, _) => "gross slip",
+                    (_, true) => "partial slip",
+                    _ => "partial or gross slip",
+                };
+                add(
+                    "as asked",
+                    format!(
+                        "{state}, Q/(mu P) {}, semi-axes of the part that sticks {} of the patch",
+                        ranged(share, ""),
+                        ranged(stuck, "")
+                    ),
+                );
+            }
+            if let Some(slip) = &t.local_slip {
+                add("slip in the middle", format!("+-{}", ranged(slip, "m")));
+            }
+        }
+        if let Some(r) = &self.rolling {
+            add(
+                "full slip in rolling",
+                format!("from a creepage of {}", percent(&r.saturation)),
+            );
+            if let (Some(xi), Some(adhesion), Some(q), Some(e)) =
+                (r.creepage, &r.adhesion, &r.force, &r.energy)
+            {
+                add(
+                    "adhesion",
+                    format!(
+                        "Q/P {} at a creepage of {} %, Q {}",
+                        ranged(adhesion, ""),
+                        number(100.0 * xi, 3),
+                        ranged(q, force)
+                    ),
+                );
+                add("T gamma", ranged(e, energy));
+            }
+            if let Some(v) = &r.slip_speed {
+                add("speed of slip", ranged(v, "m/s"));
+            }
+        }
+    }
+
+    fn wear_lines(&self, line: bool, add: &mut impl FnMut(&str, String)) {
+        let Some(wear) = &self.wear else {
+            return;
+        };
+        if let Some(map) = &wear.energy_map {
+            add(
+                "wear, T gamma/A",
+                format!(
+                    "{} N/mm2, {}; {} a metre rolled",
+                    ranged(&map.energy_per_area.map(|x| 1e-6 * x), ""),
+                    map.regime,
+                    ranged(&map.volume, "m3")
+                ),
+            );
+        }
+        for body in &wear.archard {
+            let unit = if line { "m3/m" } else { "m3" };
+            let mut text = format!(
+                "k {} 1/Pa, {} a metre rolled",
+                ranged(&body.coefficient, ""),
+                ranged(&body.volume, unit)
+            );
+            if let Some(d) = &body.depth_per_metre {
+                let _ = write!(text, "; {} in 1000 km", ranged(&d.map(|d| 1e6 * d), "m"));
+            }
+            if let Some(d) = &body.depth_per_passage {
+                let _ = write!(
+                    text,
+                    "; {} in 1e6 passages",
+                    ranged(&d.map(|d| 1e6 * d), "m")
+                );
+            }
+            add("wear, Archard", format!("{}: {text}", body.body));
+        }
+    }
+
+    fn carried_lines(&self, line: bool, add: &mut impl FnMut(&str, String)) {
+        let unit = if line { "m3/m" } else { "m3" };
+        for body in self.wear.iter().flat_map(|w| &w.window) {
+            add(
+                "wear, window",
+                format!(
+                    "{}: {} mm3/(N m), {} a metre rolled; {} in 1e6 passages",
+                    body.body,
+                    ranged(&body.specific_rate.map(|k| 1e9 * k), ""),
+                    ranged(&body.volume, unit),
+                    ranged(&body.depth_per_passage.map(|d| 1e6 * d), "m")
+                ),
+            );
+        }
+    }
+
+    fn window_lines(&self, add: &mut impl FnMut(&str, String)) {
+        let w = &self.window;
+        add(
+            "window in the middle",
+            format!(
+                "{} under {}: {} in two dimensions; at its edges the pressure is {} % lower and the gap {} wider",
+                quantity(w.width, "m"),
+                quantity(w.pressure, "Pa"),
+                quantity(w.load, "N/m"),
+                number(100.0 * w.pressure_drop, 2),
+                quantity(w.gap, "m")
+            ),
+        );
+        if let Some(slip) = &w.slip {
+            let what = match self.rolling.as_ref().and_then(|r| r.creepage) {
+                Some(_) => "a passage slips by",
+                None => "displacement",
+            };
+            let text = if slip.high <= 0.0 {
+                "none: the middle sticks".to_owned()
+            } else {
+                ranged(slip, "m")
+            };
+            add("slip in the window", format!("{what} {text}"));
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! `fretwork contact-patch`: what an engineer asks, and what is refused.
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+fn patch(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fretwork"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .arg("contact-patch")
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn said(arguments: &[&str]) -> String {
+    let output = patch(arguments);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let text = said(&[arguments, &["--json"]].concat());
+    serde_json::from_str(&text).unwrap()
+}
+
+fn number(of: &Value, path: &str) -> f64 {
+    let found = of.pointer(path).and_then(Value::as_f64);
+    found.unwrap_or_else(|| panic!("{path} in {of:#}"))
+}
+
+fn near(got: f64, expected: f64, relative: f64) {
+    assert!((got / expected - 1.0).abs() < relative, "{got} {expected}");
+}
+
+const WHEEL: [&str; 8] = [
+    "--load",
+    "75kN",
+    "--radius",
+    "0.46m,flat",
+    "--across",
+    "flat,0.30m",
+    "--material",
+    "wheel_steel_er7,rail_steel_r260",
+];
+
+/// The pressure at the head of cases/wheel_rail_fretting.ron, which takes the circle of sqrt(R1 R2); the ellipse of these radii differs
+/// from it by less than a percent.
+#[test]
+fn a_wheel_on_a_rail() {
+    let got = json(&WHEEL);
+    assert_eq!(got["shape"], "ellipse");
+    near(number(&got, "/effective_modulus"), 105e9 / 0.91, 1e-12);
+    near(number(&got, "/patch/pressure"), 1.12e9, 0.01);
+    let (along, across) = (
+        number(&got, "/patch/semi_axis"),
+        number(&got, "/patch/semi_axis_across"),
+    );
+    assert!(along > across, "the wheel is flatter than the crown");
+    near(
+        number(&got, "/patch/pressure"),
+        1.5 * 75e3 / (std::f64::consts::PI * along * across),
+        1e-12,
+    );
+    // 1.6 Y of Y = H/2.8, of the softer steel: 235 HBW.
+    near(
+        number(&got, "/strength/first_yield"),
+        1.6 * 235.0 * 9.80665e6 / 2.8,
+        1e-12,
+    );
+}
+
+/// Carter's case of the documentation (cases/carter_rolling.ron): a 1 mm, full slip at 0.06 %, Q/(mu P) = 3/4 at half of it.
+#[test]
+fn a_line_that_rolls() {
+    let got = json(&[
+        "--load",
+        "178.9 N/mm",
+        "--radius",
+        "500mm",
+        "--material",
+        "contact_steel",
+        "--friction",
+        "0.3",
+        "--creepage",
+        "0.03%",
+    ]);
+    assert_eq!(got["shape"], "line");
+    let a = number(&got, "/patch/semi_axis");
+    near(a, 1e-3, 2e-3);
+    near(
+        number(&got, "/rolling/saturation/value"),
+        0.3 * a / 0.5,
+        1e-12,
+    );
+    let s = 0.0003 / (0.3 * a / 0.5);
+    near(
+        number(&got, "/rolling/adhesion/value"),
+        0.3 * (1.0 - (1.0 - s).powi(2)),
+        1e-9,
+    );
+}
+
+/// Mindlin's closed form for a sphere of steel on steel: delta* = 3 mu P (2 - nu)/(8 G a).
+#[test]
+fn a_ball_that_frets() {
+    let base = [
+        "--load",
+        "50N",
+        "--radius",
+        "10mm",
+        "--young",
+        "210GPa",
+        "--poisson",
+        "0.3",
+        "--friction",
+        "0.6",
+        "--displacement",
+    ];
+    let got = json(&[&base[..], &["5um"]].concat());
+    let modulus = 105e9 / 0.91;
+    let a = (0.75 * 50.0 * 0.01 / modulus as f64).cbrt();
+    let slip = 3.0 * 0.6 * 50.0 * 1.7 / (8.0 * 210e9 / 2.6 * a);
+    near(
+        number(&got, "/tangential/slip_displacement/value"),
+        slip,
+        1e-12,
+    );
+    near(
+        number(&got, "/tangential/local_slip/value"),
+        5e-6 - slip,
+        1e-12,
+    );
+    let small = json(&[&base[..], &["0.1um"]].concat());
+    let share = 1.0 - (1.0 - 1e-7 / slip).powf(1.5);
+    near(number(&small, "/tangential/share/value"), share, 1e-10);
+    near(
+        number(&small, "/tangential/stuck/value"),
+        (1.0 - share).cbrt(),
+        1e-10,
+    );
+    assert_eq!(number(&small, "/tangential/local_slip/value"), 0.0);
+}
+
+/// Of an interval of friction and of K each rate has one, and the harder wheel wears less: V is proportional to 1/H.
+#[test]
+fn friction_and_wear_have_intervals() {
+    let rolls = [
+        "--friction",
+        "0.3..0.5",
+        "--creepage",
+        "0.5%",
+        "--speed",
+        "30m/s",
+    ];
+    let got = json(&[&WHEEL[..], &rolls, &["--wear", "1e-4..1e-3"]].concat());
+    for path in [
+        "/rolling/adhesion",
+        "/wear/archard/0/volume",
+        "/wear/energy_map/volume",
+    ] {
+        let end = |name: &str| number(&got, &format!("{path}/{name}"));
+        assert!(
+            end("low") <= end("value") && end("value") <= end("high"),
+            "{path}"
+        );
+    }
+    // The work of friction a metre is Q times the creepage, and Archard's volume k over mu times it.
+    let q = number(&got, "/rolling/adhesion/value") * 75e3;
+    near(number(&got, "/rolling/energy/value"), 0.005 * q, 1e-12);
+    let k = number(&got, "/wear/archard/0/coefficient/value");
+    near(k, (1e-4f64 * 1e-3).sqrt() / (235.0 * 9.80665e6), 1e-12);
+    let mu = number(&got, "/friction/coefficient/value");
+    near(
+        number(&got, "/wear/archard/0/volume/value"),
+        k / mu * 0.005 * q,
+        1e-12,
+    );
+    let hard = ["--wear", "1e-4..1e-3", "--hardness", "470 HBW,260 HBW"];
+    let harder = json(&[&WHEEL[..], &rolls, &hard].concat());
+    let of = |v: &Value| number(v, "/wear/archard/0/volume/value");
+    near(of(&harder), 0.5 * of(&got), 1e-12);
+    // As text, with depths an engineer reads.
+    let text = said(&[&WHEEL[..], &rolls, &["--wear", "1e-4..1e-3"]].concat());
+    for words in [
+        "Hertz pressure",
+        "in 1000 km",
+        "in 1e6 passages",
+        "T gamma/A",
+        "window in the middle",
+    ] {
+        assert!(text.contains(words), "{words} in {text}");
+    }
+}
+
+#[test]
+fn where_hertz_does_not_hold_is_said() {
+    let heavy = said(&[
+        "--load",
+        "75kN",
+        "--radius",
+        "10mm",
+        "--material",
+        "rail_steel_r260",
+    ]);
+    assert!(
+        heavy.contains("NOT ELASTIC") && heavy.contains("NOT HERTZ"),
+        "{heavy}"
+    );
+    let yields = said(&[&WHEEL[..], &["--yield", "650MPa"]].concat());
+    assert!(yields.contains("YIELDS AT FIRST"), "{yields}");
+    let creeps = said(&[&WHEEL[..], &["--yield", "650MPa", "--friction", "0.5"]].concat());
+    assert!(creeps.contains("BEYOND SHAKEDOWN"), "{creeps}");
+    let unknown = said(&[
+        "--load",
+        "1N",
+        "--radius",
+        "1m",
+        "--young",
+        "1GPa",
+        "--poisson",
+        "0.3",
+    ]);
+    assert!(unknown.contains("NO STRENGTH"), "{unknown}");
+    let unlike = said(&[
+        "--load",
+        "1N",
+        "--radius",
+        "1m",
+        "--young",
+        "1GPa,210GPa",
+        "--poisson",
+        "0.3",
+        "--friction",
+        "0.3",
+    ]);
+    assert!(unlike.contains("UNLIKE MATERIALS"), "{unlike}");
+}
+
+#[test]
+fn wrong_questions_are_refused_with_what_to_change() {
+    let base = ["--radius", "1m", "--material", "rail_steel_r260"];
+    for (arguments, words) in [
+        (&["--load", "75 km"][..], "load: "),
+        (&["--load", "-1N"], "above zero"),
+        (&["--load", "1N", "--creepage", "1%"], "give friction"),
+        (&["--load", "1N", "--displacement", "1um"], "give friction"),
+        (&["--load", "1N/m", "--across", "1m"], "line contact"),
+        (&["--load", "1N", "--across=-1m"], "conform"),
+        (&["--load", "1N", "--friction", "2..1"], "no range"),
+        (
+            &["--load", "1N", "--friction", "0.3", "--wear", "1e-4"],
+            "give friction and creepage",
+        ),
+        (
+            &["--load", "1N", "--friction-of", "/nowhere"],
+            "summary.json",
+        ),
+        (&["--load", "1N", "--window", "1m"], "wider than the patch"),
+        (&["--load", "1N", "--hardness", "50 HRC"], "hardness"),
+        (
+            &[
+                "--load",
+                "1N/m",
+                "--friction",
+                "0.3",
+                "--displacement",
+                "1um",
+            ],
+            "line contact",
+        ),
+    ] {
+        let output = patch(&[&base[..], arguments].concat());
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        assert!(text.contains(words), "{arguments:?}: {text}");
+    }
+    let output = patch(&[
+        "--load",
+        "1N",
+        "--radius",
+        "1m",
+        "--material",
+        "rail_steel_r26",
+    ]);
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(text.contains("did you mean `rail_steel_r260`"), "{text}");
+    let text = said(&["--help"]);
+    assert!(text.contains("A wheel on a rail") && text.contains("--creepage"));
+}
