@@ -15,6 +15,7 @@ mod check_methods;
 mod contact_patch;
 mod deformed_state;
 mod fclib;
+mod fit;
 mod grains;
 mod growth;
 mod holders;
