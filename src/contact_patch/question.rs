@@ -124,7 +124,7 @@ impl Question {
 
     fn body(&self, side: usize, curvature: [f64; 2]) -> Result<Body, String> {
         let material = of_side("material", &self.material, side)?;
-        let file = material.map(|name| read(name)).transpose()?;
+        let file = material.map(read).transpose()?;
         let property = |name: &str, unit: &str| {
             let given = file.as_ref().and_then(|m| m.properties.get(name));
             given.and_then(|p| p.in_unit(unit).ok())
