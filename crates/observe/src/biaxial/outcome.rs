@@ -209,9 +209,23 @@ mod tests {
     #[test]
     fn ratios_are_those_of_mean_stresses() {
         // Two steps in turn, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the ratio of means 2/10.
-        let columns = ["time", "axial_strain", "sigma_axial", "sigma_lateral", "p_walls"];
-        let others = ["p_contacts", "volumetric_strain", "compacity", "coordination"];
-        let names = columns.iter().chain(&others).chain(&["coordination_carried"]);
+        let columns = [
+            "time",
+            "axial_strain",
+            "sigma_axial",
+            "sigma_lateral",
+            "p_walls",
+        ];
+        let others = [
+            "p_contacts",
+            "volumetric_strain",
+            "compacity",
+            "coordination",
+        ];
+        let names = columns
+            .iter()
+            .chain(&others)
+            .chain(&["coordination_carried"]);
         let names: Vec<Column> = names.map(|n| Column::new(*n, "", "")).collect();
         let mut table = Table::new(names);
         for k in 0..1200 {
