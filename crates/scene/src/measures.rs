@@ -65,7 +65,8 @@ pub enum MeasureSpec {
         above: f64,
     },
     /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction and
-    /// inertial number of the grains away from the walls. x (and y in 3D) must be periodic.
+    /// inertial number of the grains away from the walls, with the stress of contacts and motion. x (and y in 3D) must be
+    /// periodic.
     Shear {
         /// Prefix of the columns.
         name: String,

@@ -21,13 +21,13 @@ pub struct Outcome {
     pub pressure_start: f64,
     /// Largest |p_walls - p_contacts| / p_walls at the start of the test, and during it.
     pub pressure_mismatch: [f64; 2],
-    /// Largest q/p, averaged over 0.5 % of axial strain.
+    /// Largest q/p: mean q over mean p in 0.5 % of axial strain.
     pub peak_ratio: f64,
     /// Friction angle at the peak, asin(q/p) (rad).
     pub peak_angle: f64,
     /// Axial strain at the peak.
     pub peak_strain: f64,
-    /// Mean q/p over the last third of the axial strain.
+    /// Mean q over mean p in the last third of the axial strain.
     pub residual_ratio: f64,
     /// Friction angle of the residual ratio (rad).
     pub residual_angle: f64,
@@ -54,7 +54,8 @@ impl Outcome {
         let at = first.saturating_sub(1);
         let column = |name: &str| table.column(name);
         let (walls, contacts) = (column("p_walls"), column("p_contacts"));
-        let (strain, ratio) = (column("axial_strain"), column("q_over_p"));
+        let strain = column("axial_strain");
+        let stresses = [column("sigma_axial"), column("sigma_lateral")];
         let volume = column("volumetric_strain");
         let (compacity, coordination) = (column("compacity"), column("coordination"));
         let value = |values: &[f64]| values.get(at).copied().unwrap_or(0.0);
@@ -82,13 +83,14 @@ impl Outcome {
         out.pressure_mismatch[1] = (first..=last).map(mismatch).fold(0.0, f64::max);
         (out.axial_strain, out.volumetric_strain) = (strain[last], volume[last]);
         out.contraction = volume[first..].iter().copied().fold(0.0, f64::min);
-        (out.peak_ratio, out.peak_strain) = peak(&strain[first..], &ratio[first..]);
+        let course = stresses.each_ref().map(|s| &s[first..]);
+        (out.peak_ratio, out.peak_strain) = peak(&strain[first..], course);
         let mean = |values: &[f64]| {
             let late = (first..=last).filter(|k| strain[*k] >= strain[last] * 2.0 / 3.0);
             let (sum, count) = late.fold((0.0, 0), |(s, n), k| (s + values[k], n + 1));
             sum / f64::from(count.max(1))
         };
-        out.residual_ratio = mean(&ratio);
+        out.residual_ratio = ratio(stresses.each_ref().map(|s| mean(s)));
         out.compacity_end = mean(&compacity);
         out.coordination_end = mean(&coordination);
         out.peak_angle = out.peak_ratio.clamp(-1.0, 1.0).asin();
@@ -148,22 +150,34 @@ impl Outcome {
     }
 }
 
-/// Largest mean over a window of strain, and the strain at its centre; over the whole range if it is shorter.
-fn peak(strain: &[f64], ratio: &[f64]) -> (f64, f64) {
-    let whole = ratio.iter().sum::<f64>() / ratio.len().max(1) as f64;
+/// Stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero without pressure. Forces between rigid grains
+/// fluctuate by as much as their mean, so that a mean of ratios would weigh the steps of low pressure too much.
+fn ratio([axial, lateral]: [f64; 2]) -> f64 {
+    let sum = axial + lateral;
+    if sum > 0.0 {
+        (axial - lateral) / sum
+    } else {
+        0.0
+    }
+}
+
+/// Largest ratio of the mean axial and lateral stresses in a window of strain, and the strain at its centre; of the whole range
+/// if it is shorter.
+fn peak(strain: &[f64], stresses: [&[f64]; 2]) -> (f64, f64) {
+    let whole = ratio(stresses.map(|s| s.iter().sum::<f64>()));
     let mut best: Option<(f64, f64)> = None;
-    let (mut low, mut sum) = (0, 0.0);
+    let (mut low, mut sums) = (0, [0.0; 2]);
     for high in 0..strain.len() {
-        sum += ratio[high];
+        sums = [0, 1].map(|k| sums[k] + stresses[k][high]);
         let mut full = false;
         while low < high && strain[high] - strain[low] > WINDOW {
-            sum -= ratio[low];
+            sums = [0, 1].map(|k| sums[k] - stresses[k][low]);
             low += 1;
             full = true;
         }
-        let mean = sum / (high - low + 1) as f64;
-        if (full || low > 0) && best.is_none_or(|b| mean > b.0) {
-            best = Some((mean, 0.5 * (strain[high] + strain[low])));
+        let value = ratio(sums);
+        if (full || low > 0) && best.is_none_or(|b| value > b.0) {
+            best = Some((value, 0.5 * (strain[high] + strain[low])));
         }
     }
     best.unwrap_or((whole, strain.last().map_or(0.0, |e| 0.5 * e)))
@@ -172,20 +186,58 @@ fn peak(strain: &[f64], ratio: &[f64]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::Column;
 
     #[test]
     fn a_lone_jump_is_no_peak() {
         let strain: Vec<f64> = (0..1000).map(|k| f64::from(k) * 1e-4).collect();
-        // A plateau of 0.4 within 0.3, and one step of 10.
-        let mut ratio: Vec<f64> = strain
+        // A plateau of 0.4 within 0.3, and one step of 1 in which the pressure is that of the others.
+        let mut q: Vec<f64> = strain
             .iter()
             .map(|e| if (e - 0.03).abs() < 5e-3 { 0.4 } else { 0.3 })
             .collect();
-        ratio[800] = 2.0;
-        let (top, at) = peak(&strain, &ratio);
+        q[800] = 1.0;
+        let axial: Vec<f64> = q.iter().map(|q| 1.0 + q).collect();
+        let lateral: Vec<f64> = q.iter().map(|q| 1.0 - q).collect();
+        let (top, at) = peak(&strain, [&axial, &lateral]);
         assert!(
             (top - 0.4).abs() < 1e-9 && (at - 0.03).abs() < 5e-3,
             "{top} {at}"
         );
+    }
+
+    #[test]
+    fn ratios_are_those_of_mean_stresses() {
+        // Two steps in turn, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the ratio of means 2/10.
+        let columns = [
+            "time",
+            "axial_strain",
+            "sigma_axial",
+            "sigma_lateral",
+            "p_walls",
+        ];
+        let others = [
+            "p_contacts",
+            "volumetric_strain",
+            "compacity",
+            "coordination",
+        ];
+        let names = columns
+            .iter()
+            .chain(&others)
+            .chain(&["coordination_carried"]);
+        let names: Vec<Column> = names.map(|n| Column::new(*n, "", "")).collect();
+        let mut table = Table::new(names);
+        for k in 0..1200 {
+            let p = if k % 2 == 0 { 1.0 } else { 9.0 };
+            let (time, rest) = (f64::from(k), [p, 0.0, 0.8, 3.0, 3.0]);
+            let row = [time, 1e-4 * time, p + 1.0, p - 1.0, p];
+            table.rows.extend(row.iter().chain(&rest));
+        }
+        let outcome = Outcome::new(&table, 0.0, 1.0);
+        assert!((outcome.residual_ratio - 0.2).abs() < 1e-9, "{outcome:?}");
+        // Fifty-one steps fit into the window: at best one more of low pressure, 51/(26 + 25 * 9).
+        assert!(outcome.peak_ratio >= 0.2 && outcome.peak_ratio < 51.0 / 251.0 + 1e-9);
+        assert_eq!(outcome.residual_angle, outcome.residual_ratio.asin());
     }
 }

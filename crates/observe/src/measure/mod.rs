@@ -84,12 +84,7 @@ fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64) -> Box<dyn Observe
             low,
             high,
             start,
-        } => Box::new(shear::Shear {
-            name,
-            low,
-            high,
-            start,
-        }),
+        } => Box::new(shear::Shear::<S>::new(name, low, high, start)),
     }
 }
 

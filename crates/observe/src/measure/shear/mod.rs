@@ -1,0 +1,234 @@
+//! Plane shear of the grains between two heights, away from the walls.
+//!
+//! The shear rate is the slope of v_x over height. The stress is that of the contacts and that of the motion (da Cruz et al.,
+//! Phys. Rev. E 72 (2005) 021309, section II), the sum of what crosses a layer in momentum: (sum f l + sum m v' v')/V, with the
+//! part of each branch l that lies between the heights, and v' relative to the mean velocity of the layers, a straight line
+//! over the height. The solid fraction counts the part of each grain between the heights. The inertial number is rate sqrt(m/p)
+//! with the mean mass in 2D, and rate d sqrt(density/p) in 3D.
+//!
+//! A row of the statistics has means over the steps since the row before: contacts between rigid grains carry impulses, and
+//! the pressure of one step differs from that of the next by as much as its mean. In the summary mu and I are computed from
+//! the mean stresses and the mean rate, with confidence intervals from blocks of time.
+
+mod means;
+mod sums;
+
+use super::{Observer, RunEnd, since};
+use crate::chart::{Axis, Chart, Series};
+use crate::code::{self, CodeError};
+use crate::output::Output;
+use crate::statistics::{Column, Table};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::{Simulation, StepReport};
+use means::Means;
+use std::f64::consts::PI;
+use sums::{Layer, Sums};
+
+/// Observer for [`fretwork_scene::measures::MeasureSpec::Shear`].
+#[derive(Clone, Debug)]
+pub struct Shear<S: Space> {
+    name: String,
+    layer: Layer,
+    start: f64,
+    /// Velocities at the start of a step, by body (m/s).
+    before: Vec<S::Vector>,
+    /// Sums since the last row.
+    row: Sums,
+    /// Sums since `start`.
+    whole: Sums,
+}
+
+const PARTS: [(&str, &str, &str); 8] = [
+    ("rate", "1/s", "shear rate of the grains"),
+    (
+        "p",
+        "Pa",
+        "normal stress across the layers, of contacts and motion",
+    ),
+    (
+        "mu",
+        "",
+        "shear stress over normal stress, of contacts and motion",
+    ),
+    ("phi", "", "solid fraction"),
+    ("I", "", "inertial number"),
+    (
+        "tau",
+        "Pa",
+        "shear stress, of contacts and motion: traction of the upper side on the lower",
+    ),
+    (
+        "p_kinetic",
+        "Pa",
+        "part of the normal stress that the motion of the grains carries",
+    ),
+    (
+        "tau_kinetic",
+        "Pa",
+        "part of the shear stress that the motion of the grains carries",
+    ),
+];
+
+impl<S: Space> Shear<S> {
+    pub(super) fn new(name: String, low: f64, high: f64, start: f64) -> Self {
+        Self {
+            name,
+            layer: Layer { low, high },
+            start,
+            before: Vec::new(),
+            row: Sums::default(),
+            whole: Sums::default(),
+        }
+    }
+
+    fn column(&self, part: &str) -> String {
+        format!("{}_{part}", self.name)
+    }
+
+    fn means(&self, table: &Table) -> Option<Means> {
+        let column = |part: &str| table.column(&self.column(part));
+        let columns = ["rate", "p", "tau", "phi"].map(column);
+        let inertial = |rate: f64, p: f64| self.whole.inertial::<S>(rate, p);
+        let kinetic = ["p_kinetic", "tau_kinetic"].map(column);
+        Means::new(
+            &table.column("time"),
+            &columns,
+            &kinetic,
+            self.start,
+            inertial,
+        )
+    }
+}
+
+impl<S: Space> Observer<S> for Shear<S> {
+    fn name(&self) -> String {
+        super::name_of("shear", &self.name)
+    }
+
+    fn before_step(&mut self, s: &Simulation<S>) {
+        self.before.clone_from(&s.state.bodies.velocity);
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
+        let h = s.options.scheme.h;
+        let step = self.layer.step(s, &self.before, h);
+        self.row += &step;
+        if s.state.time > self.start {
+            self.whole += &step;
+        }
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let column = |(part, unit, doc)| Column::new(self.column(part), unit, doc);
+        PARTS.into_iter().map(column).collect()
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let mut sums = std::mem::take(&mut self.row);
+        if sums.time <= 0.0 {
+            // Before the first step nothing has been carried; the weight cancels.
+            sums = self.layer.step(s, &s.state.bodies.velocity, 1.0);
+            sums.contacts = [0.0; 2];
+        }
+        let [p, tau] = sums.stress();
+        let [p_kinetic, tau_kinetic] = sums.kinetic();
+        let rate = sums.rate / sums.time;
+        vec![
+            rate,
+            p,
+            if p > 0.0 { tau.abs() / p } else { 0.0 },
+            sums.solid / sums.time,
+            sums.inertial::<S>(rate, p),
+            tau,
+            p_kinetic,
+            tau_kinetic,
+        ]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let means = self.means(table);
+        let values = means.iter().flat_map(Means::values);
+        values
+            .map(|(part, value)| (self.column(part), value))
+            .collect()
+    }
+
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let named = [("p_half_width", "Pa")];
+        named.map(|(part, unit)| (self.column(part), unit)).to_vec()
+    }
+
+    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
+        let means = self.means(table);
+        means
+            .map(|m| (self.name.clone(), m.describe()))
+            .into_iter()
+            .collect()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        code::encode(&(&self.row, &self.whole))
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        (self.row, self.whole) = code::decode(from)?;
+        Ok(())
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let RunEnd { title, table, .. } = *end;
+        let chart = |part: &str, heading: &str, name: &str, unit: &'static str| {
+            let points = since(table, &self.column(part), 0.0);
+            let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit))
+                .with_unless_zero(Series::new(String::new(), points));
+            chart.subtitle = Some(title.to_owned());
+            chart
+        };
+        let panels = [
+            chart(
+                "mu",
+                "Effective friction",
+                "friction coefficient µ = τ/p",
+                "",
+            ),
+            chart("phi", "Solid fraction", "solid fraction φ", ""),
+            chart("I", "Inertial number", "inertial number I", ""),
+            chart("p", "Pressure", "normal stress p", "Pa"),
+        ];
+        vec![Output::charts(format!("{}.png", self.name), panels, 2)]
+    }
+}
+
+/// Volume of a ball (m^3; m^2 in 2D) below a horizontal plane at height `d` above its centre (m).
+pub(super) fn below(dimension: usize, r: f64, d: f64) -> f64 {
+    let d = d.clamp(-r, r);
+    if dimension == 2 {
+        // Half the chord; this form has no cancellation near the poles.
+        let half = ((r - d) * (r + d)).sqrt();
+        r * r * half.atan2(-d) + d * half
+    } else {
+        PI * (2.0 / 3.0 * r * r * r + r * r * d - d * d * d / 3.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ball_is_cut_in_two() {
+        for dimension in [2, 3] {
+            let whole = below(dimension, 0.3, 1.0);
+            let half = below(dimension, 0.3, 0.0);
+            assert!(
+                (whole - 2.0 * half).abs() < 1e-15 && below(dimension, 0.3, -0.4).abs() < 1e-15
+            );
+            // The derivative is the area of the section.
+            let (d, e) = (0.11, 1e-6);
+            let section = (below(dimension, 0.3, d + e) - below(dimension, 0.3, d - e)) / (2.0 * e);
+            let c = (0.09f64 - d * d).sqrt();
+            let exact = if dimension == 2 { 2.0 * c } else { PI * c * c };
+            assert!((section - exact).abs() < 1e-8);
+        }
+    }
+}
