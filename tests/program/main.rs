@@ -29,5 +29,6 @@ mod resume;
 mod same_bits;
 mod samples;
 mod solve;
+mod study;
 mod trade;
 mod wear_coefficient;

@@ -1,0 +1,98 @@
+//! Units of work for other engines; tests/engines/run.sh runs them through each.
+
+use super::{Folder, json, mu};
+use std::process::{Command, Stdio};
+
+/// Two processes that are given the same run make it once.
+#[test]
+fn a_run_is_made_by_one_of_two_processes() {
+    let folder = Folder::new("same");
+    folder.study(&mu("0.1"), "");
+    let start = || {
+        folder
+            .command(&["point", "study.ron", "1", "--out", "out"])
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    };
+    let children = [start(), start()];
+    for child in children {
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.success());
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(
+            said.contains("run 1 of 1 (friction 0.1): done in"),
+            "{said}"
+        );
+    }
+    assert_eq!(folder.runs().len(), 1);
+}
+
+/// The commands of the list, from another folder and with blanks and quotes in paths, make every run once.
+#[cfg(unix)]
+#[test]
+fn a_list_of_commands_makes_every_run() {
+    let folder = Folder::new("jobs");
+    folder.study(&mu("0.1, 0.2, 0.3"), "seeds: 2");
+    let out = "it's out";
+    let export = folder.call(&[
+        "export",
+        "study.ron",
+        "--out",
+        out,
+        "--to",
+        "jobs",
+        "--chunk",
+        "4",
+    ]);
+    assert!(
+        export.status.success(),
+        "{}",
+        String::from_utf8_lossy(&export.stderr)
+    );
+    let list = std::fs::read_to_string(folder.0.join(out).join("jobs.txt")).unwrap();
+    assert_eq!(list.lines().count(), 2);
+    for line in list.lines() {
+        let status = Command::new("sh")
+            .current_dir("/")
+            .args(["-c", line])
+            .stderr(Stdio::null())
+            .status();
+        assert!(status.unwrap().success(), "{line}");
+    }
+    let study = folder.answer(&["collect", "study.ron", "--out", out, "--json"]);
+    assert_eq!(study["runs"]["done"], 6);
+    for engine in ["slurm", "hq", "snakemake"] {
+        let export = folder.call(&["export", "study.ron", "--out", out, "--to", engine]);
+        assert!(export.status.success(), "{engine}");
+    }
+    let slurm = std::fs::read_to_string(folder.0.join(out).join("array.sbatch")).unwrap();
+    assert!(
+        slurm.contains("#SBATCH --array=1-6\n") && slurm.contains("\"$first-$last\""),
+        "{slurm}"
+    );
+}
+
+#[test]
+fn a_number_beyond_the_study_is_refused() {
+    let folder = Folder::new("beyond");
+    folder.study(&mu("0.1, 0.2"), "");
+    for (points, said) in [
+        ("3", "has 2 runs"),
+        ("0", "no number of a run"),
+        ("2-1", "no number of a run"),
+    ] {
+        let output = folder.call(&["point", "study.ron", points, "--out", "out"]);
+        assert_eq!(output.status.code(), Some(2));
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(error.contains(said), "{error}");
+    }
+    assert!(
+        folder
+            .call(&["point", "study.ron", "1-2", "--out", "out"])
+            .status
+            .success()
+    );
+    assert_eq!(folder.runs().len(), 2);
+    assert!(json(&folder.0.join("out/study.json"))["random"] == true);
+}

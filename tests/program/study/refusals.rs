@@ -1,0 +1,73 @@
+//! Studies that are refused before anything runs.
+
+use super::{Folder, MU, mu};
+
+#[test]
+fn wrong_studies_are_refused_with_what_to_change() {
+    let folder = Folder::new("refused");
+    let range = format!(r#"Range(name: "friction", key: "{MU}", low: 0.1, high: 0.5)"#);
+    let said = |factors: &str, more: &str| {
+        folder.study(factors, more);
+        let output = folder.call(&["run", "study.ron", "--out", "out"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(folder.runs().is_empty());
+        said
+    };
+    let told = |text: &str, parts: &[&str]| {
+        for part in parts {
+            assert!(text.contains(part), "no {part} in {text}");
+        }
+    };
+    told(
+        &said(&mu("0.1"), "seds: 3"),
+        &["study.ron:1:", "seds", "seeds"],
+    );
+    told(&said(&mu("0.1, 0.1"), ""), &["0.1 is given twice"]);
+    told(
+        &said(&mu("0.1").replace("contact.mu", "contact.my"), ""),
+        &["my", "mu"],
+    );
+    told(
+        &said(&mu("0.1, -1.0"), ""),
+        &["-1", "with `friction` = -1.0 of study.ron"],
+    );
+    told(
+        &said(&range, ""),
+        &["`friction` has no levels", "levels: 5"],
+    );
+    told(
+        &said(&range.replace("0.5", "0.05"), "design: Sobol(points: 4)"),
+        &["study.ron:1:", "smaller first"],
+    );
+    told(
+        &said(&mu("0.1"), "set: [\"solver.tolerance=${1e-3 * frction}\"]"),
+        &["`frction`", "there are friction"],
+    );
+    told(
+        &said(&format!("{}, {}", mu("0.1"), mu("0.2")), ""),
+        &["two factors are named `friction`"],
+    );
+    told(&said("", ""), &["varies one factor or more"]);
+    folder.put("points.csv", "fric\n0.2\n");
+    told(
+        &said(&mu("0.1"), "design: Table(file: \"points.csv\")"),
+        &["there is no column `friction`", "there are fric"],
+    );
+    folder.put("study.ron", r#"(case: "heap.ron", factors: [], outputs: ["friction_coefficient"], design: Table(file: "points.csv"))"#);
+    folder.put("points.csv", "seed\n1\n");
+    let output = folder.call(&["run", "study.ron", "--out", "out"]);
+    told(
+        &String::from_utf8_lossy(&output.stderr),
+        &["the case has no friction test"],
+    );
+    // A folder of something else is left alone.
+    folder.study(&mu("0.1"), "");
+    std::fs::create_dir_all(folder.0.join("mine")).unwrap();
+    folder.put("mine/thesis.txt", "mine");
+    let output = folder.call(&["run", "study.ron", "--out", "mine"]);
+    told(
+        &String::from_utf8_lossy(&output.stderr),
+        &["holds no study of fretwork study"],
+    );
+}

@@ -1,0 +1,126 @@
+//! What a study says, against closed forms and by hand.
+
+use super::{Folder, mu, numbers, values};
+use serde_json::Value;
+
+/// A MAC bond opened far: damage releases w (1 - 1/100) times an area of 0.5 m^2/m, whatever its stiffness, if it is opened to ten times the
+/// opening of its strength; see cases/verification/bond_mode_1.ron.
+const BOND: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/cases/verification/bond_mode_1.ron"
+);
+
+fn bond(folder: &Folder, factors: &str, more: &str) -> Value {
+    folder.put(
+        "study.ron",
+        &format!(
+            r#"(case: "{BOND}", set: ["time.step=4e-7", "output.figures=false"], factors: [{factors}], outputs: ["energy.fracture"], {more})"#
+        ),
+    );
+    folder.run()
+}
+
+/// The energy released is w A to a few per cent: linear in w over two ranges of w, and the restitution of the solver does not matter.
+/// With w uniform the total index of w is 1, that of a factor without effect 0.
+#[test]
+fn sobol_indices_find_what_matters() {
+    let folder = Folder::new("indices");
+    let factors = r#"Range(name: "w", key: "interfaces.grain.parameters.damage.w", low: 0.02, high: 0.1),
+        Range(name: "nothing", key: "seed", low: 1, high: 100, scale: Integer)"#;
+    bond(&folder, factors, "design: Sensitivity(points: 8)");
+    let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
+    let row = |name: &str| {
+        let start = page
+            .find(&format!("<th scope=\"row\">{name}</th><td>"))
+            .unwrap();
+        let row = &page[start..start + page[start..].find("</tr>").unwrap()];
+        let cells: Vec<f64> = row
+            .split("<td>")
+            .skip(1)
+            .map(|cell| cell.split([' ', '<']).next().unwrap().parse().unwrap())
+            .collect();
+        cells
+    };
+    assert!((row("w")[1] - 1.0).abs() < 0.01, "{:?}", row("w"));
+    assert!(row("nothing")[1].abs() < 1e-3, "{:?}", row("nothing"));
+}
+
+/// A grid in its order, with an expression: w and its half in place of w.
+#[test]
+fn values_follow_from_factors() {
+    let folder = Folder::new("follow");
+    let factors = r#"Values(name: "twice", values: [0.1, 0.2]), Options(name: "coupling", options: [(name: "midpoint", set: ["coupling=Midpoint"]), (name: "explicit", set: ["coupling=Explicit"])])"#;
+    folder.put(
+        "study.ron",
+        &format!(
+            r#"(case: "{BOND}", set: ["time.step=4e-7", "output.figures=false", "interfaces.grain.parameters.damage.w=${{0.5 * twice}}"],
+                factors: [{factors}], outputs: ["energy.fracture"])"#
+        ),
+    );
+    let study = folder.run();
+    assert_eq!(numbers(&study, "twice"), [0.1, 0.1, 0.2, 0.2]);
+    assert_eq!(values(&study, "coupling")[1], "explicit");
+    let energy = numbers(&study, "energy.fracture");
+    // w A within what is left at the end of the opening and the error of the coarse step.
+    for (k, w) in [(0, 0.05), (2, 0.1)] {
+        assert!((energy[k] / (0.5 * w) - 1.0).abs() < 0.03, "{energy:?}");
+    }
+    let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
+    assert!(page.contains("explicit less midpoint"));
+}
+
+/// Means and half-widths over three seeds, by Student's t of 4.303.
+#[test]
+fn means_have_students_intervals() {
+    let folder = Folder::new("means");
+    folder.study(&mu("0.1, 0.4"), "seeds: 3");
+    let study = folder.run();
+    let energy = numbers(&study, "energy.friction");
+    let mut reader = csv::Reader::from_path(folder.0.join("out/settings.csv")).unwrap();
+    let headings = reader.headers().unwrap().clone();
+    let place = |name: &str| headings.iter().position(|h| h == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    for (k, row) in rows.iter().enumerate() {
+        let of: Vec<f64> = energy[3 * k..3 * k + 3].to_vec();
+        let mean = of.iter().sum::<f64>() / 3.0;
+        let scatter = (of.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 2.0).sqrt();
+        let number = |name: &str| row[place(name)].parse::<f64>().unwrap();
+        assert!((number("energy.friction [J/m]") - mean).abs() < 1e-12);
+        let half = number("energy.friction_half_width [J/m]");
+        assert!((half - 4.303 * scatter / 3f64.sqrt()).abs() < 1e-3 * half);
+    }
+    assert_eq!(rows.len(), 2);
+}
+
+/// Points of the designs: as many as are asked for, in their ranges; a longer Sobol sequence begins with the shorter one, whose runs
+/// are there.
+#[test]
+fn designs_have_their_points() {
+    let folder = Folder::new("designs");
+    let range = format!(
+        r#"Range(name: "friction", key: "{}", low: 0.1, high: 0.5)"#,
+        super::MU
+    );
+    let points = |design: &str| -> Vec<f64> {
+        folder.study(&range, &format!("design: {design}"));
+        numbers(&folder.run(), "friction")
+    };
+    let four = points("Sobol(points: 4)");
+    let eight = points("Sobol(points: 8)");
+    assert_eq!(eight[..4], four[..]);
+    assert_eq!(folder.runs().len(), 8);
+    let mut cube = points("LatinHypercube(points: 4)");
+    cube.sort_by(f64::total_cmp);
+    for (k, x) in cube.iter().enumerate() {
+        let stratum = (x - 0.1) / 0.1;
+        assert!(
+            (k as f64 - 1e-9..=k as f64 + 1.0 + 1e-9).contains(&stratum),
+            "{cube:?}"
+        );
+    }
+    folder.put("points.csv", "friction,time.end\n0.2,0.01\n0.3,0.02\n");
+    assert_eq!(points("Table(file: \"points.csv\")"), [0.2, 0.3]);
+    folder.study(&mu("0.1, 0.5"), "design: OneAtATime");
+    let study = folder.run();
+    assert_eq!(numbers(&study, "friction"), [0.3, 0.1, 0.5]);
+}
