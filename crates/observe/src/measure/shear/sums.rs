@@ -98,9 +98,6 @@ impl Layer {
             .map(|g| (g.at[up], velocity(g), g.mass, g.radius))
             .collect();
         let count = within.len().max(1) as f64;
-        let mean = |of: &dyn Fn(&(f64, S::Vector, f64, f64)) -> f64| {
-            within.iter().map(of).sum::<f64>() / count
-        };
         let rate = line(within.iter().map(|g| (g.0, g.1[0]))).unwrap_or(0.0);
         let motion = fluctuations(within.iter().map(|g| (g.2, g.0, [g.1[0], g.1[up]])));
         let solid: f64 = all
@@ -117,8 +114,8 @@ impl Layer {
             motion: [motion[0] * weight / volume, -motion[1] * weight / volume],
             rate: rate * weight,
             solid: solid / volume * weight,
-            mass: mean(&|g| g.2) * weight,
-            radius: mean(&|g| g.3) * weight,
+            mass: within.iter().map(|g| g.2).sum::<f64>() / count * weight,
+            radius: within.iter().map(|g| g.3).sum::<f64>() / count * weight,
         }
     }
 
