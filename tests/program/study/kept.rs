@@ -98,7 +98,7 @@ fn tables_are_not_replaced_by_empty_ones() {
     folder.run();
     let table = folder.0.join("out/table.csv");
     let before = std::fs::read_to_string(&table).unwrap();
-    folder.put("heap.ron", &HEAP.replace("end: 0.02", "end: 0.03"));
+    folder.put("heap.ron", &HEAP.replace("end: 0.05", "end: 0.03"));
     let output = folder.call(&["collect", "study.ron", "--out", "out"]);
     assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -111,7 +111,7 @@ fn tables_are_not_replaced_by_empty_ones() {
 #[test]
 fn an_interrupted_study_goes_on() {
     let folder = Folder::new("interrupted");
-    folder.put("heap.ron", &HEAP.replace("end: 0.02", "end: 1.0"));
+    folder.put("heap.ron", &HEAP.replace("end: 0.05", "end: 1.0"));
     folder.study(&mu("0.1, 0.2, 0.3, 0.4, 0.5, 0.6"), "");
     let words = ["run", "study.ron", "--out", "out"];
     let mut child = folder

@@ -12,12 +12,12 @@ use std::process::{Command, Output};
 
 /// A heap that collapses; its sizes come from the seed.
 const HEAP: &str = r#"(
-    name: "a small heap", dimension: 2, seed: 3, time: (step: 5e-4, end: 0.02), gravity: [0.0, -9.81],
+    name: "a small heap", dimension: 2, seed: 3, time: (step: 5e-4, end: 0.05), gravity: [0.0, -9.81],
     solver: (tolerance: 1e-3, max_iterations: 5000),
     materials: {"glass": "bead"},
     interfaces: [(name: "all", between: ("glass", "glass"), contact: "coulomb", parameters: (contact: {"mu": 0.3}))],
     bodies: [(name: "floor", material: "glass", shapes: [HalfSpace(normal: [0.0, 1.0])])],
-    grains: [Lattice(material: "glass", count: 12, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.06, 0.2])],
+    grains: [Lattice(material: "glass", count: 24, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.06, 0.2])],
 )"#;
 
 const BEAD: &str = r#"(doc: "a bead", density: (value: 2500.0, unit: "kg/m^3", source: "a test"))"#;

@@ -27,22 +27,28 @@ fn sobol_indices_find_what_matters() {
     let folder = Folder::new("indices");
     let factors = r#"Range(name: "w", key: "interfaces.grain.parameters.damage.w", low: 0.02, high: 0.1),
         Range(name: "nothing", key: "seed", low: 1, high: 100, scale: Integer)"#;
-    bond(&folder, factors, "design: Sensitivity(points: 8)");
+    bond(&folder, factors, "design: Sensitivity(points: 16)");
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
-    let row = |name: &str| {
+    // Total index with its interval, `1.02 (0.9 to 1.1)`.
+    let total = |name: &str| -> Vec<f64> {
         let start = page
             .find(&format!("<th scope=\"row\">{name}</th><td>"))
             .unwrap();
         let row = &page[start..start + page[start..].find("</tr>").unwrap()];
-        let cells: Vec<f64> = row
-            .split("<td>")
-            .skip(1)
-            .map(|cell| cell.split([' ', '<']).next().unwrap().parse().unwrap())
-            .collect();
-        cells
+        let cell = row.split("<td>").nth(2).unwrap();
+        let words = cell.split(|c: char| !(c.is_ascii_digit() || ".-".contains(c)));
+        words.filter_map(|w| w.parse().ok()).collect()
     };
-    assert!((row("w")[1] - 1.0).abs() < 0.01, "{:?}", row("w"));
-    assert!(row("nothing")[1].abs() < 1e-3, "{:?}", row("nothing"));
+    let w = total("w");
+    assert!(
+        (w[0] - 1.0).abs() < 0.1 && w[1] <= 1.0 && 1.0 <= w[2],
+        "{w:?}"
+    );
+    assert!(
+        total("nothing").iter().all(|x| x.abs() < 1e-3),
+        "{:?}",
+        total("nothing")
+    );
 }
 
 /// A grid in its order, with an expression: w and its half in place of w.
@@ -118,7 +124,7 @@ fn designs_have_their_points() {
             "{cube:?}"
         );
     }
-    folder.put("points.csv", "friction,time.end\n0.2,0.01\n0.3,0.02\n");
+    folder.put("points.csv", "friction,time.end\n0.2,0.03\n0.3,0.04\n");
     assert_eq!(points("Table(file: \"points.csv\")"), [0.2, 0.3]);
     folder.study(&mu("0.1, 0.5"), "design: OneAtATime");
     let study = folder.run();
