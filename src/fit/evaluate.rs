@@ -40,7 +40,7 @@ struct Test {
 /// What is taken of a run.
 #[derive(Debug)]
 enum Yield {
-    Curve(Model),
+    Curve(Box<Model>),
     Value(Quantity),
 }
 
@@ -125,7 +125,7 @@ impl Tests {
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
                     let (curve, reach) =
                         measured::read(name, from, &read.beside(&from.file), model.along)?;
-                    (Yield::Curve(made.reaching(reach)), curve)
+                    (Yield::Curve(Box::new(made.reaching(reach))), curve)
                 }
                 TestSpec::Value {
                     output,

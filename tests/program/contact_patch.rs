@@ -123,7 +123,7 @@ fn a_ball_that_frets() {
     ];
     let got = json(&[&base[..], &["5um"]].concat());
     let modulus = 105e9 / 0.91;
-    let a = (0.75 * 50.0 * 0.01 / modulus as f64).cbrt();
+    let a = f64::cbrt(0.75 * 50.0 * 0.01 / modulus);
     let slip = 3.0 * 0.6 * 50.0 * 1.7 / (8.0 * 210e9 / 2.6 * a);
     near(
         number(&got, "/tangential/slip_displacement/value"),
