@@ -49,7 +49,7 @@ impl Keys {
     }
 
     /// Key of a run: equal for two runs of one program whose cases say the same, however they are written. A case that cannot be
-    /// read has a key of its text, so that its refusal is kept too.
+    /// read has a key of its text.
     pub fn of_run(&self, case: &Path, sets: &[String]) -> String {
         let mut hash = self.program.clone();
         let mut add = |part: &[u8]| {

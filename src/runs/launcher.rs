@@ -4,7 +4,7 @@
 use super::RunsError;
 use super::key::Keys;
 use super::perturbation::Perturbation;
-use super::stored::{Finished, Limits, Status, StoredRun, interrupted};
+use super::stored::{Finished, Limits, StoredRun, interrupted};
 use crate::program;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -110,11 +110,16 @@ impl Launcher {
         self.stored_in(&self.place(sets, seed))
     }
 
-    /// Stored result of the run in a folder.
+    /// Stored result of the run in a folder, unless a repetition may end differently.
     pub fn stored_in(&self, place: &Path) -> Option<Finished> {
+        self.ended_in(place).filter(|run| !run.temporary)
+    }
+
+    /// How the run in a folder ended last, also if a repetition may end differently.
+    pub fn ended_in(&self, place: &Path) -> Option<Finished> {
         let text = std::fs::read_to_string(place.join("run.json")).ok()?;
         let run: StoredRun = serde_json::from_str(&text).ok()?;
-        (!run.temporary()).then(|| run.assess(&self.limits))
+        Some(run.assess(&self.limits))
     }
 
     /// Runs to the end, to `deadline`, or for at most `bound`. If another process makes the same run, waits for it and takes its
@@ -176,27 +181,16 @@ impl Launcher {
         }
         let elapsed = started.elapsed().as_secs_f64();
         let left = StoredRun::read(&place, sets, seed, code.and_then(|c| c.code()), elapsed);
-        let finished = match code.map(|c| c.code()) {
-            Some(Some(_)) => {
-                if !left.temporary() {
-                    let text = serde_json::to_string_pretty(&left).unwrap_or_default();
-                    let (draft, path) = (place.join("run.json.part"), place.join("run.json"));
-                    std::fs::write(&draft, text)
-                        .and_then(|()| std::fs::rename(&draft, &path))
-                        .map_err(|e| fail(&e))?;
-                }
-                left.assess(&self.limits)
-            }
-            ended => {
-                let mut run = left.assess(&self.limits);
-                run.temporary = true;
-                run.status = match ended {
-                    None => Status::Slow(elapsed),
-                    _ => Status::Failed("ended by a signal".into()),
-                };
-                run
-            }
+        let left = match code {
+            Some(_) => left,
+            None => left.stopped(elapsed),
         };
+        let text = serde_json::to_string_pretty(&left).unwrap_or_default();
+        let (draft, path) = (place.join("run.json.part"), place.join("run.json"));
+        std::fs::write(&draft, text)
+            .and_then(|()| std::fs::rename(&draft, &path))
+            .map_err(|e| fail(&e))?;
+        let finished = left.assess(&self.limits);
         if self.keep == Keep::Numbers {
             remove_states(&place);
         }

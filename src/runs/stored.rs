@@ -25,7 +25,7 @@ pub struct Limits {
     pub residual: f64,
 }
 
-/// Contents of `run.json` for a run that ended by itself: numbers only, assessed whenever they are read.
+/// Contents of `run.json` for a run that ended or was stopped: numbers only, assessed whenever they are read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredRun {
     sets: Vec<String>,
@@ -45,6 +45,9 @@ pub(super) struct StoredRun {
     /// Words of the reasons why the run says that it is not trustworthy.
     #[serde(default)]
     doubts: Vec<String>,
+    /// Seconds after which it was stopped, since it took longer than it may.
+    #[serde(default)]
+    slow: Option<f64>,
 }
 
 /// A run that ended.
@@ -52,7 +55,7 @@ pub(super) struct StoredRun {
 pub struct Finished {
     /// Outcome.
     pub status: Status,
-    /// Whether a failure may be temporary: it is not stored, and the next study tries again.
+    /// Whether a failure may be temporary: the next study tries again.
     pub temporary: bool,
     /// The `--set` arguments of the run.
     pub sets: Vec<String>,
@@ -90,13 +93,23 @@ impl StoredRun {
             wall: elapsed,
             visits: visits(place, number("/steps").unwrap_or(0.0)),
             doubts,
+            slow: None,
         }
     }
 
-    /// Whether a repetition may end differently: the run was rejected (files may have changed), could not
-    /// write, or left nothing.
+    /// The same of a run that was stopped after so many seconds.
+    pub fn stopped(self, seconds: f64) -> Self {
+        Self {
+            slow: Some(seconds),
+            ..self
+        }
+    }
+
+    /// Whether a repetition may end differently: the run was refused (files may have changed), stopped, ended by a signal,
+    /// could not write, or left nothing.
     pub fn temporary(&self) -> bool {
         match self.exit {
+            _ if self.slow.is_some() => true,
             0 => self.steps.is_none(),
             1 => self.said.contains("cannot write") || self.said.contains("No space left"),
             _ => true,
@@ -107,7 +120,9 @@ impl StoredRun {
     pub fn assess(self, limits: &Limits) -> Finished {
         let temporary = self.temporary();
         let status = match self.exit {
+            _ if self.slow.is_some() => Status::Slow(self.slow.unwrap_or_default()),
             0 => self.rejection(limits).map_or(Status::Done, Status::Failed),
+            -1 => Status::Failed("ended by a signal".into()),
             code => {
                 let what = if code == 2 { "refused" } else { "failed" };
                 Status::Failed(format!("{what}: {}", self.said))
@@ -185,7 +200,7 @@ fn visits(place: &Path, steps: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A stored run is assessed by the current limits; a failure that may be temporary is not stored.
+    /// A stored run is assessed by the current limits; what may be temporary is made again.
     #[test]
     fn a_stored_run_is_assessed_by_todays_limits() {
         let run = |exit, said: &str| StoredRun {
@@ -201,6 +216,7 @@ mod tests {
             wall: 1.0,
             visits: 1.0,
             doubts: Vec::new(),
+            slow: None,
         };
         let status = |unconverged| {
             let limits = Limits {
@@ -212,6 +228,7 @@ mod tests {
         assert!(matches!(status(0.01), Status::Failed(why) if why.contains("3 of 100 steps")));
         assert_eq!(status(0.05), Status::Done);
         assert!(run(1, "cannot write x: full").temporary() && run(2, "no such mesh").temporary());
+        assert!(run(0, "").stopped(9.0).temporary());
         assert!(!run(1, "a body left the domain").temporary() && !run(0, "").temporary());
     }
 }

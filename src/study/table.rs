@@ -78,7 +78,7 @@ impl Table {
             .iter()
             .map(|p| {
                 let place = plan.place(p);
-                let run = plan.launcher.stored_in(&place);
+                let run = plan.launcher.ended_in(&place);
                 let summary = if run.is_some() {
                     summary(&place)
                 } else {

@@ -88,6 +88,26 @@ fn failed_runs_are_rows() {
     let reason = values(&study, "reason")[1].as_str().unwrap();
     assert!(reason.contains("did not converge"), "{reason}");
     assert_eq!(values(&study, "status")[0], "done");
+    // A combination that the case refuses, though it takes each value alone, and a run that takes too long.
+    let set = r#"set: ["interfaces.all.parameters.contact.mu=${0.5 - sign}"]"#;
+    folder.study(r#"Values(name: "sign", values: [0.1, 1.0])"#, set);
+    let study = folder.run();
+    assert_eq!(values(&study, "status")[1], "refused");
+    let reason = values(&study, "reason")[1].as_str().unwrap();
+    assert!(reason.contains("`mu`"), "{reason}");
+    folder.put("heap.ron", &HEAP.replace("end: 0.05", "end: 500.0"));
+    folder.study(&mu("0.1"), "");
+    let words = [
+        "run",
+        "study.ron",
+        "--out",
+        "out",
+        "--limit",
+        "0.3s",
+        "--json",
+    ];
+    let study = folder.answer(&words);
+    assert_eq!(values(&study, "status")[0], "stopped");
 }
 
 /// Runs of another study by another program, case or file are not mistaken for its own, nor its tables replaced by empty ones.
