@@ -287,6 +287,13 @@ fn export(args: &ExportArgs) -> Result<(), Failure> {
 }
 
 fn collect(args: &CollectArgs) -> Result<(), Failure> {
+    let out = args.of.out();
+    if !out.is_dir() {
+        return Err(Failure::Usage(format!(
+            "{}: there is no such folder; `fretwork study run` makes it, or name another with --out",
+            out.display()
+        )));
+    }
     gather(&args.of.plan()?, args.json)
 }
 

@@ -50,6 +50,9 @@ pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
     if counts.missing > 0 {
         lead += &format!(" INCOMPLETE: {} have not run.", counts.missing);
     }
+    if !plan.random && plan.seeds.len() > 1 {
+        lead += " Nothing in the case is drawn from its seed: runs with steps longer by multiples of 1e-10 of themselves take the place of seeds.";
+    }
     if plan.seeds.len() == 1 {
         lead +=
             " One seed gives no intervals: whether a difference is more than scatter is not known.";

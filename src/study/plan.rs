@@ -125,6 +125,7 @@ impl Plan {
         };
         let units = factors.iter().map(unit).collect();
         let derived = derive(read, &derived, &factors, &settings)?;
+        check_factors(read, &factors)?;
         let limits = Limits {
             unconverged: spec.unconverged,
             residual: spec.residual,
@@ -241,6 +242,51 @@ impl Plan {
         }
         words.join(", ")
     }
+}
+
+/// Names of columns that the table of a study has itself.
+const COLUMNS: [&str; 11] = [
+    "point",
+    "setting",
+    "seed",
+    "status",
+    "reason",
+    "not_trustworthy",
+    "steps",
+    "cpu_seconds",
+    "wall_seconds",
+    "identity",
+    "folder",
+];
+
+/// Refuses names that the table has itself, keys that a study sets, and factors that change nothing.
+fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> {
+    for (k, factor) in factors.iter().enumerate() {
+        let fail = |text: String| Err(read.source.error_at(&format!("factors.{k}"), text));
+        let name = factor.name.as_str();
+        if factor.keys.iter().any(|key| key.trim() == "seed") {
+            return fail("a study sets the seed itself; for more of them give `seeds`".to_owned());
+        }
+        if COLUMNS.contains(&name) || read.spec.outputs.iter().any(|o| o == name) {
+            return fail(format!(
+                "the table has a column `{name}` already; give the factor another `name`"
+            ));
+        }
+        let used = read
+            .spec
+            .set
+            .iter()
+            .any(|s| Derived::is(s) && s.contains(name));
+        let changes = factor
+            .levels()
+            .is_none_or(|l| l.iter().any(|v| !v.sets.is_empty()));
+        if factor.keys.is_empty() && !changes && !used {
+            return fail(format!(
+                "`{name}` changes nothing: give it a `key`, or use it as `${{{name}}}` in `set`"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What follows from the factors, for each setting.

@@ -29,7 +29,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
          #SBATCH --array=1-{tasks}\n\
          #SBATCH --ntasks=1\n\
          #SBATCH --cpus-per-task={}\n\
-         #SBATCH --output={logs}/slurm-%a.log\n\
+         #SBATCH --output=\"{logs}/slurm-%a.log\"\n\
          {lines}\
          first=$(( (SLURM_ARRAY_TASK_ID - 1) * {chunk} + 1 ))\n\
          last=$(( SLURM_ARRAY_TASK_ID * {chunk} ))\n\
@@ -41,7 +41,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
         "#!/bin/sh\n\
          #SBATCH --job-name={name}-collect\n\
          #SBATCH --ntasks=1\n\
-         #SBATCH --output={logs}/slurm-collect.log\n\
+         #SBATCH --output=\"{logs}/slurm-collect.log\"\n\
          {lines}\
          exec {}\n",
         shell(&export.call("collect", &[])?)

@@ -9,7 +9,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     let (count, chunk) = (export.plan.count(), export.chunk);
     // Braces are Snakemake's own.
     let escaped = |words: Vec<String>| shell(&words).replace('{', "{{").replace('}', "}}");
-    let point = escaped(export.call("point", &["RUNS"])?).replace("RUNS", "{params.runs}");
+    let point = escaped(export.call("point", &["\u{1}"])?).replace("'\u{1}'", "{params.runs}");
     let collect = escaped(export.call("collect", &[])?);
     // A text of JSON is one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();

@@ -49,13 +49,25 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &["two factors are named `friction`"],
     );
     told(&said("", ""), &["varies one factor or more"]);
+    told(
+        &said(r#"Values(key: "seed", values: [1, 2])"#, ""),
+        &["give `seeds`"],
+    );
+    told(
+        &said(&mu("0.1").replace("friction", "status"), ""),
+        &["a column `status` already"],
+    );
+    told(
+        &said(r#"Values(name: "x", values: [1.0, 2.0])"#, ""),
+        &["`x` changes nothing"],
+    );
     folder.put("points.csv", "fric\n0.2\n");
     told(
         &said(&mu("0.1"), "design: Table(file: \"points.csv\")"),
         &["there is no column `friction`", "there are fric"],
     );
     folder.put("study.ron", r#"(case: "heap.ron", factors: [], outputs: ["friction_coefficient"], design: Table(file: "points.csv"))"#);
-    folder.put("points.csv", "seed\n1\n");
+    folder.put("points.csv", "time.end\n0.03\n");
     let output = folder.call(&["run", "study.ron", "--out", "out"]);
     told(
         &String::from_utf8_lossy(&output.stderr),

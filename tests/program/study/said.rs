@@ -26,7 +26,7 @@ fn bond(folder: &Folder, factors: &str, more: &str) -> Value {
 fn sobol_indices_find_what_matters() {
     let folder = Folder::new("indices");
     let factors = r#"Range(name: "w", key: "interfaces.grain.parameters.damage.w", low: 0.02, high: 0.1),
-        Range(name: "nothing", key: "seed", low: 1, high: 100, scale: Integer)"#;
+        Range(name: "nothing", key: "interfaces.grain.parameters.cohesion.c_t", low: 5e11, high: 2e12, scale: Log)"#;
     bond(&folder, factors, "design: Sensitivity(points: 16)");
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
     // Total index with its interval, `1.02 (0.9 to 1.1)`.
