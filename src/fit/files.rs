@@ -47,7 +47,7 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
     json!({
         "title": read.spec.title, "parameters": parameters, "correlation": told.correlation, "directions": directions,
         "chi_squared": best.chi_squared.map(number), "values": tests.target.measured().len(),
-        "reduced": told.reduced.map(number), "p": told.p, "describes": told.describes, "widened": number(told.widened), "at_edge": told.at_edge,
+        "reduced": told.reduced.map(number), "p": told.p, "describes": told.describes, "widened": number(told.widened), "at_edge": told.at_edge, "settled": outcome.settled,
         "ended": found.ended, "evaluations": found.evaluations.len(),
         "failed": found.evaluations.iter().filter(|e| e.chi_squared.is_none()).count(),
         "random": tests.random, "tests": sets,

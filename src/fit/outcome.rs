@@ -23,8 +23,10 @@ const ROUNDS: u64 = 4;
 pub struct Outcome {
     /// Estimates, intervals, correlations, directions.
     pub identification: Identification,
-    /// Number of the evaluation at the estimate.
+    /// Number of the evaluation at the estimate; of the best point if the estimate fits worse or its runs fail.
     pub best: usize,
+    /// Whether the runs at the estimate fit as well as the best point, and the runs around it are as wide as the intervals.
+    pub settled: bool,
 }
 
 impl Outcome {
@@ -50,6 +52,7 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
     let count = search.tests.bounds.len();
     let mut widths = vec![FIRST; count];
     let mut identification = None;
+    let mut settled = false;
     for round in 1..=ROUNDS {
         let centre = found.best;
         let local = search.around(found, &widths, round)?;
@@ -71,17 +74,19 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
         // The estimate is where the runs around say that the least squares are; it may not be if these are too far around.
         let better = found.least(first..found.evaluations.len());
         let squares = |k: usize| found.evaluations[k].chi_squared.unwrap_or(f64::INFINITY);
+        let mut accepted = false;
         if let (Some(new), Some(old)) = (better, found.best)
             && squares(new) <= squares(old) + 1.0
         {
             found.best = Some(new);
+            accepted = true;
         }
         let wanted: Vec<f64> = half_widths(search, &told)
             .iter()
             .map(|w| w.clamp(NARROWEST, WIDEST))
             .collect();
         let alike = |(w, now): (&f64, &f64)| *w <= ALIKE * now && *now <= ALIKE * w;
-        let settled = !told.at_edge && wanted.iter().zip(&widths).all(alike);
+        settled = accepted && !told.at_edge && wanted.iter().zip(&widths).all(alike);
         identification = Some(told);
         if settled {
             break;
@@ -93,6 +98,7 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
         .map(|(identification, best)| Outcome {
             identification,
             best,
+            settled,
         }))
 }
 

@@ -65,6 +65,9 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
             number(told.widened, 3)
         ));
     }
+    if !outcome.settled && !told.at_edge {
+        out.push("NOT SETTLED: the estimate fits worse than the best point, or the runs around it are not as wide as its intervals; take the intervals as rough, and look at evaluations.csv".to_owned());
+    }
     if told.at_edge {
         out.push("NOT SETTLED: the least squares lie at the edge of the runs around the best point; more generations or points may find better values".to_owned());
     }

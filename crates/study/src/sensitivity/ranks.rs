@@ -66,7 +66,8 @@ impl RankCorrelation {
         }
         let value = (product / size).clamp(-1.0, 1.0);
         let t = value * ((n - 2.0) / (1.0 - value * value)).sqrt();
-        let interval = (n > 3.0)
+        // At a full correlation the transformation has no finite value.
+        let interval = (n > 3.0 && value.abs() < 1.0)
             .then(|| normal_quantile(0.5 + 0.5 * CONFIDENCE))
             .flatten();
         Self {
@@ -79,9 +80,44 @@ impl RankCorrelation {
                     high: (z + half_width).tanh(),
                 }
             }),
-            p: student_two_sided(t, n - 2.0),
+            p: match a.len() {
+                0..=EXACT => Some(by_permutations(a, b, product)),
+                _ => student_two_sided(t, n - 2.0),
+            },
         }
     }
+}
+
+/// Largest number of points whose orders are all tried; for more, Student's distribution is close enough.
+const EXACT: usize = 8;
+
+/// Share of the orders of b that give a sum of products, both less their means, as large as the one seen.
+fn by_permutations(a: &[f64], b: &[f64], seen: f64) -> f64 {
+    let (of_a, of_b) = (mean(a), mean(b));
+    let a: Vec<f64> = a.iter().map(|x| x - of_a).collect();
+    let mut b: Vec<f64> = b.iter().map(|y| y - of_b).collect();
+    let limit = seen.abs() * (1.0 - 1e-9);
+    let as_large = |b: &[f64]| {
+        let product: f64 = a.iter().zip(b).map(|(x, y)| x * y).sum();
+        usize::from(product.abs() >= limit)
+    };
+    // Heap's order of permutations, each by one exchange.
+    let (mut count, mut all) = (as_large(&b), 1);
+    let mut state = vec![0; b.len()];
+    let mut k = 1;
+    while k < b.len() {
+        if state[k] < k {
+            b.swap(if k % 2 == 0 { 0 } else { state[k] }, k);
+            count += as_large(&b);
+            all += 1;
+            state[k] += 1;
+            k = 1;
+        } else {
+            state[k] = 0;
+            k += 1;
+        }
+    }
+    count as f64 / all as f64
 }
 
 /// Ranks from 1, equal values with their mean rank.
@@ -106,6 +142,19 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Three points in order: two of their six orders are as extreme; four: two of twenty-four.
+    #[test]
+    fn few_points_prove_little() {
+        for (count, p) in [(3usize, 2.0 / 6.0), (4, 2.0 / 24.0)] {
+            let rows: Vec<Vec<f64>> = (0..count).map(|k| vec![k as f64]).collect();
+            let outputs: Vec<Option<f64>> = (0..count).map(|k| Some((k * k) as f64)).collect();
+            let found = rank_correlations(&rows, &outputs).unwrap()[0];
+            assert_eq!(found.value, 1.0);
+            assert!((found.p.unwrap() - p).abs() < 1e-12);
+            assert!(found.interval.is_none());
+        }
+    }
     use crate::design::latin_hypercube::latin_hypercube;
     use crate::random::normal;
     use rand::SeedableRng;
@@ -129,7 +178,7 @@ mod tests {
         assert_eq!((found[1].value, found[1].p), (0.0, None));
         let steep: Vec<_> = rows.iter().map(|r| Some(r[0].exp())).collect();
         let one = rank_correlations(&rows, &steep).unwrap()[0];
-        assert_eq!((one.value, one.p), (1.0, Some(0.0)));
+        assert_eq!((one.value, one.p), (1.0, Some(2.0 / 120.0)));
     }
 
     /// For a normal pair of correlation r the rank correlation tends to 6/pi asin(r/2) (Pearson 1907): intervals of 1000 studies
