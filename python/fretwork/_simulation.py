@@ -274,7 +274,8 @@ class Simulation:
 
     @property
     def statistics(self) -> dict[str, float]:
-        """A row of the statistics that a run has, now."""
+        """A row of the statistics that a run has, now. Means over time, as of a measure ``Shear``, are of the steps since the row
+        before; without a step between, the row is the same."""
         names = (name for name, _, _ in self._data.statistics_columns())
         return dict(zip(names, self._data.statistics()))
 

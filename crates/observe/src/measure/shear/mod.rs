@@ -34,6 +34,8 @@ pub struct Shear<S: Space> {
     before: Vec<S::Vector>,
     /// Sums since the last row.
     row: Sums,
+    /// Sums that the last row was made of.
+    last: Sums,
     /// Sums since `start`.
     whole: Sums,
 }
@@ -77,6 +79,7 @@ impl<S: Space> Shear<S> {
             start,
             before: Vec::new(),
             row: Sums::default(),
+            last: Sums::default(),
             whole: Sums::default(),
         }
     }
@@ -124,7 +127,11 @@ impl<S: Space> Observer<S> for Shear<S> {
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let mut sums = std::mem::take(&mut self.row);
+        // A second look at the same moment gives the same row.
+        if self.row.time > 0.0 {
+            self.last = std::mem::take(&mut self.row);
+        }
+        let mut sums = self.last;
         if sums.time <= 0.0 {
             // Before the first step nothing has been carried; the weight cancels.
             sums = self.layer.step(s, &s.state.bodies.velocity, 1.0);
@@ -167,11 +174,11 @@ impl<S: Space> Observer<S> for Shear<S> {
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(&self.row, &self.whole))
+        code::encode(&(&self.row, &self.last, &self.whole))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.row, self.whole) = code::decode(from)?;
+        (self.row, self.last, self.whole) = code::decode(from)?;
         Ok(())
     }
 
