@@ -94,6 +94,7 @@ fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64>
                 source: String::new(),
             },
             properties: Default::default(),
+            laws: None,
         };
         load_text("layer.ron", &text, Path::new(""), &[])
             .and_then(|loaded| loaded.with_material("powder", &material))

@@ -22,6 +22,7 @@ mod holders;
 mod law_drive;
 mod law_new;
 mod layers;
+mod material_laws;
 mod plugin_loading;
 mod report;
 mod results;

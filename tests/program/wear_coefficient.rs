@@ -37,6 +37,7 @@ fn slides(
             doc: name.to_owned(),
             density: sourced(1000.0, "kg/m^3"),
             properties: BTreeMap::from_iter(given),
+            laws: None,
         };
         loaded = loaded
             .with_material(name, &material)

@@ -156,10 +156,7 @@ fn parameters(
         .flat_map(|(_, given)| given)
         .map(|(n, g)| (n.clone(), g.value, g.unit.clone().unwrap_or_default()))
         .collect();
-    let file = spec
-        .parameters_from
-        .as_deref()
-        .and_then(|f| files.laws.get(f));
+    let file = files.laws_of(case, spec);
     let of_file: Vec<_> = file.into_iter().flat_map(|f| f.of(kind, name)).collect();
     let mut names: Vec<String> = info
         .iter()

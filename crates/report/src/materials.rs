@@ -45,13 +45,23 @@ impl Files {
                 continue;
             };
             let source = Source::from_text(name, text);
-            if let Ok(material) = source.parse::<Material>() {
+            if let Ok(mut material) = source.parse::<Material>() {
+                if let Some(laws) = material.laws.take() {
+                    out.laws.insert(name.to_owned(), LawFile(laws));
+                }
                 out.materials.insert(name.to_owned(), material);
             } else if let Ok(parameters) = source.parse::<InterfaceParameters>() {
                 out.laws.insert(name.to_owned(), LawFile(parameters));
             }
         }
         out
+    }
+
+    /// The parameters of laws that an interface takes from a file: of a material of the case, or of one of parameters.
+    pub fn laws_of(&self, case: &Case, spec: &InterfaceSpec) -> Option<&LawFile> {
+        let name = spec.parameters_from.as_ref()?;
+        let material = case.materials.get(name).and_then(|f| self.laws.get(f));
+        material.or_else(|| self.laws.get(name))
     }
 
     /// The property of a material that a parameter named `young_1` or `young_2` takes, and the file of the material.

@@ -5,7 +5,7 @@ use super::law_values::{
     GivenNumber, InterfaceError, Sides, friction_of, given_numbers, parameter_value,
     properties_of_sides, wear_from_hardness,
 };
-use super::material::{InterfaceParameters, MaterialLibrary, Sourced};
+use super::material::{InterfaceParameters, Material, MaterialLibrary, Sourced};
 use super::source::{InputError, Source, ValidationError, nearest};
 use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
@@ -88,14 +88,16 @@ pub fn build(
         if !(spec.area_factor.is_finite() && spec.area_factor > 0.0) {
             return Err(at(ValidationError::new("area_factor", "must be positive")));
         }
-        let (parameters, file) =
-            read_parameters(spec, library, &mut out.files, source, &here, &at)?;
+        let from = FromFile::read(spec, case, library, &mut out.files, (source, &here))?;
         let sides = pair.map(|m| &properties[usize::from(m)]);
         let derived = &mut out.wear_coefficients;
-        let built = build_interface(case, spec, &parameters, &sides, path, derived);
-        let interface = built.map_err(|error| match &file {
-            Some(file) if error.in_file => file.locate(error.fault),
-            _ => at(error.fault),
+        let built = build_interface(case, spec, &from.parameters, &sides, path, derived);
+        let interface = built.map_err(|error| match error.in_file {
+            true => match from.locate(error.fault.clone()) {
+                Some(located) => located,
+                None => at(error.fault),
+            },
+            false => at(error.fault),
         })?;
         out.table.set(pair[0], pair[1], k as u16);
         out.interfaces.push(interface);
@@ -181,32 +183,78 @@ fn check_pins(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-fn read_parameters(
-    spec: &InterfaceSpec,
-    library: &MaterialLibrary,
-    files: &mut Vec<(String, String)>,
-    source: &Source,
-    here: &str,
-    at: &impl Fn(ValidationError) -> InputError,
-) -> Result<(InterfaceParameters, Option<Source>), InputError> {
-    let Some(name) = &spec.parameters_from else {
-        return Ok((InterfaceParameters::default(), None));
-    };
-    let file = library.read(name).map_err(|e| match e {
-        Err(error) => source.named_at(&format!("{here}.parameters_from"), error),
-        Ok(missing) => at(ValidationError::new(
-            "parameters_from",
-            format!("there is no file `{name}.ron` in {}", missing.looked),
-        )
-        .expected(format!("one of {}", missing.available))
-        .nearest(missing.nearest.as_deref())),
-    })?;
-    let parsed: InterfaceParameters = file.parse()?;
-    parsed.units().map_err(|fault| file.locate(fault))?;
-    if !files.iter().any(|f| f.0 == *name) {
-        files.push((name.clone(), file.text().to_owned()));
+/// Parameters of laws from a file.
+#[derive(Default)]
+struct FromFile {
+    parameters: InterfaceParameters,
+    /// The file, and where in it they stand.
+    place: Option<(Source, &'static str)>,
+}
+
+impl FromFile {
+    /// Reads `parameters_from` of an interface: a material of the case whose file has laws, or a file of parameters.
+    fn read(
+        spec: &InterfaceSpec,
+        case: &Case,
+        library: &MaterialLibrary,
+        files: &mut Vec<(String, String)>,
+        (source, here): (&Source, &str),
+    ) -> Result<Self, InputError> {
+        let Some(name) = &spec.parameters_from else {
+            return Ok(Self::default());
+        };
+        let path = format!("{here}.parameters_from");
+        let at = |f: ValidationError| source.locate(f.under(here));
+        let material = case.materials.get(name);
+        if let Some(file) = material.and_then(|file| library.read(file).ok())
+            && let Some(parameters) = file.parse::<Material>()?.laws
+        {
+            let place = "laws";
+            parameters
+                .units()
+                .map_err(|fault| file.locate(fault.under(place)))?;
+            return Ok(Self {
+                parameters,
+                place: Some((file, place)),
+            });
+        }
+        let file = library.read(name).map_err(|e| match e {
+            Err(error) => source.named_at(&path, error),
+            Ok(missing) => {
+                let (message, expected) = match material {
+                    Some(material) => (
+                        format!("the file `{material}.ron` of the material `{name}` has no `laws`"),
+                        format!("`laws: (...)` there, or one of {}", missing.available),
+                    ),
+                    None => (
+                        format!("there is no file `{name}.ron` in {}", missing.looked),
+                        format!("one of {}", missing.available),
+                    ),
+                };
+                at(ValidationError::new("parameters_from", message)
+                    .expected(expected)
+                    .nearest(missing.nearest.as_deref()))
+            }
+        })?;
+        let parameters: InterfaceParameters = file.parse()?;
+        parameters.units().map_err(|fault| file.locate(fault))?;
+        if !files.iter().any(|f| f.0 == *name) {
+            files.push((name.clone(), file.text().to_owned()));
+        }
+        Ok(Self {
+            parameters,
+            place: Some((file, "")),
+        })
     }
-    Ok((parsed, Some(file)))
+
+    /// The place of an error in these parameters.
+    fn locate(&self, fault: ValidationError) -> Option<InputError> {
+        let (file, place) = self.place.as_ref()?;
+        Some(match *place {
+            "" => file.locate(fault),
+            place => file.locate(fault.under(place)),
+        })
+    }
 }
 
 fn build_interface(

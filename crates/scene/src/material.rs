@@ -112,6 +112,10 @@ pub struct Material {
     /// record.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
+    /// Parameters of laws between its grains, and between them and other bodies: an interface takes them by
+    /// `parameters_from: "NAME"`, with the name that the case gives the material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub laws: Option<InterfaceParameters>,
 }
 
 /// Properties with a known unit.

@@ -163,6 +163,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 source: source.into(),
             },
             properties: BTreeMap::new(),
+            laws: None,
         };
         self.materials.insert(name.clone(), material);
         self.case.materials.insert(name.clone(), name);

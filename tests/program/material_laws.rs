@@ -1,0 +1,81 @@
+//! Laws of a material: the name of a material chooses the parameters of the laws at its contacts.
+
+use fretwork::geometry::space::Dim2;
+use fretwork::scene::build::Built;
+use fretwork::scene::load;
+use std::path::{Path, PathBuf};
+
+/// A folder with a copy of the sliding block, and materials of these names and laws.
+fn folder(name: &str, materials: &[(&str, &str)]) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("fretwork-laws-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("materials")).unwrap();
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/worn_slide.ron");
+    std::fs::copy(case, folder.join("case.ron")).unwrap();
+    for (material, laws) in materials {
+        let text =
+            format!("(doc: \"{material}\", density: (value: 1000.0, source: \"test\"),{laws})\n");
+        std::fs::write(folder.join(format!("materials/{material}.ron")), text).unwrap();
+    }
+    folder
+}
+
+/// The block that slides on a profile, of this material, with what the interface says of parameters.
+fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Built<Dim2>, String> {
+    let sets = [
+        format!("materials.grain={material}"),
+        "interfaces.grain.parameters_from=grain".to_owned(),
+        format!("interfaces.grain.parameters={parameters}"),
+        "bodies.0.wears=None".to_owned(),
+    ];
+    load(&folder.join("case.ron"), &sets)
+        .and_then(|loaded| loaded.build_in::<Dim2>(&fretwork::shipped::search_path()))
+        .map_err(|e| e.to_string())
+}
+
+/// Volume worn (m³/m) after 0.1 s.
+fn worn(built: Built<Dim2>) -> f64 {
+    let mut simulation = built.simulation;
+    let steps = (0..100).map(|_| simulation.step().unwrap().totals.worn_first);
+    steps.sum()
+}
+
+fn laws(k: f64) -> String {
+    format!(
+        "laws: (contact: {{\"coulomb\": {{\"mu\": (value: 0.3, source: \"test\")}}}}, wear: {{\"archard\": {{\"k\": (value: {k:e}, source: \"test\")}}}})"
+    )
+}
+
+#[test]
+fn the_name_of_a_material_chooses_the_parameters_of_its_laws() {
+    let folder = folder("choice", &[("soft", &laws(2e-8)), ("hard", &laws(1e-8))]);
+    let from_file = "(contact: {}, wear: {})";
+    let soft = worn(slides(&folder, "soft", from_file).unwrap());
+    let hard = worn(slides(&folder, "hard", from_file).unwrap());
+    // V = k F s.
+    assert!(
+        hard > 0.0 && (soft / hard - 2.0).abs() < 1e-12,
+        "{soft} {hard}"
+    );
+    // What the case gives itself goes first.
+    let own = worn(slides(&folder, "soft", "(contact: {}, wear: {\"k\": 1e-8})").unwrap());
+    assert_eq!(own, hard);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn laws_of_a_material_that_are_missing_or_wrong_are_refused_at_their_place() {
+    let bad = "laws: (contact: {\"coulomb\": {\"mu\": (value: 0.3, unit: \"GPa\", source: \"test\")}}, wear: {\"archard\": {\"k\": (value: 1e-8, source: \"test\")}})";
+    let folder = folder("refused", &[("none", ""), ("bad", bad)]);
+    let said = |material| slides(&folder, material, "(contact: {}, wear: {})").unwrap_err();
+    let none = said("none");
+    assert!(
+        none.contains("the file `none.ron` of the material `grain` has no `laws`"),
+        "{none}"
+    );
+    let wrong = said("bad");
+    assert!(
+        wrong.contains("bad.ron:1:") && wrong.contains("GPa"),
+        "{wrong}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
