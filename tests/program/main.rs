@@ -32,4 +32,5 @@ mod samples;
 mod solve;
 mod study;
 mod trade;
+mod validation;
 mod wear_coefficient;

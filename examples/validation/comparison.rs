@@ -1,0 +1,59 @@
+//! A comparison: its studies, and what it shows of their tables.
+
+use crate::published::Published;
+use crate::row::Row;
+use crate::table::Table;
+use fretwork::report::Chart;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+pub type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+/// One section of the page. `validation/NAME.csv` has the published numbers, `validation/NAME.md` the text.
+pub struct Comparison {
+    pub name: &'static str,
+    pub title: &'static str,
+    /// `validation/STUDY.ron`.
+    pub studies: &'static [&'static str],
+    pub show: fn(&Found) -> Result<Shown, Failure>,
+}
+
+/// What a comparison is made of: tables of its studies, and the published numbers.
+pub struct Found {
+    pub tables: BTreeMap<String, Table>,
+    pub published: Published,
+}
+
+impl Found {
+    /// The table of a study.
+    pub fn table(&self, study: &str) -> Result<&Table, Failure> {
+        Ok(self
+            .tables
+            .get(study)
+            .ok_or_else(|| format!("`{study}` has no table"))?)
+    }
+}
+
+/// Rows of the summary, a table in Markdown of the single points, and charts of the figure.
+#[derive(Default)]
+pub struct Shown {
+    pub rows: Vec<Row>,
+    pub points: String,
+    pub charts: Vec<Chart>,
+}
+
+/// Where a study keeps its runs.
+pub fn folder(root: &Path, study: &str) -> PathBuf {
+    root.join("target/validation").join(study)
+}
+
+/// A table in Markdown.
+pub fn markdown(heading: &[&str], rows: &[Vec<String>]) -> String {
+    let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+    let mut text = line(heading.iter().map(|h| (*h).to_owned()).collect());
+    text += &format!("|{}\n", "---|".repeat(heading.len()));
+    for row in rows {
+        text += &line(row.clone());
+    }
+    text
+}

@@ -1,0 +1,124 @@
+//! Numbers published by others beside ours: runs the studies of `validation/`, draws a figure for each comparison and writes
+//! `docs/validation.md`.
+//!
+//! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`, from the root of the project.
+//! With names only their studies are run; the page always has all comparisons. Runs are kept in `target/validation` and are not
+//! made twice by one program; another program makes them anew. With `--no-runs` the page is written from the tables that are there.
+
+mod biaxial;
+mod cohesive_shear;
+mod comparison;
+mod page;
+mod plane_shear;
+mod polygons;
+mod published;
+mod row;
+mod sample;
+mod soft_third_body;
+mod table;
+mod third_body;
+mod wet_spheres;
+
+use comparison::{Comparison, Failure, Shown};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// In the order of the page.
+const ALL: [Comparison; 8] = [
+    plane_shear::COMPARISON,
+    cohesive_shear::COMPARISON,
+    biaxial::COMPARISON,
+    third_body::COMPARISON,
+    polygons::COMPARISON,
+    soft_third_body::COMPARISON,
+    wet_spheres::COMPARISON,
+    // Described only: nothing is run.
+    Comparison {
+        name: "smallest_particle",
+        title: "Smallest wear particle",
+        studies: &[],
+        show: |_| Ok(Shown::default()),
+    },
+];
+
+struct Options {
+    names: Vec<String>,
+    jobs: String,
+    program: PathBuf,
+    runs: bool,
+}
+
+fn options() -> Result<Options, Failure> {
+    let mut options = Options {
+        names: Vec::new(),
+        jobs: "1".to_owned(),
+        program: PathBuf::from("target/release/fretwork"),
+        runs: true,
+    };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or(format!("`{word}` needs a value"));
+        match word.as_str() {
+            "--jobs" => options.jobs = value()?,
+            "--program" => options.program = PathBuf::from(value()?),
+            "--no-runs" => options.runs = false,
+            name if ALL.iter().any(|c| c.name == name) => options.names.push(word),
+            other => {
+                let names = ALL.map(|c| c.name).join(", ");
+                return Err(format!("there is no comparison `{other}`; there are {names}").into());
+            }
+        }
+    }
+    Ok(options)
+}
+
+fn main() -> Result<(), Failure> {
+    let options = options()?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let wanted =
+        |c: &Comparison| options.names.is_empty() || options.names.iter().any(|n| n == c.name);
+    for study in ALL.iter().filter(|c| wanted(c)).flat_map(|c| c.studies) {
+        make(root, study, &options)?;
+    }
+    let mut sections = Vec::new();
+    for comparison in &ALL {
+        let section = page::Section::of(root, comparison)?;
+        section.draw(root)?;
+        sections.push(section);
+    }
+    std::fs::write(root.join("docs/validation.md"), page::page(&sections))?;
+    println!("written to docs/validation.md");
+    Ok(())
+}
+
+/// Makes the missing runs of a study, and its table.
+fn make(root: &Path, study: &str, options: &Options) -> Result<(), Failure> {
+    let out = comparison::folder(root, study);
+    if !options.runs && out.join("table.csv").exists() {
+        return Ok(());
+    }
+    let task = if options.runs { "run" } else { "collect" };
+    if task == "collect" && !out.exists() {
+        return Ok(());
+    }
+    let mut command = Command::new(&options.program);
+    command.current_dir(root).args(["study", task]);
+    command
+        .arg(format!("validation/{study}.ron"))
+        .arg("--out")
+        .arg(&out);
+    if options.runs {
+        command.args(["--jobs", &options.jobs]);
+    }
+    let status = command.status().map_err(|e| {
+        format!(
+            "{}: {e}; name the program by `--program`",
+            options.program.display()
+        )
+    })?;
+    // What cannot be collected is not shown; the program has said why.
+    if !status.success() && options.runs {
+        return Err(format!("the study `{study}` ended with {status}").into());
+    }
+    Ok(())
+}

@@ -1,0 +1,96 @@
+//! Regular polygons and disks with the rolling resistance that is to stand for them.
+
+use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
+use crate::row::{Row, Theirs};
+use crate::sample::difference;
+use fretwork::report::{Axis, Chart, Series, Style};
+
+pub const COMPARISON: Comparison = Comparison {
+    name: "polygons",
+    title: "Polygons and rolling resistance",
+    studies: &["polygons_6", "polygons_12"],
+    show,
+};
+
+const MU: &str = "measures.bulk_mu";
+const I: &str = "measures.bulk_I";
+
+fn show(found: &Found) -> Result<Shown, Failure> {
+    let mut shown = Shown::default();
+    let mut cells = Vec::new();
+    let (mut polygons, mut disks) = ((Vec::new(), Vec::new()), (Vec::new(), Vec::new()));
+    // From the least resistance up.
+    for sides in [12, 6] {
+        let table = found.table(&format!("polygons_{sides}"))?;
+        let named = |name: &str| {
+            table
+                .named("shape", name)
+                .ok_or(format!("no run of `{name}` is done"))
+        };
+        let (shape, rolling) = (named("polygons")?, named("rolling")?);
+        let rolling_resistance = 0.25 * (std::f64::consts::PI / (2.0 * f64::from(sides))).tan();
+        let (a, b) = (rolling.mean(MU), shape.mean(MU));
+        let theirs = Theirs {
+            value: b.mean,
+            range: 0.0,
+            digits: 3,
+        };
+        let mut row = Row::number(
+            format!("friction of disks with rolling resistance {rolling_resistance:.4}"),
+            a,
+            difference(a, b),
+            None,
+            &theirs,
+        );
+        row.published = format!("equal to polygons of {sides} sides; ours {}", b.text(3));
+        shown.rows.push(row);
+        for (e, drawn) in [(b, &mut polygons), (a, &mut disks)] {
+            drawn.0.push((rolling_resistance, e.mean));
+            drawn.1.push((e.low(), e.high()));
+        }
+        for (s, what) in [
+            (&shape, format!("polygons of {sides} sides")),
+            (&rolling, format!("disks, µ_r = {rolling_resistance:.4}")),
+        ] {
+            cells.push(vec![
+                what,
+                s.mean(MU).text(3),
+                s.mean(I).text(4),
+                s.mean("measures.bulk_p").text(0),
+            ]);
+        }
+        if let Some(plain) = table.named("shape", "disks") {
+            let e = plain.mean(MU);
+            cells.push(vec![
+                "disks, µ_r = 0".to_owned(),
+                e.text(3),
+                plain.mean(I).text(4),
+                plain.mean("measures.bulk_p").text(0),
+            ]);
+            disks.0.insert(0, (0.0, e.mean));
+            disks.1.insert(0, (e.low(), e.high()));
+        }
+    }
+    shown.points = markdown(&["grains", "friction", "I", "pressure, Pa"], &cells);
+    shown.charts = vec![
+        Chart::new(
+            "Polygons and disks with rolling resistance",
+            Axis::new("rolling resistance tan(π/2n)/4", ""),
+            Axis::new("friction coefficient τ/p", ""),
+        )
+        .with(
+            Series::new("ours, regular polygons of 12 and 6 sides", polygons.0)
+                .style(Style::Markers)
+                .intervals(polygons.1),
+        )
+        .with(
+            Series::new(
+                "ours, disks with rolling resistance (Estrada et al. 2011: equal)",
+                disks.0,
+            )
+            .style(Style::LineMarkers)
+            .intervals(disks.1),
+        ),
+    ];
+    Ok(shown)
+}

@@ -1,0 +1,116 @@
+//! Friction of a soft third body against the cohesion of its grains.
+
+use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
+use crate::row::Row;
+use crate::sample::difference;
+use fretwork::report::{Axis, Chart, Series, Style};
+
+pub const COMPARISON: Comparison = Comparison {
+    name: "soft_third_body",
+    title: "Cohesion of a soft third body",
+    studies: &["soft_third_body"],
+    show,
+};
+
+const MU: &str = "friction_coefficient";
+
+fn show(found: &Found) -> Result<Shown, Failure> {
+    let table = found.table("soft_third_body")?;
+    let settings = table.settings(|_| true);
+    let at = |cohesion: f64| settings.iter().find(|s| s.factor("cohesion") == cohesion);
+    let (Some(none), Some(four), Some(eight)) = (at(0.0), at(4.0), at(8.0)) else {
+        return Err("the cohesions 0, 4 and 8 are not all done".into());
+    };
+    let mut shown = Shown::default();
+    let error = settings
+        .iter()
+        .map(|s| s.mean("friction_coefficient_numerical_error").mean)
+        .fold(0.0, f64::max);
+    let numerical = Some(format!("at most {error:.3}, of the runs"));
+    let rise = difference(four.mean(MU), none.mean(MU));
+    shown.rows.push(Row::statement(
+        "friction from C/P = 0 to 4",
+        format!(
+            "{} and {}: {}",
+            none.mean(MU).text(2),
+            four.mean(MU).text(2),
+            rise.text(2)
+        ),
+        numerical.clone(),
+        "rises with cohesion",
+        if rise.low() > 0.0 {
+            Some(true)
+        } else if rise.high() < 0.0 {
+            Some(false)
+        } else {
+            None
+        },
+    ));
+    let later = difference(eight.mean(MU), four.mean(MU));
+    shown.rows.push(Row::statement(
+        "friction from C/P = 4 to 8",
+        later.text(2),
+        numerical,
+        "levels off",
+        // Level: a rise clearly below that of the first four, per cohesion.
+        if later.high() < rise.low() {
+            Some(true)
+        } else if later.low() > rise.high() {
+            Some(false)
+        } else {
+            None
+        },
+    ));
+    let cells: Vec<Vec<String>> = settings
+        .iter()
+        .map(|s| {
+            vec![
+                format!("{}", s.factor("cohesion")),
+                s.mean(MU).text(3),
+                s.mean("measures.layer_interior_shear").text(2),
+                s.runs
+                    .iter()
+                    .map(|r| r.text("findings.layer_regime"))
+                    .collect::<Vec<_>>()
+                    .join(", "),
+                s.runs
+                    .iter()
+                    .map(|r| r.text("not_trustworthy"))
+                    .filter(|t| !t.is_empty())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            ]
+        })
+        .collect();
+    shown.points = markdown(
+        &[
+            "C/P",
+            "friction",
+            "shear of the interior",
+            "regime by seed",
+            "not trustworthy",
+        ],
+        &cells,
+    );
+    let points = settings
+        .iter()
+        .map(|s| (s.factor("cohesion"), s.mean(MU).mean))
+        .collect();
+    let bars = settings
+        .iter()
+        .map(|s| (s.mean(MU).low(), s.mean(MU).high()))
+        .collect();
+    shown.charts = vec![
+        Chart::new(
+            "Soft third body (trend of Zhang et al. 2020: rises, then levels)",
+            Axis::new("cohesion over pressure C/P", ""),
+            Axis::new("friction coefficient", ""),
+        )
+        .with(
+            Series::new("ours, 95 % of three seeds", points)
+                .style(Style::LineMarkers)
+                .intervals(bars),
+        ),
+    ];
+    Ok(shown)
+}
