@@ -20,6 +20,7 @@ use crate::study::{OWNER, StudyError};
 use clap::{Args, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -61,6 +62,12 @@ pub struct CheckArgs {
     /// Print each run with its changes of the case
     #[arg(long)]
     points: bool,
+    /// Do not time steps for the forecast
+    #[arg(long)]
+    no_timing: bool,
+    /// Print the answer as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Args, Debug)]
@@ -154,6 +161,14 @@ impl StudyArgs {
         Ok(Plan::new(&ReadSpec::read(&self.study)?, place)?)
     }
 
+    /// The plan, and its folder for this command alone. Nothing is written if the study is wrong.
+    fn plan_alone(&self) -> Result<(Plan, File), Failure> {
+        let plan = self.plan()?;
+        let lock = OWNER.take(&plan.out)?;
+        plan.keep()?;
+        Ok((plan, lock))
+    }
+
     /// Options of every call of another engine.
     fn options(&self) -> Vec<String> {
         let mut words = Vec::new();
@@ -178,27 +193,42 @@ pub fn study(command: &StudyCommand) -> Result<(), Failure> {
 
 fn check(args: &CheckArgs) -> Result<(), Failure> {
     let plan = args.of.plan()?;
-    if args.points {
-        let line = |p: Point| {
-            let sets: Vec<String> = p.sets.iter().map(|s| format!("--set '{s}'")).collect();
-            format!("{:>6}  {}  {}", p.number, plan.words(&p), sets.join(" "))
-        };
-        return answer(&plan.points().map(line).collect::<Vec<_>>().join("\n"));
+    if args.points && !args.json {
+        return answer(&answers::points(&plan));
     }
     let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
-    let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?)?;
-    answer(&answers::consists_of(&plan, open.len(), &forecast, 1))
+    let forecast = match args.no_timing || args.points {
+        true => None,
+        false => Some(Forecast::of(&plan, &open, &args.of.plugins.search()?)?),
+    };
+    match args.json {
+        true => answer_json(&answers::check_json(
+            &plan,
+            open.len(),
+            forecast.as_ref(),
+            args.points,
+        )),
+        false => answer(&answers::consists_of(
+            &plan,
+            open.len(),
+            forecast.as_ref(),
+            1,
+        )),
+    }
 }
 
 fn run(args: &RunArgs) -> Result<(), Failure> {
-    let out = args.of.out();
-    let _lock = OWNER.take(&out)?;
-    let plan = args.of.plan()?;
+    let (plan, _lock) = args.of.plan_alone()?;
     let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
     let jobs = usize::from(args.jobs);
     if !args.json {
         let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?)?;
-        inform(&answers::consists_of(&plan, open.len(), &forecast, jobs));
+        inform(&answers::consists_of(
+            &plan,
+            open.len(),
+            Some(&forecast),
+            jobs,
+        ));
     }
     let stop = interrupt::watch();
     let display = Display::new(&plan, open.len(), args.json);
@@ -217,9 +247,6 @@ fn run(args: &RunArgs) -> Result<(), Failure> {
 }
 
 fn point(args: &PointArgs) -> Result<(), Failure> {
-    let out = args.of.out();
-    std::fs::create_dir_all(&out)
-        .map_err(|e| Failure::Failed(format!("cannot write {}: {e}", out.display())))?;
     let plan = args.of.plan()?;
     let (first, last) = args.points;
     if last > plan.count() {
@@ -228,6 +255,9 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
             plan.count()
         )));
     }
+    std::fs::create_dir_all(&plan.out)
+        .map_err(|e| Failure::Failed(format!("cannot write {}: {e}", plan.out.display())))?;
+    plan.keep()?;
     let stop = interrupt::watch();
     let points: Vec<Point> = (first..=last).filter_map(|k| plan.point(k)).collect();
     let count = points.len();
@@ -259,12 +289,10 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
 }
 
 fn export(args: &ExportArgs) -> Result<(), Failure> {
-    let out = args.of.out();
-    let _lock = OWNER.take(&out)?;
-    let plan = args.of.plan()?;
+    let (plan, _lock) = args.of.plan_alone()?;
     let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
     let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?)?;
-    inform(&answers::consists_of(&plan, open.len(), &forecast, 1));
+    inform(&answers::consists_of(&plan, open.len(), Some(&forecast), 1));
     let chunk = args
         .chunk
         .map_or(plan.count().div_ceil(1000), |n| n as usize);
@@ -300,10 +328,10 @@ fn collect(args: &CollectArgs) -> Result<(), Failure> {
 /// Writes the table of the runs that are there, and says what it holds.
 fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     let table = Table::of(plan);
-    let strangers = strangers(plan, &table);
-    if table.counts().missing == plan.count() && strangers > 0 {
+    let others = other_runs(plan, &table);
+    if table.counts().missing == plan.count() && others > 0 {
         return Err(Failure::Failed(format!(
-            "none of the {strangers} runs in {} is of this study by this program: its build, its laws, the case or a file that it names is another since; \
+            "none of the {others} runs in {} is of this study by this program: its build, its laws, the case or a file that it names is another since; \
              tables are left as they are, `fretwork study run` makes the runs again",
             plan.launcher.folder.display()
         )));
@@ -331,7 +359,7 @@ fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
 }
 
 /// Number of runs in the folder that are no points of the study by this program.
-fn strangers(plan: &Plan, table: &Table) -> usize {
+fn other_runs(plan: &Plan, table: &Table) -> usize {
     let own: BTreeSet<&str> = table
         .column("folder")
         .into_iter()

@@ -224,6 +224,7 @@ pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) ->
             x: (x, String::new()),
             y: (y, String::new()),
             curves: vec![measured, fitted],
+            ..SheetFigure::default()
         })
     });
     sections.push(Section {
@@ -362,6 +363,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
             x: ("evaluation".to_owned(), String::new()),
             y: ("log10 of the sum of squares".to_owned(), String::new()),
             curves: vec![curve("a point", points, false), curve("least so far", best, true)],
+            ..SheetFigure::default()
         }),
     ]
 }

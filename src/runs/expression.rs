@@ -95,6 +95,13 @@ impl Derived {
         })
     }
 
+    /// Places of the names that it needs.
+    pub fn needs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.expressions
+            .iter()
+            .flat_map(|e| e.needs().iter().copied())
+    }
+
     /// The change where the names have these values.
     ///
     /// # Errors

@@ -17,7 +17,10 @@ pub fn unit_of(quantity: &Quantity, summary: &Value, folder: &Path) -> String {
             .as_str()
             .unwrap_or_default()
             .to_owned(),
-        ["energy", ..] => either("J", "J/m"),
+        ["energy", ..] | ["cycles", _, "work"] | ["fretting", "energy"] => either("J", "J/m"),
+        ["cycles", _, "normal_force" | "tangential_amplitude"] => either("N", "N/m"),
+        ["cycles", _, "path" | "amplitude" | "sliding"] => "m".to_owned(),
+        ["cycles", _, "wear_volume"] | ["fretting", "wear_volume"] => either("m3", "m3/m"),
         ["wear", "Qs" | "Qi" | "Qe" | "Qw"] => summary["wear"]["unit"]
             .as_str()
             .unwrap_or_default()
@@ -47,6 +50,7 @@ mod tests {
         };
         assert_eq!(of("energy.friction"), "J/m");
         assert_eq!(of("measures.bulk_rate"), "1/s");
+        assert_eq!(of("cycles.1.work"), "J/m");
         assert_eq!(of("wear.Qs"), "kg/(m s)");
         assert_eq!(of("friction_coefficient"), "");
     }

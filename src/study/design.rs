@@ -2,13 +2,14 @@
 
 use super::StudyError;
 use super::csv::read_points;
-use super::factor::{Factor, Kind, Value};
+use super::factor::{Factor, Value};
 use super::spec::{DesignSpec, ReadSpec};
 use crate::scene::InputError;
 use fretwork_study::design::grid::full_factorial;
 use fretwork_study::design::latin_hypercube::latin_hypercube;
 use fretwork_study::design::saltelli::saltelli;
 use fretwork_study::design::sobol::sobol;
+use std::collections::HashMap;
 
 /// One value of each factor.
 pub type Setting = Vec<Value>;
@@ -108,21 +109,23 @@ fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Settin
         factors.push(of_spec.unwrap_or_else(|| Factor::of_column(name, column())));
     }
     let mut all = Vec::new();
+    // Equal numbers of a column are one level, as the first of them is spelled.
+    let mut spelled: HashMap<(usize, u64), Value> = HashMap::new();
     for (line, row) in rows.iter().enumerate() {
-        let values = factors.iter().zip(row).map(|(factor, text)| {
-            factor.named(text).ok_or_else(|| {
-                let known: Vec<&str> = match &factor.kind {
-                    Kind::Listed(values) => values.iter().map(|v| v.label.as_str()).collect(),
-                    Kind::Range { .. } => Vec::new(),
-                };
-                refused(format!(
-                    "point {}: `{}` has no option `{text}`; there are {}",
-                    line + 1,
-                    factor.name,
-                    known.join(", ")
-                ))
-            })
-        });
+        let values = factors
+            .iter()
+            .zip(row)
+            .enumerate()
+            .map(|(k, (factor, text))| {
+                let named = factor.named(text);
+                let value = named.map_err(|why| refused(format!("point {}: {why}", line + 1)))?;
+                // Minus zero is zero.
+                let bits = value.number.map(|x| (x + 0.0).to_bits());
+                Ok(match bits {
+                    Some(bits) => spelled.entry((k, bits)).or_insert(value).clone(),
+                    None => value,
+                })
+            });
         all.push(values.collect::<Result<Setting, StudyError>>()?);
     }
     Ok(all)

@@ -15,6 +15,16 @@ pub struct Value {
     pub sets: Vec<String>,
 }
 
+impl Value {
+    /// Whether it is the same number, or without numbers the same text.
+    pub fn equals(&self, other: &Self) -> bool {
+        match (self.number, other.number) {
+            (Some(a), Some(b)) => a == b,
+            _ => self.label == other.label,
+        }
+    }
+}
+
 /// Which values a factor takes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
@@ -36,6 +46,8 @@ pub struct Factor {
     pub name: String,
     /// The keys that take its value; none for named alternatives.
     pub keys: Vec<String>,
+    /// SI unit, where the file gives it, since no key has one.
+    pub unit: String,
     /// Its values.
     pub kind: Kind,
 }
@@ -60,25 +72,33 @@ impl Factor {
             Some(first) => Ok((first.clone(), keys.clone())),
         };
         match spec {
-            FactorSpec::Values { name, key, values } => {
+            FactorSpec::Values {
+                name,
+                key,
+                values,
+                unit,
+            } => {
                 let (name, keys) = named(name, key)?;
                 if values.is_empty() {
                     return fail(".values", "a factor takes one value or more".to_owned());
                 }
                 let texts: Vec<&str> = values.iter().map(|v| v.get_ron().trim()).collect();
-                if let Some(k) = (1..texts.len()).find(|&k| texts[..k].contains(&texts[k])) {
-                    return fail(
-                        &format!(".values.{k}"),
-                        format!("{} is given twice", texts[k]),
-                    );
+                let listed: Vec<Value> = texts.iter().map(|text| value_of(&keys, text)).collect();
+                for k in 1..listed.len() {
+                    if let Some(first) = (0..k).find(|&i| listed[i].equals(&listed[k])) {
+                        let text = match texts[first] == texts[k] {
+                            true => format!("{} is given twice", texts[k]),
+                            false => {
+                                format!("{} and {} are the same value", texts[first], texts[k])
+                            }
+                        };
+                        return fail(&format!(".values.{k}"), text);
+                    }
                 }
-                let listed = texts
-                    .into_iter()
-                    .map(|text| value_of(&keys, text))
-                    .collect();
                 Ok(Self {
                     name,
                     keys,
+                    unit: unit.clone().unwrap_or_default(),
                     kind: Kind::Listed(listed),
                 })
             }
@@ -89,6 +109,7 @@ impl Factor {
                 high,
                 scale,
                 levels,
+                unit,
             } => {
                 let (name, keys) = named(name, key)?;
                 let (from, to) = (*low, *high);
@@ -116,7 +137,12 @@ impl Factor {
                     scale,
                     levels: *levels,
                 };
-                Ok(Self { name, keys, kind })
+                Ok(Self {
+                    name,
+                    keys,
+                    unit: unit.clone().unwrap_or_default(),
+                    kind,
+                })
             }
             FactorSpec::Options { name, options } => {
                 if options.is_empty() {
@@ -140,6 +166,7 @@ impl Factor {
                 Ok(Self {
                     name: name.clone(),
                     keys: Vec::new(),
+                    unit: String::new(),
                     kind: Kind::Listed(listed),
                 })
             }
@@ -153,6 +180,7 @@ impl Factor {
         Self {
             name: key.to_owned(),
             keys,
+            unit: String::new(),
             kind: Kind::Listed(listed),
         }
     }
@@ -179,14 +207,45 @@ impl Factor {
         }
     }
 
-    /// The value of a table: a number, a level by its label, or any value of its key.
-    pub fn named(&self, text: &str) -> Option<Value> {
-        if let Kind::Listed(values) = &self.kind
-            && let Some(known) = values.iter().find(|v| v.label == text)
-        {
-            return Some(known.clone());
+    /// The value of a table: a number of the range, a level by its label, or any value of its key.
+    ///
+    /// # Errors
+    /// The factor does not take it.
+    pub fn named(&self, text: &str) -> Result<Value, String> {
+        let name = &self.name;
+        let value = value_of(&self.keys, text);
+        match &self.kind {
+            Kind::Range { scale, .. } => match (value.number, scale) {
+                (None, _) => Err(format!(
+                    "`{name}` is a range of numbers, and `{text}` is none"
+                )),
+                (Some(x), Scale::Logarithmic { .. }) if x <= 0.0 => Err(format!(
+                    "`{name}` has `scale: Log`, for which numbers are above zero, and {text} is not"
+                )),
+                (Some(x), Scale::Integer { .. }) if x.fract() != 0.0 => Err(format!(
+                    "`{name}` is a range of whole numbers, and {text} is none"
+                )),
+                _ => Ok(value),
+            },
+            Kind::Listed(values) => {
+                // Equal numbers are one level, however they are spelled.
+                let known = values
+                    .iter()
+                    .find(|v| v.label == value.label)
+                    .or_else(|| values.iter().find(|v| v.equals(&value)));
+                match known {
+                    Some(known) => Ok(known.clone()),
+                    None if !self.keys.is_empty() => Ok(value),
+                    None => {
+                        let labels: Vec<&str> = values.iter().map(|v| v.label.as_str()).collect();
+                        let labels = labels.join(", ");
+                        Err(format!(
+                            "`{name}` has no option `{text}`; there are {labels}"
+                        ))
+                    }
+                }
+            }
         }
-        (!self.keys.is_empty()).then(|| value_of(&self.keys, text))
     }
 
     fn value(&self, number: f64) -> Value {
@@ -224,6 +283,7 @@ mod tests {
         Factor {
             name: "x".into(),
             keys: vec!["a".into(), "b".into()],
+            unit: String::new(),
             kind: Kind::Range {
                 scale,
                 levels: Some(levels),

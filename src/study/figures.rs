@@ -1,7 +1,7 @@
 //! The figures of a study as a picture, `study.png`.
 
-use super::analysis::{Analysis, RegimeMap, logarithmic};
-use super::page::title_of;
+use super::analysis::{Analysis, Regimes, logarithmic_axis};
+use super::page::{REGIMES, title_of};
 use super::plan::Plan;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
 use std::path::Path;
@@ -14,13 +14,13 @@ const PANELS: usize = 12;
 /// # Errors
 /// The file cannot be written.
 pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, ReportError> {
-    let mut charts: Vec<Chart> = analysis
-        .regimes
-        .iter()
-        .map(|m| regime_chart(plan, m))
-        .collect();
-    for output in &analysis.outputs {
-        for response in &output.responses {
+    let maps = analysis.regimes.iter();
+    let mut charts: Vec<Chart> = maps.filter_map(|r| regime_chart(plan, r)).collect();
+    // All outputs over the first factor, then over the next.
+    for factor in 0..plan.factors.len() {
+        for output in &analysis.outputs {
+            let own = output.responses.iter().find(|r| r.factor == factor);
+            let Some(response) = own else { continue };
             let name = title_of(&output.name);
             let mut chart = Chart::new(
                 format!("{name} over {}", plan.factors[response.factor].name),
@@ -56,32 +56,24 @@ pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, Repor
 
 fn axis(plan: &Plan, factor: usize) -> Axis {
     let axis = Axis::new(&plan.factors[factor].name, plan.unit_of(factor));
-    // Ratios over a decade and more read on a logarithmic axis.
-    let numbers: Vec<f64> = plan
-        .settings
-        .iter()
-        .filter_map(|s| s[factor].number)
-        .collect();
-    let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = numbers.iter().copied().fold(0.0, f64::max);
-    match logarithmic(&plan.factors[factor]) || low > 0.0 && high > 20.0 * low {
+    match logarithmic_axis(plan, factor) {
         true => axis.log(),
         false => axis,
     }
 }
 
-fn regime_chart(plan: &Plan, map: &RegimeMap) -> Chart {
+fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
+    let map = regimes.map.as_ref()?;
     let (first, second) = map.axes;
     let y = second.map_or(Axis::new("", ""), |f| axis(plan, f));
     let mut chart = Chart::new(
-        format!("Regimes by {}", title_of(&map.name)),
+        format!("Regimes by {}", title_of(&regimes.name)),
         axis(plan, first),
         y,
     );
-    chart.subtitle = Some("The regime of at least half of the runs of a setting".to_owned());
-    for (regime, points) in &map.regimes {
-        let shown = points.iter().filter(|p| p.share >= 0.5).map(|p| (p.x, p.y));
-        chart = chart.with(Series::new(regime.clone(), shown.collect()).style(Style::Markers));
+    chart.subtitle = Some(REGIMES.to_owned());
+    for (regime, places) in &map.places {
+        chart = chart.with(Series::new(regime.clone(), places.clone()).style(Style::Markers));
     }
-    chart
+    Some(chart)
 }

@@ -66,6 +66,7 @@ pub struct Plan {
     pub launcher: Launcher,
     /// The case with what all runs change.
     pub base: Loaded,
+    known: Known,
 }
 
 /// What was found out about a study before, so that each of its points need not find it again.
@@ -75,6 +76,15 @@ struct Known {
     fingerprint: String,
     random: bool,
     outputs: Vec<String>,
+}
+
+/// The file of what is known.
+const KNOWN: &str = "study.json";
+
+impl Known {
+    fn read(file: &Path) -> Option<Self> {
+        serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
+    }
 }
 
 /// Where a study is made.
@@ -91,7 +101,7 @@ pub struct Place<'a> {
 }
 
 impl Plan {
-    /// Plans a study. What takes long is kept in `study.json` of its folder, if there is one, for the next call.
+    /// Plans a study. What takes long is taken from `study.json` of its folder, if [`keep`](Self::keep) left it there.
     ///
     /// # Errors
     /// The study, its case, an output or a level that the case refuses.
@@ -119,11 +129,7 @@ impl Plan {
                 .error_at(&format!("factors.{k}.name"), text)
                 .into());
         }
-        let unit = |factor: &Factor| {
-            let known = inputs.iter().find(|i| factor.keys.contains(&i.path));
-            known.map_or("", |i| i.unit).to_owned()
-        };
-        let units = factors.iter().map(unit).collect();
+        let units = units(read, &factors, &inputs)?;
         let derived = derive(read, &derived, &factors, &settings)?;
         check_factors(read, &factors)?;
         let limits = Limits {
@@ -136,9 +142,7 @@ impl Plan {
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
-        let file = place.out.join("study.json");
-        let known = std::fs::read_to_string(&file).unwrap_or_default();
-        let known: Option<Known> = serde_json::from_str(&known).ok();
+        let known = Known::read(&place.out.join(KNOWN));
         let known = match known.filter(|k| k.fingerprint == fingerprint) {
             Some(known) => known,
             None => {
@@ -150,16 +154,11 @@ impl Plan {
                 .concat();
                 check_levels(read, &base, &factors, &first, place.search)?;
                 let outputs = outputs(read, &base, &scene)?;
-                let known = Known {
+                Known {
                     fingerprint,
                     random: seed_matters(&base, &scene, place.search)?,
                     outputs: outputs.iter().map(|o| o.name.clone()).collect(),
-                };
-                if place.out.is_dir() {
-                    let text = serde_json::to_string_pretty(&known).unwrap_or_default();
-                    std::fs::write(&file, text).map_err(|e| RunsError::write(&file, &e))?;
                 }
-                known
             }
         };
         let first = base.case.seed;
@@ -191,7 +190,21 @@ impl Plan {
                 .collect(),
             launcher,
             base,
+            known,
         })
+    }
+
+    /// Keeps what took long in `study.json` of its folder, if there is one, for the next call.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn keep(&self) -> Result<(), RunsError> {
+        let file = self.out.join(KNOWN);
+        if self.out.is_dir() && Known::read(&file).as_ref() != Some(&self.known) {
+            let text = serde_json::to_string_pretty(&self.known).unwrap_or_default();
+            std::fs::write(&file, text).map_err(|e| RunsError::write(&file, &e))?;
+        }
+        Ok(())
     }
 
     /// Number of runs.
@@ -261,6 +274,15 @@ const COLUMNS: [&str; 11] = [
 
 /// Refuses names that the table has itself, keys that a study sets, and factors that change nothing.
 fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> {
+    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+    let mut used = vec![false; names.len()];
+    for set in &read.spec.set {
+        let derived =
+            Derived::parse(set, &names).map_err(|why| read.source.error_at("set", why))?;
+        for place in derived.needs() {
+            used[place] = true;
+        }
+    }
     for (k, factor) in factors.iter().enumerate() {
         let fail = |text: String| Err(read.source.error_at(&format!("factors.{k}"), text));
         let name = factor.name.as_str();
@@ -272,21 +294,33 @@ fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> 
                 "the table has a column `{name}` already; give the factor another `name`"
             ));
         }
-        let used = read
-            .spec
-            .set
-            .iter()
-            .any(|s| Derived::is(s) && s.contains(name));
         let changes = factor
             .levels()
             .is_none_or(|l| l.iter().any(|v| !v.sets.is_empty()));
-        if factor.keys.is_empty() && !changes && !used {
+        if factor.keys.is_empty() && !changes && !used[k] {
             return fail(format!(
                 "`{name}` changes nothing: give it a `key`, or use it as `${{{name}}}` in `set`"
             ));
         }
     }
     Ok(())
+}
+
+/// SI units of the factors: those of their keys, or what the study says where there is none.
+fn units(read: &ReadSpec, factors: &[Factor], inputs: &[Input]) -> Result<Vec<String>, InputError> {
+    let of = |(k, factor): (usize, &Factor)| {
+        let known = inputs.iter().find(|i| factor.keys.contains(&i.path));
+        let known = known.map_or("", |i| i.unit);
+        match (known, factor.unit.as_str()) {
+            ("", own) => Ok(own.to_owned()),
+            (known, own) if own.is_empty() || own == known => Ok(known.to_owned()),
+            (known, own) => Err(read.source.error_at(
+                &format!("factors.{k}.unit"),
+                format!("the case has its key in `{known}`, not in `{own}`; leave the unit out"),
+            )),
+        }
+    };
+    factors.iter().enumerate().map(of).collect()
 }
 
 /// What follows from the factors, for each setting.
@@ -375,11 +409,11 @@ fn check_levels(
     for factor in factors {
         for value in levels(factor).into_iter().filter(|v| !v.sets.is_empty()) {
             let sets = [base.source.sets(), &value.sets].concat();
-            let told = load(&base.path, &sets).and_then(|loaded| match built {
+            let checked = load(&base.path, &sets).and_then(|loaded| match built {
                 true => loaded.build(search).map(|_| ()),
                 false => Ok(()),
             });
-            told.map_err(|e| {
+            checked.map_err(|e| {
                 e.note(format!(
                     "with `{}` = {} of {}",
                     factor.name,

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 ///     case: "../cases/plane_shear.ron",
 ///     factors: [
 ///         Values(name: "friction", key: "interfaces.grains.parameters.contact.mu", values: [0.2, 0.4]),
-///         Range(name: "speed", key: "phases.shear.drives.top.x.Velocity.Ramp.to", low: 0.1, high: 1.0, scale: Log, levels: 3),
+///         Range(name: "speed", key: "phases.shear.drives.top.x.to", low: 0.1, high: 1.0, scale: Log, levels: 3),
 ///     ],
 ///     seeds: 3,
 ///     outputs: ["measures.bulk_mu"],
@@ -75,6 +75,9 @@ pub enum FactorSpec {
         key: Keys,
         /// The values, as a case has them.
         values: Vec<Box<RawValue>>,
+        /// SI unit of a factor without a key.
+        #[serde(default)]
+        unit: Option<String>,
     },
     /// A key of the case with a range of numbers.
     Range {
@@ -94,6 +97,9 @@ pub enum FactorSpec {
         /// How many of them, from end to end, where the design is made of levels.
         #[serde(default)]
         levels: Option<u16>,
+        /// SI unit of a factor without a key.
+        #[serde(default)]
+        unit: Option<String>,
     },
     /// Named sets of changes, such as laws with their parameters.
     Options {

@@ -131,8 +131,8 @@ impl Table {
                 .iter()
                 .map(|r| real(r.run.as_ref().and_then(|_| value(r))))
                 .collect();
-            let told = rows.iter().find(|r| r.run.is_some());
-            let unit = told
+            let ended = rows.iter().find(|r| r.run.is_some());
+            let unit = ended
                 .map(|r| unit_of(output, &r.summary, &r.place))
                 .unwrap_or_default();
             let errors: Vec<Cell> = rows
@@ -169,7 +169,7 @@ impl Table {
             cells: rows.iter().map(|r| real(r.run.as_ref().map(f))).collect(),
         };
         for regime in &plan.regimes {
-            columns.push(text(regime, &|r| told(&r.summary, regime)));
+            columns.push(text(regime, &|r| regime_of(&r.summary, regime)));
         }
         columns.push(text("status", &|r| status(r.run.as_ref()).0.to_owned()));
         columns.push(text("reason", &|r| status(r.run.as_ref()).1));
@@ -255,6 +255,18 @@ impl Table {
                 of(&|m| Some(m.count as f64)),
             ));
         }
+        for regimes in &analysis.regimes {
+            let words = (0..count).map(|k| match regimes.words(k) {
+                none if none.is_empty() => Cell::Unknown,
+                words => Cell::Text(words),
+            });
+            columns.push(column(
+                regimes.name.clone(),
+                "",
+                Type::Text,
+                words.collect(),
+            ));
+        }
         Self { columns }
     }
 
@@ -284,6 +296,21 @@ impl Table {
         counts
     }
 
+    /// In place of a mean of a setting none of whose runs is done: how they ended.
+    pub fn without_result(&self, setting: usize, seeds: usize) -> String {
+        let cells = self.column("status").map(|c| c.cells.as_slice());
+        let own = cells.and_then(|c| c.get(setting * seeds..(setting + 1) * seeds));
+        let mut words: Vec<&str> = Vec::new();
+        for cell in own.unwrap_or_default() {
+            if let Cell::Text(word) = cell
+                && !words.contains(&word.as_str())
+            {
+                words.push(word);
+            }
+        }
+        words.join(", ")
+    }
+
     /// The values of an output by run; `None` where there is no run that is done and trusted.
     pub fn trusted(&self, name: &str) -> Vec<Option<f64>> {
         let status = self
@@ -303,7 +330,7 @@ impl Table {
 }
 
 /// A text of a summary, up to the first sign that ends a name.
-fn told(summary: &Value, name: &str) -> String {
+fn regime_of(summary: &Value, name: &str) -> String {
     let found = name.split('.').try_fold(summary, |v, part| v.get(part));
     let text = found.and_then(Value::as_str).unwrap_or_default();
     let end = text.find([':', ',', ';', '(']).unwrap_or(text.len());

@@ -101,7 +101,7 @@
     event.preventDefault();
   };
 
-  // spec: {x: {label, unit, values}, ys: [{label, unit, values, x?}], loose: any order, link: shared zoom, title}
+  // spec: {x: {label, unit, values}, ys: [{label, unit, values, x?}], loose: any order, log: axes with logarithmic scales, link: shared zoom, title}
   FW.chart = (host, spec) => {
     const plot = FW.element("div", { class: "plot", tabindex: 0, role: "img" });
     host.append(plot);
@@ -132,10 +132,12 @@
       // With intervals the axis holds their ends.
       const ends = (k) => spec.ys.filter((y) => of(y) === k).flatMap((y) => [...(y.low || []), ...(y.high || [])]).filter(Number.isFinite).map((v) => v * shown[k].factor);
       const around = (k) => { const e = ends(k); return (u, min, max) => pad(u, min === null ? null : Math.min(min, ...e), Math.max(max, ...e)); };
+      const [xlog, ylog] = spec.log || [];
+      const decades = (u, min, max) => (min > 0 ? [min / (max / min || 1) ** 0.04 / 1.1, max * (max / min || 1) ** 0.04 * 1.1] : [0.1, 1]);
       const plain = (u, min, max) => (min === null ? [0, 1] : min === max ? [min - 1, max + 1] : [min, max]);
       const options = {
         width, height: Math.round(Math.min(340, Math.max(230, 0.55 * width))), mode: spec.loose ? 2 : 1,
-        scales: { x: { time: false, range: spec.loose ? pad : plain }, y: { range: around(0) }, ...(units.length > 1 ? { y2: { range: pad } } : {}) },
+        scales: { x: { time: false, ...(xlog ? { distr: 3, range: decades } : { range: spec.loose ? pad : plain }) }, y: ylog ? { distr: 3, range: decades } : { range: around(0) }, ...(units.length > 1 ? { y2: { range: pad } } : {}) },
         axes: [axis(named(spec.x.label, across.unit), "x", 2, spec.x.label === "cycle"), axis(labels[0], "y", 3), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
         series: [spec.loose ? null : { label: named(spec.x.label, across.unit), value: (_, v) => FW.number(v, 5) }, ...series],
         cursor: { drag: { x: true, y: spec.loose === true, uni: 20 }, ...(spec.link ? { sync: { key: "time" } } : {}),

@@ -134,7 +134,7 @@
   const curves = (host, figure) => {
     const ys = figure.curves.map((c) => ({ label: c.label, unit: figure.y_unit, x: finite(c.x), values: finite(c.values), low: finite(c.low), high: finite(c.high), line: c.line, markers: c.markers }));
     const x = { label: figure.x, unit: figure.x_unit, values: ys.flatMap((y) => y.x) };
-    FW.chart(host, { title: figure.title, loose: true, x, ys, quantity: figure.y[0] });
+    FW.chart(host, { title: figure.title, loose: true, log: [figure.x_log, figure.y_log], x, ys, quantity: figure.y[0] });
   };
 
   const KINDS = { loops, time, cycles: byCycle, any, curves };

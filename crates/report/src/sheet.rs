@@ -64,6 +64,8 @@ pub struct SheetFigure {
     pub x: (String, String),
     /// Name and SI unit of the vertical axis.
     pub y: (String, String),
+    /// Whether the horizontal and the vertical axis are logarithmic; values are above zero then.
+    pub logarithmic: (bool, bool),
     /// Its curves.
     pub curves: Vec<SheetCurve>,
 }
@@ -203,7 +205,8 @@ fn figure_json(figure: &SheetFigure) -> Value {
         .collect();
     json!({
         "id": "curves", "kind": "curves", "title": figure.title, "note": figure.note,
-        "x": figure.x.0, "x_unit": figure.x.1, "y": [figure.y.0], "y_unit": figure.y.1, "curves": curves,
+        "x": figure.x.0, "x_unit": figure.x.1, "y": [figure.y.0], "y_unit": figure.y.1,
+        "x_log": figure.logarithmic.0, "y_log": figure.logarithmic.1, "curves": curves,
     })
 }
 

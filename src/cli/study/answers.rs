@@ -1,37 +1,29 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
 use crate::runs::duration::seconds;
+use crate::study::analysis::{labels, numeric};
 use crate::study::forecast::Forecast;
-use crate::study::plan::Plan;
+use crate::study::plan::{Plan, Point};
 use crate::study::table::{Cell, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// What a study consists of, and the forecast for runs that are to be made with parallel jobs.
-pub fn consists_of(plan: &Plan, open: usize, forecast: &Forecast, jobs: usize) -> String {
+pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: usize) -> String {
     let mut out = format!("{}: {}\n", plan.file.display(), plan.title);
-    for factor in &plan.factors {
-        let mut labels: Vec<&str> = Vec::new();
-        let place = plan
-            .factors
-            .iter()
-            .position(|f| f.name == factor.name)
-            .unwrap_or(0);
-        for setting in &plan.settings {
-            let label = setting[place].label.as_str();
-            if !labels.contains(&label) {
-                labels.push(label);
-            }
-        }
-        let values = match labels.as_slice() {
+    for (k, factor) in plan.factors.iter().enumerate() {
+        let values = match labels(plan, k).as_slice() {
             few if few.len() <= 8 => few.join(", "),
-            many => format!(
-                "{}, {}, ... {} ({} values)",
-                many[0],
-                many[1],
-                many[many.len() - 1],
-                many.len()
-            ),
+            many => match ends(plan, k) {
+                Some((low, high)) => format!("{low} to {high} ({} values)", many.len()),
+                None => format!(
+                    "{}, {}, ... {} ({} values)",
+                    many[0],
+                    many[1],
+                    many[many.len() - 1],
+                    many.len()
+                ),
+            },
         };
         let _ = writeln!(out, "  {}: {values}", factor.name);
     }
@@ -53,9 +45,9 @@ pub fn consists_of(plan: &Plan, open: usize, forecast: &Forecast, jobs: usize) -
             "  nothing in the case is drawn from its seed: runs with steps longer by multiples of 1e-10 of themselves take the place of seeds"
         );
     }
-    if open == 0 {
+    let Some(forecast) = forecast.filter(|_| open > 0) else {
         return out.trim_end().to_owned();
-    }
+    };
     let jobs = jobs as f64;
     let source = if forecast.measured {
         "from the runs that ended"
@@ -77,6 +69,50 @@ pub fn consists_of(plan: &Plan, open: usize, forecast: &Forecast, jobs: usize) -
         ),
     };
     out.trim_end().to_owned()
+}
+
+/// The smallest and the largest value of a factor of numbers.
+fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
+    if !numeric(plan, factor) {
+        return None;
+    }
+    let values = || plan.settings.iter().map(|s| &s[factor]);
+    let number = |v: &&crate::study::factor::Value| v.number.unwrap_or(f64::NAN);
+    let low = values().min_by(|a, b| number(a).total_cmp(&number(b)))?;
+    let high = values().max_by(|a, b| number(a).total_cmp(&number(b)))?;
+    Some((&low.label, &high.label))
+}
+
+/// Each run with its changes of the case.
+pub fn points(plan: &Plan) -> String {
+    let line = |p: Point| {
+        let sets: Vec<String> = p.sets.iter().map(|s| format!("--set '{s}'")).collect();
+        format!("{:>6}  {}  {}", p.number, plan.words(&p), sets.join(" "))
+    };
+    plan.points().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The same as JSON; times are in seconds on one worker, null where they are not known.
+pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points: bool) -> String {
+    let factors: Vec<Value> = plan.factors.iter().enumerate().map(|(k, factor)| {
+        json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": labels(plan, k)})
+    }).collect();
+    let outputs: Vec<&str> = plan.outputs.iter().map(|o| o.name.as_str()).collect();
+    let point =
+        |p: Point| json!({"point": p.number, "setting": p.setting, "seed": p.seed, "set": p.sets});
+    let mut whole = json!({
+        "title": plan.title, "case": plan.launcher.case, "factors": factors, "outputs": outputs, "regimes": plan.regimes,
+        "settings": plan.settings.len(), "seeds": plan.seeds, "seed_matters": plan.random,
+        "runs": {"all": plan.count(), "to_be_made": open},
+        // JSON has no number for infinity.
+        "forecast": forecast.map(|f| json!({
+            "seconds": f.about, "least": f.least, "most": Some(f.most).filter(|s| s.is_finite()), "from_runs": f.measured,
+        })),
+    });
+    if points {
+        whole["points"] = plan.points().map(point).collect();
+    }
+    serde_json::to_string_pretty(&whole).unwrap_or_default()
 }
 
 /// What a table holds and where it is.

@@ -1,6 +1,7 @@
 //! The output over each factor that has numbers.
 
 use super::{Data, numeric};
+use crate::study::plan::Plan;
 use crate::study::spec::DesignSpec;
 use fretwork_study::interval::Mean;
 
@@ -84,11 +85,9 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
             let lines = match other {
                 None => vec![curve(data, factor, String::new(), |_| true)],
                 Some(other) => {
-                    let name = &data.plan.factors[other].name;
                     let line = |label: &str| {
-                        curve(data, factor, format!("{name} {label}"), |k| {
-                            data.plan.settings[k][other].label == label
-                        })
+                        let has = |k: usize| data.plan.settings[k][other].label == label;
+                        curve(data, factor, line_label(data.plan, other, label), has)
                     };
                     data.labels(other).into_iter().map(line).collect()
                 }
@@ -142,6 +141,13 @@ fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> 
         label,
         points: groups.into_iter().filter_map(point).collect(),
     }
+}
+
+/// What tells a line apart, `pressure 300.0 Pa`.
+fn line_label(plan: &Plan, factor: usize, label: &str) -> String {
+    let unit = plan.unit_of(factor);
+    let words = format!("{} {label} {unit}", plan.factors[factor].name);
+    words.trim_end().to_owned()
 }
 
 fn capital(text: &str) -> String {

@@ -21,7 +21,7 @@ pub enum Effects {
         anova: Result<Anova, String>,
     },
     /// Of one factor at a time: the change from the case as it is.
-    FromCase(Vec<Standing>),
+    FromCase(Vec<Change>),
     /// Of a design for Sobol indices.
     Indices(SobolIndices),
     /// Of points spread over all factors.
@@ -35,7 +35,7 @@ pub enum Effects {
 
 /// The change that a level of a factor makes of the case as it is.
 #[derive(Clone, Debug)]
-pub struct Standing {
+pub struct Change {
     /// Number of the factor.
     pub factor: usize,
     /// The level.
@@ -65,7 +65,7 @@ pub(super) fn effects(data: &Data<'_>) -> Effects {
                 Err(e) => Effects::Nothing(said(&e)),
             }
         }
-        DesignSpec::OneAtATime => Effects::FromCase(standings(data)),
+        DesignSpec::OneAtATime => Effects::FromCase(changes(data)),
         DesignSpec::Sensitivity { .. } => {
             // By setting, since the order of the rows is that of the settings.
             let means = data.means().into_iter().map(|m| m.map(|m| m.mean));
@@ -112,7 +112,7 @@ fn trend(data: &Data<'_>) -> Effects {
     }
 }
 
-fn standings(data: &Data<'_>) -> Vec<Standing> {
+fn changes(data: &Data<'_>) -> Vec<Change> {
     let plan = data.plan;
     let base = data.of_setting(0);
     let mut out = Vec::new();
@@ -126,7 +126,7 @@ fn standings(data: &Data<'_>) -> Vec<Standing> {
             .zip(base)
             .filter_map(|(a, b)| Some((*a)? - (*b)?))
             .collect();
-        out.push(Standing {
+        out.push(Change {
             factor,
             label: setting[factor].label.clone(),
             change: fretwork_study::interval::Mean::of(&differences),

@@ -1,20 +1,22 @@
 //! What the runs of a study say: means over seeds, response curves, effects of factors, comparisons of alternatives, maps of
 //! regimes. Only runs that are done and trusted count.
 
+mod comparisons;
 mod curves;
 mod effects;
 mod regimes;
 
+pub use comparisons::Comparison;
 pub use curves::{Curve, Response};
-pub use effects::{Effects, Standing};
-pub use regimes::RegimeMap;
+pub use effects::{Change, Effects};
+pub use regimes::{RegimeMap, Regimes};
 
 use super::factor::{Factor, Kind};
 use super::plan::Plan;
 use super::spec::DesignSpec;
 use super::table::Table;
 use fretwork_study::interval::Mean;
-use fretwork_study::tournament::Tournament;
+use std::collections::{HashMap, HashSet};
 
 /// Everything that is said of a study.
 #[derive(Clone, Debug)]
@@ -22,7 +24,7 @@ pub struct Analysis {
     /// By output.
     pub outputs: Vec<OutputAnalysis>,
     /// By regime that is asked for.
-    pub regimes: Vec<RegimeMap>,
+    pub regimes: Vec<Regimes>,
 }
 
 /// What is said of an output.
@@ -39,22 +41,7 @@ pub struct OutputAnalysis {
     /// How much each factor matters.
     pub effects: Effects,
     /// Alternatives of the factors without numbers.
-    pub contests: Vec<Contest>,
-}
-
-/// The alternatives of a factor compared.
-#[derive(Clone, Debug)]
-pub struct Contest {
-    /// The factor.
-    pub factor: String,
-    /// Names of the alternatives.
-    pub names: Vec<String>,
-    /// What the means are over, as the end of a sentence.
-    pub over: String,
-    /// What is paired: seeds or combinations.
-    pub pairs: &'static str,
-    /// The comparison, seed by seed, or combination by combination of the other factors where there is one seed.
-    pub tournament: Tournament,
+    pub comparisons: Vec<Comparison>,
 }
 
 /// A study with one output by run.
@@ -82,12 +69,12 @@ impl Analysis {
                 means: data.means(),
                 responses: curves::responses(&data),
                 effects: effects::effects(&data),
-                contests: contests(&data),
+                comparisons: comparisons::comparisons(&data),
             }
         });
         Self {
             outputs: outputs.collect(),
-            regimes: regimes::maps(plan, table),
+            regimes: regimes::regimes(plan, table),
         }
     }
 }
@@ -122,30 +109,30 @@ impl Data<'_> {
 
     /// Labels that a factor takes, in the order of its first settings.
     fn labels(&self, factor: usize) -> Vec<&str> {
-        let mut labels: Vec<&str> = Vec::new();
-        for setting in &self.plan.settings {
-            let label = setting[factor].label.as_str();
-            if !labels.contains(&label) {
-                labels.push(label);
-            }
-        }
-        labels
+        labels(self.plan, factor)
     }
 
     /// Level numbers of all settings.
     fn levels(&self) -> (Vec<usize>, Vec<Vec<usize>>) {
-        let labels: Vec<Vec<&str>> = (0..self.plan.factors.len())
-            .map(|f| self.labels(f))
+        let places: Vec<HashMap<&str, usize>> = (0..self.plan.factors.len())
+            .map(|f| self.labels(f).into_iter().zip(0..).collect())
             .collect();
         let row = |setting: &Vec<super::factor::Value>| {
             let place = |(f, v): (usize, &super::factor::Value)| {
-                labels[f].iter().position(|l| *l == v.label).unwrap_or(0)
+                places[f].get(v.label.as_str()).copied().unwrap_or(0)
             };
             setting.iter().enumerate().map(place).collect()
         };
         let rows = self.plan.settings.iter().map(row).collect();
-        (labels.iter().map(Vec::len).collect(), rows)
+        (places.iter().map(HashMap::len).collect(), rows)
     }
+}
+
+/// Labels that a factor takes, in the order of its first settings.
+pub fn labels(plan: &Plan, factor: usize) -> Vec<&str> {
+    let mut seen = HashSet::new();
+    let all = plan.settings.iter().map(|s| s[factor].label.as_str());
+    all.filter(|label| seen.insert(*label)).collect()
 }
 
 /// Whether all values of a factor are numbers.
@@ -164,76 +151,59 @@ pub fn logarithmic(factor: &Factor) -> bool {
     )
 }
 
-/// The alternatives of factors without numbers, in designs that have each with the same others.
-fn contests(data: &Data<'_>) -> Vec<Contest> {
-    match data.design {
-        DesignSpec::Grid | DesignSpec::OneAtATime | DesignSpec::Table { .. } => {
-            let factors = 0..data.plan.factors.len();
-            factors.filter_map(|f| contest(data, f)).collect()
-        }
-        _ => Vec::new(),
+/// Whether the values of a factor read better on a logarithmic axis: those of a range by its scale, listed ones if their ratios are
+/// more alike than their differences.
+pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
+    if matches!(plan.factors[factor].kind, Kind::Range { .. }) {
+        return logarithmic(&plan.factors[factor]);
+    }
+    let mut numbers: Vec<f64> = plan
+        .settings
+        .iter()
+        .filter_map(|s| s[factor].number)
+        .collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    ratios_are_alike(&numbers)
+}
+
+/// Of numbers in their order: whether ratios of neighbours vary less, by their standard deviation over their mean, than differences.
+fn ratios_are_alike(numbers: &[f64]) -> bool {
+    let variation = |of: &dyn Fn(f64) -> f64| {
+        let steps: Vec<f64> = numbers.windows(2).map(|w| of(w[1]) - of(w[0])).collect();
+        Mean::of(&steps).and_then(|m| Some(m.scatter? / m.mean))
+    };
+    match numbers {
+        [low, .., high] if *low > 0.0 => match (variation(&f64::ln), variation(&|x| x)) {
+            (Some(ratios), Some(differences)) => ratios < differences,
+            // Two numbers.
+            _ => *high > 20.0 * *low,
+        },
+        _ => false,
     }
 }
 
-fn contest(data: &Data<'_>, factor: usize) -> Option<Contest> {
-    let plan = data.plan;
-    let names = data.labels(factor);
-    if numeric(plan, factor) || names.len() < 2 {
-        return None;
-    }
-    // A block is a combination of all other factors.
-    let others = |k: usize| -> Vec<&str> {
-        let values = plan.settings[k].iter().enumerate();
-        values
-            .filter(|(f, _)| *f != factor)
-            .map(|(_, v)| v.label.as_str())
-            .collect()
-    };
-    let setting = |name: &str, block: &[&str]| {
-        let same = |k: &usize| plan.settings[*k][factor].label == name && others(*k) == block;
-        (0..plan.settings.len()).find(same)
-    };
-    let mut blocks: Vec<Vec<&str>> = Vec::new();
-    for block in (0..plan.settings.len()).map(others) {
-        let whole = names.iter().all(|name| setting(name, &block).is_some());
-        if whole && !blocks.contains(&block) {
-            blocks.push(block);
+#[cfg(test)]
+mod tests {
+    use super::ratios_are_alike;
+
+    #[test]
+    fn axes_follow_the_spacing_of_listed_numbers() {
+        for log in [
+            &[0.1, 1.0, 10.0, 30.0, 100.0][..],
+            &[300.0, 1e3, 3e3],
+            &[1e-6, 1e-4],
+        ] {
+            assert!(ratios_are_alike(log), "{log:?}");
+        }
+        for linear in [
+            &[0.1, 0.2, 0.3][..],
+            &[0.0, 1.0, 10.0],
+            &[-1.0, 1.0],
+            &[1.0, 2.0],
+            &[1.0],
+        ] {
+            assert!(!ratios_are_alike(linear), "{linear:?}");
         }
     }
-    // By alternative and block, the outputs by seed.
-    let runs = |name: &&str| -> Vec<&[Option<f64>]> {
-        let of = |block: &Vec<&str>| setting(name, block).map(|k| data.of_setting(k));
-        blocks.iter().filter_map(of).collect()
-    };
-    let seeds = data.seeds();
-    // Runs of one seed have one sample: they are not independent, and count as one.
-    let by_seed = seeds > 1;
-    let row = |name: &&str| -> Vec<Option<f64>> {
-        let runs = runs(name);
-        match by_seed {
-            true => (0..seeds)
-                .map(|seed| {
-                    let values: Option<Vec<f64>> = runs.iter().map(|r| r[seed]).collect();
-                    values
-                        .filter(|v| !v.is_empty())
-                        .map(|v| v.iter().sum::<f64>() / v.len() as f64)
-                })
-                .collect(),
-            false => runs.iter().map(|r| r[0]).collect(),
-        }
-    };
-    let over = match (by_seed, blocks.len()) {
-        (true, 1) => format!("means over {seeds} seeds with intervals of 95 %"),
-        (true, n) => format!(
-            "means over {seeds} seeds, each the mean over {n} combinations of the other factors, with intervals of 95 %"
-        ),
-        (false, n) => format!("means over {n} combinations of the other factors, one run each"),
-    };
-    Some(Contest {
-        factor: plan.factors[factor].name.clone(),
-        names: names.iter().map(|n| (*n).to_owned()).collect(),
-        over,
-        pairs: if by_seed { "seeds" } else { "combinations" },
-        tournament: Tournament::of(&names.iter().map(row).collect::<Vec<_>>()),
-    })
 }

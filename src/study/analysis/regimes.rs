@@ -1,82 +1,104 @@
-//! Maps of regimes: which of several behaviours a run shows, over two factors.
+//! Regimes: which of several behaviours the runs of a setting show, and where over two factors.
 
 use super::numeric;
 use crate::study::plan::Plan;
 use crate::study::table::{Cell, DONE, Table};
 
+/// The regimes of all settings, by one text of the summary.
+#[derive(Clone, Debug)]
+pub struct Regimes {
+    /// What tells them apart.
+    pub name: String,
+    /// For each setting, the regimes of its runs that are done with their number, the most frequent first.
+    pub shown: Vec<Vec<(String, usize)>>,
+    /// Where each occurs; `None` without a factor with numbers.
+    pub map: Option<RegimeMap>,
+}
+
 /// Where each regime occurs.
 #[derive(Clone, Debug)]
 pub struct RegimeMap {
-    /// What is mapped.
-    pub name: String,
     /// The factors of the two axes; one if only one has numbers.
     pub axes: (usize, Option<usize>),
-    /// By regime, the settings with it: values of both axes, and the share of the runs of the setting that show it.
-    pub regimes: Vec<(String, Vec<RegimePoint>)>,
+    /// By regime the settings at least half of whose runs show it: values of both axes, the second 0 without one.
+    pub places: Vec<(String, Vec<(f64, f64)>)>,
 }
 
-/// A setting that shows a regime.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RegimePoint {
-    /// Value of the first axis.
-    pub x: f64,
-    /// Value of the second axis; 0 without one.
-    pub y: f64,
-    /// Share of the runs of the setting that are done and show it.
-    pub share: f64,
+impl Regimes {
+    /// The regimes of a setting in words: one name, or names with numbers of runs.
+    pub fn words(&self, setting: usize) -> String {
+        match self.shown[setting].as_slice() {
+            [(one, _)] => one.clone(),
+            several => {
+                let each = several.iter().map(|(name, runs)| format!("{name} {runs}"));
+                each.collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
 }
 
-/// A map for each regime that is asked for, over the first two factors with numbers.
-pub(super) fn maps(plan: &Plan, table: &Table) -> Vec<RegimeMap> {
-    let mut axes = (0..plan.factors.len()).filter(|&f| numeric(plan, f));
-    let (Some(first), second) = (axes.next(), axes.next()) else {
-        return Vec::new();
+/// For each regime that is asked for what the settings show, with a map over the first two factors with numbers.
+pub(super) fn regimes(plan: &Plan, table: &Table) -> Vec<Regimes> {
+    let of = |name: &String| {
+        let shown = shown(plan, table, name);
+        Regimes {
+            name: name.clone(),
+            map: map(plan, &shown),
+            shown,
+        }
     };
+    plan.regimes.iter().map(of).collect()
+}
+
+fn shown(plan: &Plan, table: &Table, name: &str) -> Vec<Vec<(String, usize)>> {
     let cells = |name: &str| {
         table
             .column(name)
             .map(|c| c.cells.as_slice())
             .unwrap_or_default()
     };
-    let done: Vec<bool> = cells("status")
-        .iter()
-        .map(|c| matches!(c, Cell::Text(text) if text == DONE))
-        .collect();
+    let (status, regimes) = (cells("status"), cells(name));
     let seeds = plan.seeds.len();
-    let map = |name: &String| {
-        let told = cells(name);
-        let mut regimes: Vec<(String, Vec<RegimePoint>)> = Vec::new();
-        for (k, setting) in plan.settings.iter().enumerate() {
-            let runs = k * seeds..(k + 1) * seeds;
-            let shown: Vec<&str> = runs
-                .filter(|&r| done.get(r) == Some(&true))
-                .filter_map(|r| match told.get(r) {
-                    Some(Cell::Text(text)) => Some(text.as_str()),
-                    _ => None,
-                })
-                .collect();
-            let mut names = shown.clone();
-            names.sort_unstable();
-            names.dedup();
-            for regime in names {
-                let count = shown.iter().filter(|s| **s == regime).count();
-                let point = RegimePoint {
-                    x: setting[first].number.unwrap_or(f64::NAN),
-                    y: second.and_then(|f| setting[f].number).unwrap_or(0.0),
-                    share: count as f64 / shown.len() as f64,
-                };
-                match regimes.iter_mut().find(|r| r.0 == regime) {
-                    Some(known) => known.1.push(point),
-                    None => regimes.push((regime.to_owned(), vec![point])),
-                }
+    let of = |setting: usize| {
+        let mut counts: Vec<(String, usize)> = Vec::new();
+        for run in setting * seeds..(setting + 1) * seeds {
+            let (Some(Cell::Text(status)), Some(Cell::Text(regime))) =
+                (status.get(run), regimes.get(run))
+            else {
+                continue;
+            };
+            if status != DONE {
+                continue;
+            }
+            match counts.iter_mut().find(|(name, _)| name == regime) {
+                Some(known) => known.1 += 1,
+                None => counts.push((regime.clone(), 1)),
             }
         }
-        regimes.sort_by(|a, b| a.0.cmp(&b.0));
-        RegimeMap {
-            name: name.clone(),
-            axes: (first, second),
-            regimes,
-        }
+        counts.sort_by_key(|(_, runs)| std::cmp::Reverse(*runs));
+        counts
     };
-    plan.regimes.iter().map(map).collect()
+    (0..plan.settings.len()).map(of).collect()
+}
+
+fn map(plan: &Plan, shown: &[Vec<(String, usize)>]) -> Option<RegimeMap> {
+    let mut axes = (0..plan.factors.len()).filter(|&f| numeric(plan, f));
+    let (first, second) = (axes.next()?, axes.next());
+    let mut places: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
+    for (setting, shown) in plan.settings.iter().zip(shown) {
+        let runs: usize = shown.iter().map(|(_, runs)| runs).sum();
+        let x = setting[first].number.unwrap_or(f64::NAN);
+        let y = second.and_then(|f| setting[f].number).unwrap_or(0.0);
+        for (regime, _) in shown.iter().filter(|(_, own)| 2 * own >= runs) {
+            match places.iter_mut().find(|(name, _)| name == regime) {
+                Some(known) => known.1.push((x, y)),
+                None => places.push((regime.clone(), vec![(x, y)])),
+            }
+        }
+    }
+    places.sort_by(|a, b| a.0.cmp(&b.0));
+    Some(RegimeMap {
+        axes: (first, second),
+        places,
+    })
 }

@@ -1,10 +1,12 @@
 //! `fretwork study` through the program: what is run and what is not run again, tables recomputed from what the runs left, other
 //! engines' units of work, what a study says against closed forms, and wrong input.
 
+mod compared;
 mod engines;
 mod kept;
 mod refusals;
 mod said;
+mod shipped;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

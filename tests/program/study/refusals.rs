@@ -11,7 +11,8 @@ fn wrong_studies_are_refused_with_what_to_change() {
         let output = folder.call(&["run", "study.ron", "--out", "out"]);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(folder.runs().is_empty());
+        // Nothing is left behind.
+        assert!(!folder.0.join("out").exists());
         said
     };
     let told = |text: &str, parts: &[&str]| {
@@ -24,6 +25,17 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &["study.ron:1:", "seds", "seeds"],
     );
     told(&said(&mu("0.1, 0.1"), ""), &["0.1 is given twice"]);
+    told(
+        &said(&mu("0.1, 1e-1"), ""),
+        &["study.ron:1:", "0.1 and 1e-1 are the same value"],
+    );
+    told(
+        &said(
+            r#"Values(name: "step", key: "time.step", unit: "ms", values: [1e-4])"#,
+            "",
+        ),
+        &["in `s`, not in `ms`"],
+    );
     told(
         &said(&mu("0.1").replace("contact.mu", "contact.my"), ""),
         &["my", "mu"],
@@ -66,6 +78,21 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &said(&mu("0.1"), "design: Table(file: \"points.csv\")"),
         &["there is no column `friction`", "there are fric"],
     );
+    // Numbers that the scale of a range does not have.
+    for (scale, value, why) in [
+        ("Log", "0.0", "numbers are above zero"),
+        ("Log", "-0.1", "numbers are above zero"),
+        ("Integer", "1.5", "whole numbers"),
+        ("Linear", "large", "a range of numbers"),
+    ] {
+        folder.put("points.csv", &format!("friction\n1\n{value}\n"));
+        let range =
+            format!(r#"Range(name: "friction", key: "{MU}", low: 1, high: 2, scale: {scale})"#);
+        told(
+            &said(&range, "design: Table(file: \"points.csv\")"),
+            &["point 2: `friction`", why],
+        );
+    }
     folder.put("study.ron", r#"(case: "heap.ron", factors: [], outputs: ["friction_coefficient"], design: Table(file: "points.csv"))"#);
     folder.put("points.csv", "time.end\n0.03\n");
     let output = folder.call(&["run", "study.ron", "--out", "out"]);

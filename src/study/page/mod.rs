@@ -1,0 +1,274 @@
+//! The page of a study, `study.html`.
+
+mod effects;
+
+use super::analysis::{Analysis, OutputAnalysis, Regimes, Response, logarithmic_axis};
+use super::plan::Plan;
+use super::table::{Cell, Table};
+use effects::{comparison_table, effect_blocks, pair_table};
+use fretwork_observe::quantity::quantity;
+use fretwork_report::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
+use fretwork_study::interval::Mean;
+
+/// Settings that a page lists; all are in the tables.
+const LISTED: usize = 100;
+/// Failed runs that a page lists.
+const FAILURES: usize = 30;
+
+/// What a map of regimes shows.
+pub(super) const REGIMES: &str = "The regime that at least half of the runs of a setting show; a setting without a mark shows several.";
+
+/// The page of a study.
+pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
+    let counts = table.counts();
+    let mut sections = Vec::new();
+    for output in &analysis.outputs {
+        sections.push(output_section(plan, output));
+    }
+    let maps = analysis.regimes.iter();
+    let maps: Vec<Block> = maps
+        .filter_map(|r| Some(Block::Figure(regime_figure(plan, r)?)))
+        .collect();
+    if !maps.is_empty() {
+        sections.push(Section {
+            title: "Regimes".to_owned(),
+            blocks: maps,
+        });
+    }
+    sections.push(settings_section(plan, table, analysis));
+    sections.push(runs_section(table));
+    sections.push(inputs_section(plan));
+    let mut lead = format!(
+        "{} of {} runs are done: {} settings with {} seed{} of {}.",
+        counts.done,
+        counts.all,
+        plan.settings.len(),
+        plan.seeds.len(),
+        if plan.seeds.len() == 1 { "" } else { "s" },
+        plan.launcher.case.display()
+    );
+    if counts.failed > 0 {
+        lead += &format!(
+            " {} failed or were rejected; figures and tables are of the others.",
+            counts.failed
+        );
+    }
+    if counts.missing > 0 {
+        lead += &format!(" INCOMPLETE: {} have not run.", counts.missing);
+    }
+    if !plan.random && plan.seeds.len() > 1 {
+        lead += " Nothing in the case is drawn from its seed: runs with steps longer by multiples of 1e-10 of themselves take the place of seeds.";
+    }
+    if plan.seeds.len() == 1 {
+        lead +=
+            " One seed gives no intervals: whether a difference is more than scatter is not known.";
+    }
+    Sheet {
+        title: plan.title.clone(),
+        lead,
+        sections,
+        command: "fretwork study".to_owned(),
+    }
+}
+
+fn output_section(plan: &Plan, output: &OutputAnalysis) -> Section {
+    let mut blocks: Vec<Block> = Vec::new();
+    for comparison in &output.comparisons {
+        blocks.push(Block::Table(comparison_table(comparison, &output.unit)));
+        blocks.push(Block::Table(pair_table(comparison, &output.unit)));
+    }
+    blocks.extend(
+        output
+            .responses
+            .iter()
+            .map(|r| Block::Figure(response_figure(plan, output, r))),
+    );
+    blocks.extend(effect_blocks(plan, output));
+    Section {
+        title: title_of(&output.name),
+        blocks,
+    }
+}
+
+/// A name as a heading.
+pub(super) fn title_of(name: &str) -> String {
+    name.trim_start_matches("measures.")
+        .trim_start_matches("findings.")
+        .trim_start_matches("statistics.")
+        .replace('_', " ")
+}
+
+fn response_figure(plan: &Plan, output: &OutputAnalysis, response: &Response) -> SheetFigure {
+    let factor = &plan.factors[response.factor];
+    let interval = |m: &Mean| match m.half_width {
+        Some(h) => (m.mean - h, m.mean + h),
+        None => (f64::NAN, f64::NAN),
+    };
+    let curve = |c: &super::analysis::Curve| SheetCurve {
+        label: if c.label.is_empty() {
+            title_of(&output.name)
+        } else {
+            c.label.clone()
+        },
+        points: c.points.iter().map(|(x, m)| (*x, m.mean)).collect(),
+        intervals: c.points.iter().map(|(_, m)| interval(m)).collect(),
+        line: !response.scattered,
+        markers: true,
+    };
+    SheetFigure {
+        title: format!("{} over {}", title_of(&output.name), factor.name),
+        note: response.note.clone(),
+        x: (factor.name.clone(), plan.unit_of(response.factor)),
+        y: (title_of(&output.name), output.unit.clone()),
+        logarithmic: (logarithmic_axis(plan, response.factor), false),
+        curves: response.curves.iter().map(curve).collect(),
+    }
+}
+
+fn regime_figure(plan: &Plan, regimes: &Regimes) -> Option<SheetFigure> {
+    let map = regimes.map.as_ref()?;
+    let (first, second) = map.axes;
+    let axis = |f: usize| (plan.factors[f].name.clone(), plan.unit_of(f));
+    let curves = map.places.iter().map(|(regime, places)| SheetCurve {
+        label: regime.clone(),
+        points: places.clone(),
+        markers: true,
+        ..SheetCurve::default()
+    });
+    Some(SheetFigure {
+        title: format!("Regimes by {}", title_of(&regimes.name)),
+        note: REGIMES.to_owned(),
+        x: axis(first),
+        y: second.map_or((String::new(), String::new()), axis),
+        logarithmic: (
+            logarithmic_axis(plan, first),
+            second.is_some_and(|f| logarithmic_axis(plan, f)),
+        ),
+        curves: curves.collect(),
+    })
+}
+
+fn settings_section(plan: &Plan, table: &Table, analysis: &Analysis) -> Section {
+    let mut heads: Vec<String> = vec!["setting".to_owned()];
+    heads.extend(plan.factors.iter().enumerate().map(
+        |(f, factor)| match plan.unit_of(f).as_str() {
+            "" => factor.name.clone(),
+            unit => format!("{} [{unit}]", factor.name),
+        },
+    ));
+    heads.extend(analysis.outputs.iter().map(|o| title_of(&o.name)));
+    heads.extend(analysis.regimes.iter().map(|r| title_of(&r.name)));
+    let row = |(k, setting): (usize, &super::design::Setting)| {
+        let mut row = vec![(k + 1).to_string()];
+        row.extend(setting.iter().map(|v| v.label.clone()));
+        row.extend(analysis.outputs.iter().map(|o| match &o.means[k] {
+            Some(mean) => mean_text(mean, &o.unit),
+            None => table.without_result(k, plan.seeds.len()),
+        }));
+        row.extend(analysis.regimes.iter().map(|r| r.words(k)));
+        row
+    };
+    let rows: Vec<Vec<String>> = plan
+        .settings
+        .iter()
+        .enumerate()
+        .take(LISTED)
+        .map(row)
+        .collect();
+    let note = match plan.settings.len() > LISTED {
+        true => format!(
+            "The first {LISTED} of {} settings; all are in settings.csv.",
+            plan.settings.len()
+        ),
+        false => "Means over the seeds, with intervals of 95 %.".to_owned(),
+    };
+    Section {
+        title: "Settings".to_owned(),
+        blocks: vec![Block::Table(SheetTable { note, heads, rows })],
+    }
+}
+
+fn runs_section(table: &Table) -> Section {
+    let cells = |name: &str| {
+        table
+            .column(name)
+            .map(|c| c.cells.as_slice())
+            .unwrap_or_default()
+    };
+    let text = |c: Option<&Cell>| match c {
+        Some(Cell::Text(text)) => text.clone(),
+        Some(Cell::Number(x)) => format!("{x}"),
+        _ => String::new(),
+    };
+    let mut rows = Vec::new();
+    let mut left = 0;
+    for k in 0..table.rows() {
+        let (status, doubt) = (
+            text(cells("status").get(k)),
+            text(cells("not_trustworthy").get(k)),
+        );
+        if [super::table::DONE, super::table::NOT_RUN].contains(&status.as_str())
+            && doubt.is_empty()
+        {
+            continue;
+        }
+        if rows.len() == FAILURES {
+            left += 1;
+            continue;
+        }
+        let reason = text(cells("reason").get(k));
+        rows.push(vec![
+            text(cells("point").get(k)),
+            status,
+            reason,
+            doubt,
+            text(cells("folder").get(k)),
+        ]);
+    }
+    if rows.is_empty() {
+        let said = "No run failed, and none says that it is not trustworthy.".to_owned();
+        return Section {
+            title: "Runs".to_owned(),
+            blocks: vec![Block::Text(said)],
+        };
+    }
+    let more = if left > 0 {
+        format!(" {left} more are in table.csv.")
+    } else {
+        String::new()
+    };
+    let note =
+        format!("Runs that failed, were rejected, or say that they are not trustworthy.{more}");
+    let heads = ["run", "status", "reason", "says", "folder"]
+        .map(str::to_owned)
+        .to_vec();
+    Section {
+        title: "Runs".to_owned(),
+        blocks: vec![Block::Table(SheetTable { note, heads, rows })],
+    }
+}
+
+fn inputs_section(plan: &Plan) -> Section {
+    let text = std::fs::read_to_string(&plan.file).unwrap_or_default();
+    Section {
+        title: "The study".to_owned(),
+        blocks: vec![
+            Block::Text(format!(
+                "Made by fretwork {}, program {}. To repeat a run by hand: fretwork study check {} --points lists the changes of each.",
+                env!("CARGO_PKG_VERSION"),
+                plan.launcher.program(),
+                plan.file.display()
+            )),
+            Block::Code(text),
+        ],
+    }
+}
+
+/// A mean with its interval.
+pub(super) fn mean_text(mean: &Mean, unit: &str) -> String {
+    let value = quantity(mean.mean, unit);
+    match mean.half_width {
+        Some(half) => format!("{value} ± {}", quantity(half, unit)),
+        None => value,
+    }
+}
