@@ -3,6 +3,7 @@
 use super::output::{answer_json, inform, report};
 use super::{Failure, PluginArgs, again};
 use crate::fit::evaluate::Tests;
+use crate::fit::half_step::half_step;
 use crate::fit::outcome::{Outcome, identify};
 use crate::fit::search::{Found, Progress, Search, Stage};
 use crate::fit::spec::ReadFit;
@@ -76,10 +77,13 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
         told: &|progress| display.show(progress),
     };
     let mut found: Found = search.run()?;
-    let outcome = match stop.load(Ordering::Relaxed) {
+    let mut outcome = match stop.load(Ordering::Relaxed) {
         true => None,
         false => identify(&search, &mut found)?,
     };
+    if let Some(outcome) = outcome.as_mut().filter(|_| read.spec.half_step) {
+        outcome.half_step = half_step(&search, &found, outcome)?;
+    }
     display.finish();
     files::evaluations(&tests, &found, &out.join("evaluations.csv"))?;
     if stop.load(Ordering::Relaxed) {

@@ -9,30 +9,34 @@ const TURNED: f64 = 0.05;
 /// Distance of branches over the reach of the loop.
 const DISTANCE: f64 = 4.0;
 
-/// The abscissae of a loop laid out: branch k, from 0, has `4 k reach + x` where x rises along it and `4 k reach - x` where it falls.
-pub(super) fn laid_out(x: &[f64], reach: f64) -> Vec<f64> {
+/// The abscissae of a loop laid out, with the number of the branch of each point: branch k, from 0, has `4 k reach + x` where x
+/// rises along it and `4 k reach - x` where it falls.
+pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
     let rises = x
         .iter()
         .find(|v| (*v - x[0]).abs() > TURNED * reach)
         .is_none_or(|v| *v > x[0]);
     let mut sign = if rises { 1.0 } else { -1.0 };
-    let mut out = Vec::with_capacity(x.len());
-    let (mut branch, mut farthest) = (0.0, 0);
+    let (mut out, mut branches) = (Vec::with_capacity(x.len()), Vec::with_capacity(x.len()));
+    let (mut branch, mut farthest) = (0, 0);
+    let place = |branch: usize, sign: f64, x: f64| branch as f64 * DISTANCE * reach + sign * x;
     for (k, v) in x.iter().enumerate() {
         if sign * v >= sign * x[farthest] {
             farthest = k;
         } else if sign * (x[farthest] - v) > TURNED * reach {
             // It turned at the farthest point: what came after it is on the next branch.
             sign = -sign;
-            branch += 1.0;
+            branch += 1;
             for later in farthest + 1..k {
-                out[later] = branch * DISTANCE * reach + sign * x[later];
+                out[later] = place(branch, sign, x[later]);
+                branches[later] = branch;
             }
             farthest = k;
         }
-        out.push(branch * DISTANCE * reach + sign * v);
+        out.push(place(branch, sign, *v));
+        branches.push(branch);
     }
-    out
+    (out, branches)
 }
 
 #[cfg(test)]
@@ -43,13 +47,13 @@ mod tests {
     #[test]
     fn branches_stand_one_behind_the_other() {
         let x = [0.0, 0.6, 1.0, 0.98, 0.3, -0.9, -1.0, 0.2];
-        assert_eq!(laid_out(&x, 1.0), [0.0, 0.6, 1.0, 3.02, 3.7, 4.9, 5.0, 8.2]);
-        assert_eq!(
-            laid_out(&[0.6, 0.3, -0.9, 0.2], 1.0),
-            [-0.6, -0.3, 0.9, 4.2]
-        );
+        let (places, branches) = laid_out(&x, 1.0);
+        assert_eq!(places, [0.0, 0.6, 1.0, 3.02, 3.7, 4.9, 5.0, 8.2]);
+        assert_eq!(branches, [0, 0, 0, 1, 1, 1, 1, 2]);
+        let laid_out = |x: &[f64]| laid_out(x, 1.0).0;
+        assert_eq!(laid_out(&[0.6, 0.3, -0.9, 0.2]), [-0.6, -0.3, 0.9, 4.2]);
         // Noise is no turn.
-        assert_eq!(laid_out(&[0.0, 0.5, 0.49, 0.8], 1.0), [0.0, 0.5, 0.49, 0.8]);
-        assert!(laid_out(&[], 1.0).is_empty());
+        assert_eq!(laid_out(&[0.0, 0.5, 0.49, 0.8]), [0.0, 0.5, 0.49, 0.8]);
+        assert!(laid_out(&[]).is_empty());
     }
 }

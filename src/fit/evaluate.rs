@@ -14,9 +14,9 @@ use crate::runs::perturbation::Perturbation;
 use crate::runs::pool::each;
 use crate::runs::quantity::Quantity;
 use crate::runs::randomness::seed_matters;
+use crate::runs::spec::RangeScale;
 use crate::runs::stored::{Limits, Status, summary};
 use crate::scene::{Scene, load};
-use crate::study::spec::ScaleSpec;
 use fretwork_study::design::scale::Scale;
 use fretwork_study::fit::bounds::{Bounds, Parameter};
 use fretwork_study::fit::residuals::{Curve, Measurement, Target};
@@ -33,6 +33,9 @@ struct Test {
     launcher: Launcher,
     /// Its first seed.
     seed: u64,
+    /// Its step (s), and steps between rows of the statistics.
+    step: f64,
+    every: u64,
     derived: Vec<Derived>,
     yields: Yield,
 }
@@ -153,6 +156,8 @@ impl Tests {
             tests.push(Test {
                 launcher,
                 seed: loaded.case.seed,
+                step: loaded.case.time.step,
+                every: loaded.case.output.every,
                 derived,
                 yields,
             });
@@ -201,8 +206,8 @@ impl Tests {
         Ok(())
     }
 
-    /// Runs points of parameter values, each with `seeds` seeds from the one of number `first` on; a row of samples per point. None is
-    /// left out, except those that `stop` prevents, which have no sample.
+    /// Runs points of parameter values, each with these seeds, and with the step of the cases over `finer`; a row of samples per
+    /// point. None is left out, except those that `stop` prevents, which have no sample.
     ///
     /// # Errors
     /// A run cannot be started, or nothing can be written.
@@ -210,6 +215,7 @@ impl Tests {
         &self,
         points: &[Vec<f64>],
         seeds: std::ops::Range<u64>,
+        finer: u32,
         jobs: usize,
         stop: &AtomicBool,
         watch: &(dyn Fn() + Sync),
@@ -223,7 +229,7 @@ impl Tests {
             }
         }
         let work = |(point, seed, test): &(&Vec<f64>, u64, &Test)| {
-            let told = test.run(&self.keys, point, *seed, self.limit, stop)?;
+            let told = test.run(&self.keys, point, *seed, finer, self.limit, stop)?;
             watch();
             Ok(told)
         };
@@ -259,7 +265,7 @@ impl Tests {
     pub fn curve(&self, test: usize, values: &[f64], seed: u64) -> Option<(Vec<f64>, Vec<f64>)> {
         let stop = AtomicBool::new(false);
         let told = self.tests[test]
-            .run(&self.keys, values, seed, None, &stop)
+            .run(&self.keys, values, seed, 1, None, &stop)
             .ok()??;
         told.ok()
     }
@@ -281,19 +287,25 @@ impl Tests {
 type Told = Result<(Vec<f64>, Vec<f64>), String>;
 
 impl Test {
-    /// One run; `None` if it was interrupted.
+    /// One run, with its step over `finer` and rows at the same times; `None` if it was interrupted.
     fn run(
         &self,
         keys: &[Vec<String>],
         values: &[f64],
         seed: u64,
+        finer: u32,
         limit: Option<Duration>,
         stop: &AtomicBool,
     ) -> Result<Option<Told>, RunsError> {
-        let sets = match changes(keys, &self.derived, values) {
+        let mut sets = match changes(keys, &self.derived, values) {
             Ok(sets) => sets,
             Err(why) => return Ok(Some(Err(why.to_string()))),
         };
+        let step = self.step / f64::from(finer);
+        if finer > 1 {
+            sets.push(format!("time.step={step:e}"));
+            sets.push(format!("output.every={}", self.every * u64::from(finer)));
+        }
         let seed = self.seed.wrapping_add(seed);
         let deadline = Instant::now() + FOREVER;
         let ended = self.launcher.run(&sets, seed, deadline, limit, stop)?;
@@ -307,7 +319,7 @@ impl Test {
         }
         let place = self.launcher.place(&sets, seed);
         Ok(Some(match &self.yields {
-            Yield::Curve(model) => model.curve(&place.join("statistics.csv")),
+            Yield::Curve(model) => model.curve(&place.join("statistics.csv"), step),
             Yield::Value(quantity) => match quantity.read(&summary(&place), &place) {
                 Some(value) => Ok((vec![0.0], vec![value])),
                 None => Err(format!("it has no value of {}", quantity.name)),
@@ -346,7 +358,7 @@ fn bounds(read: &ReadFit) -> Result<Bounds, FitError> {
     let parameters = spec.parameters.iter().map(|p| Parameter {
         name: p.name.clone(),
         scale: match p.scale {
-            ScaleSpec::Log => Scale::Logarithmic {
+            RangeScale::Log => Scale::Logarithmic {
                 from: p.low,
                 to: p.high,
             },

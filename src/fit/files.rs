@@ -1,6 +1,7 @@
 //! Files of a fit: `fit.json`, `evaluations.csv`, `curves.csv`.
 
 use super::evaluate::Tests;
+use super::half_step::HalfStep;
 use super::outcome::{Outcome, mean_of};
 use super::search::Found;
 use super::spec::ReadFit;
@@ -18,13 +19,18 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
         .iter()
         .map(|p| p.name.as_str())
         .collect();
+    let half = |place: usize| match &outcome.half_step {
+        Some(HalfStep::Moves { values, .. }) => json!(values[place]),
+        _ => Value::Null,
+    };
     let parameters: Vec<Value> = told
         .estimates
         .iter()
         .zip(&read.spec.parameters)
-        .map(|(e, spec)| {
+        .enumerate()
+        .map(|(place, (e, spec))| {
             json!({
-                "name": e.name, "value": e.value, "unit": spec.unit, "low": e.interval.low, "high": e.interval.high,
+                "half_step": half(place), "name": e.name, "value": e.value, "unit": spec.unit, "low": e.interval.low, "high": e.interval.high,
                 "simultaneous_low": e.simultaneous.low, "simultaneous_high": e.simultaneous.high,
                 "determined": e.determined, "open_below": e.open_below, "open_above": e.open_above, "at": e.at,
             })

@@ -79,7 +79,7 @@ pub fn read(
     let mut abscissae: Vec<f64> = rows.iter().map(|r| r[0]).collect();
     let reach = abscissae.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     if along == AlongSpec::Branches {
-        abscissae = laid_out(&abscissae, reach);
+        abscissae = laid_out(&abscissae, reach).0;
     }
     Ok((
         Measurement {

@@ -8,6 +8,7 @@ mod branches;
 pub mod evaluate;
 
 pub mod files;
+pub mod half_step;
 pub mod measured;
 pub mod model;
 pub mod outcome;

@@ -5,6 +5,9 @@ use super::spec::{AlongSpec, ModelSpec, RowsSpec};
 use crate::runs::expression::Expression;
 use std::path::Path;
 
+/// The name of the length of a step in expressions (s).
+const TIME_STEP: &str = "time_step";
+
 /// Appended to the name of a column for its value in the first row that is used.
 const START: &str = "_start";
 
@@ -28,10 +31,11 @@ impl Model {
     /// Which of its two expressions is wrong (`x`, `y` or `rows`), and why.
     pub fn new(spec: &ModelSpec, columns: &[String]) -> Result<Self, (&'static str, String)> {
         let starts = columns.iter().map(|c| format!("{c}{START}"));
-        let names: Vec<String> = columns.iter().cloned().chain(starts).collect();
+        let names = columns.iter().cloned().chain(starts);
+        let names: Vec<String> = names.chain([TIME_STEP.to_owned()]).collect();
         let known = |why: String| match why.split_once("; there are ") {
             Some((why, _)) => format!(
-                "{why}; there are {}, and each with {START} for its value in the first row",
+                "{why}; there are {}, each with {START} for its value in the first row, and {TIME_STEP}",
                 columns.join(", ")
             ),
             None => why,
@@ -58,11 +62,11 @@ impl Model {
         Self { reach, ..self }
     }
 
-    /// Abscissae that increase, and values, from the table of statistics of a run.
+    /// Abscissae that increase, and values, from the table of statistics of a run with this step (s).
     ///
     /// # Errors
     /// Why there is none, as a sentence.
-    pub fn curve(&self, statistics: &Path) -> Result<(Vec<f64>, Vec<f64>), String> {
+    pub fn curve(&self, statistics: &Path, time_step: f64) -> Result<(Vec<f64>, Vec<f64>), String> {
         let rows = self.read(statistics)?;
         let first = rows
             .first()
@@ -71,6 +75,7 @@ impl Model {
         let values = |row: &Vec<f64>| -> Vec<Option<f64>> {
             row.iter()
                 .chain(&starts)
+                .chain([&time_step])
                 .map(|v| v.is_finite().then_some(*v))
                 .collect()
         };
@@ -83,10 +88,18 @@ impl Model {
                 ys.push(y);
             }
         }
+        let mut branches = vec![0; xs.len()];
         if self.along == AlongSpec::Branches {
-            xs = laid_out(&xs, self.reach);
+            (xs, branches) = laid_out(&xs, self.reach);
         }
-        let ys = smoothed(&ys, self.smooth);
+        // Not across a turn, where a loop is steepest.
+        let mut rest = ys.as_slice();
+        let mut ys = Vec::with_capacity(xs.len());
+        for branch in branches.chunk_by(|a, b| a == b) {
+            let (own, after) = rest.split_at(branch.len());
+            ys.extend(smoothed(own, self.smooth));
+            rest = after;
+        }
         // Only what goes on: small steps back are noise of the motion.
         let mut curve = (Vec::new(), Vec::new());
         for (x, y) in xs.into_iter().zip(ys) {
@@ -188,15 +201,32 @@ mod tests {
             smooth: 1,
             along: AlongSpec::Abscissa,
         };
-        let of = |x: &str, rows| Model::new(&spec(x, rows), &columns).unwrap().curve(&path);
+        let of = |x: &str, rows| {
+            let model = Model::new(&spec(x, rows), &columns).unwrap();
+            model.curve(&path, 0.25)
+        };
         let curve = of("delta - delta_start", RowsSpec::From(0.15)).unwrap();
         assert_eq!(curve, (vec![-2.0, 0.0, 2.0, 4.0], vec![0.0, 1.0, 2.0, 3.0]));
+        assert_eq!(
+            of("delta - 4 * time_step", RowsSpec::From(0.15)).unwrap().0,
+            [3.0, 5.0, 7.0, 9.0]
+        );
         assert!(of("delta", RowsSpec::From(9.0)).is_err());
         let (key, said) = Model::new(&spec("dlta", RowsSpec::All), &columns).unwrap_err();
         assert!(
             key == "x" && said.contains("`dlta`") && said.contains("delta, Q"),
             "{said}"
         );
+        // A loop of constant friction stays one when it is smoothed: its turn is not.
+        std::fs::write(&path, "step,time [s],delta [m],Q [N]\n1,0.1,0.0,2\n2,0.2,1.0,2\n3,0.3,2.0,2\n4,0.4,1.0,-2\n5,0.5,0.0,-2\n").unwrap();
+        let loops = ModelSpec {
+            smooth: 3,
+            along: AlongSpec::Branches,
+            ..spec("delta", RowsSpec::All)
+        };
+        let curve = Model::new(&loops, &columns).unwrap().reaching(2.0);
+        let (_, ys) = curve.curve(&path, 0.25).unwrap();
+        assert!(ys.iter().all(|y| y.abs() == 1.0), "{ys:?}");
         std::fs::remove_file(&path).unwrap();
         assert_eq!(smoothed(&[1.0, 2.0, 6.0, 4.0], 3), [1.0, 3.0, 4.0, 4.0]);
     }

@@ -1,6 +1,7 @@
 //! What the measurements say of the parameters: estimates with intervals, from runs around the best point.
 
 use super::FitError;
+use super::half_step::HalfStep;
 use super::search::{Evaluation, Found, Search, Stage};
 use fretwork_study::fit::identify::{self as mathematics, Data, Identification, Run};
 use fretwork_study::fit::residuals::over_seeds;
@@ -27,6 +28,8 @@ pub struct Outcome {
     pub best: usize,
     /// Whether the runs at the estimate fit as well as the best point, and the runs around it are as wide as the intervals.
     pub settled: bool,
+    /// What half the step does to the estimates, if the fit asks.
+    pub half_step: Option<HalfStep>,
 }
 
 impl Outcome {
@@ -99,6 +102,7 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
             identification,
             best,
             settled,
+            half_step: None,
         }))
 }
 
@@ -138,7 +142,7 @@ fn from_runs(
 }
 
 /// Half-widths of the intervals in the unit cube.
-fn half_widths(search: &Search<'_>, told: &Identification) -> Vec<f64> {
+pub fn half_widths(search: &Search<'_>, told: &Identification) -> Vec<f64> {
     let low: Vec<f64> = told.estimates.iter().map(|e| e.interval.low).collect();
     let high: Vec<f64> = told.estimates.iter().map(|e| e.interval.high).collect();
     let places = (

@@ -1,6 +1,7 @@
 //! What a fit says: lines for the terminal, the page `fit.html` and the picture `fit.png`.
 
 use super::evaluate::Tests;
+use super::half_step::HalfStep;
 use super::outcome::{Outcome, mean_of};
 use super::search::Found;
 use super::spec::{ReadFit, TestSpec};
@@ -93,6 +94,21 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
                 out.push(format!("{} and {} are hard to tell apart: their errors go {way} ways (correlation {r:.2})", names[i], names[j]));
             }
         }
+    }
+    match &outcome.half_step {
+        Some(HalfStep::Moves { values, beyond }) => {
+            for &i in beyond {
+                let (e, unit) = (&told.estimates[i], &read.spec.parameters[i].unit);
+                out.push(format!(
+                    "STEP NOT SMALL: with half the step {} would be {} instead of {} {unit}, a change that the interval does not have; take a smaller step (`time.step` in `set` of the tests)",
+                    e.name, number(values[i], 4), number(e.value, 4)
+                ));
+            }
+        }
+        Some(HalfStep::Failed(why)) => out.push(format!(
+            "what the step does to the estimates is not known: a run with half the step failed ({why})"
+        )),
+        None => {}
     }
     let failed = found
         .evaluations
@@ -270,7 +286,12 @@ fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Blo
         .estimates
         .iter()
         .zip(&read.spec.parameters)
-        .map(|(e, p)| {
+        .enumerate()
+        .map(|(i, (e, p))| {
+            let half = match &outcome.half_step {
+                Some(HalfStep::Moves { values, .. }) => number(values[i], 4),
+                _ => String::new(),
+            };
             let both = format!(
                 "{} to {}",
                 number(e.simultaneous.low, 4),
@@ -280,12 +301,13 @@ fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Blo
                 e.name.clone(),
                 value_text(e, &p.unit),
                 both,
+                half,
                 format!("{} to {} {}", p.low, p.high, p.unit),
             ]
         });
     let mut blocks = vec![Block::Table(SheetTable {
         note: "Values with intervals of 95 % for each parameter alone, and such that all of them hold at once in 95 %.".to_owned(),
-        heads: ["parameter", "value", "all at once", "range of the search"].map(str::to_owned).to_vec(),
+        heads: ["parameter", "value", "all at once", "with half the step", "range of the search"].map(str::to_owned).to_vec(),
         rows: rows.collect(),
     })];
     let said = verdict(read, found, outcome);

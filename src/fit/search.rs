@@ -55,6 +55,8 @@ pub enum Stage {
     Candidates,
     /// Around the best point.
     Local,
+    /// The best point with half the step.
+    HalfStep,
 }
 
 impl Stage {
@@ -65,6 +67,7 @@ impl Stage {
             Self::Generation(k) => format!("generation {k}"),
             Self::Candidates => "candidates".to_owned(),
             Self::Local => "around the best".to_owned(),
+            Self::HalfStep => "half the step".to_owned(),
         }
     }
 }
@@ -256,6 +259,33 @@ impl Search<'_> {
         Ok(first..found.evaluations.len())
     }
 
+    /// Runs a point again with half the step: simulated values by seed, or why there are none.
+    ///
+    /// # Errors
+    /// A run cannot be started.
+    pub fn with_half_step(
+        &self,
+        point: &Evaluation,
+    ) -> Result<Vec<Result<Vec<f64>, String>>, FitError> {
+        let runs = point.samples.len() * self.tests.target.tests().len();
+        (self.told)(&Progress::Begins(Stage::HalfStep, runs));
+        let told = || (self.told)(&Progress::Run);
+        let values = [point.values.clone()];
+        let seeds = point.seeds.clone();
+        let all = self
+            .tests
+            .run(&values, seeds, 2, self.jobs, self.stop, &told)?;
+        let samples: Vec<_> = all.into_iter().flatten().flatten().collect();
+        let samples: Vec<_> = samples.into_iter().map(|s| s.values).collect();
+        let failed = samples.iter().filter(|s| s.is_err()).count();
+        (self.told)(&Progress::Ended(
+            Stage::HalfStep,
+            self.chi_squared(&samples),
+            failed,
+        ));
+        Ok(samples)
+    }
+
     /// Seeds of a point: one for a model without randomness.
     fn seeds_of_points(&self) -> (usize, usize) {
         match self.tests.random {
@@ -288,7 +318,7 @@ impl Search<'_> {
         let told = || (self.told)(&Progress::Run);
         let all = self
             .tests
-            .run(&values, seeds.clone(), self.jobs, self.stop, &told)?;
+            .run(&values, seeds.clone(), 1, self.jobs, self.stop, &told)?;
         let mut failed = 0;
         for (values, samples) in values.into_iter().zip(all) {
             let samples: Option<Vec<Sample>> = samples.into_iter().collect();

@@ -1,7 +1,8 @@
 //! The file of a fit.
 
+use crate::runs::expression::Derived;
+use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
 use crate::scene::source::{InputError, Source};
-use crate::study::spec::{Keys, ScaleSpec};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +46,9 @@ pub struct FitSpec {
     /// How the search goes.
     #[serde(default)]
     pub search: SearchSpec,
+    /// Whether the runs at the estimate are repeated with half the step.
+    #[serde(default = "yes")]
+    pub half_step: bool,
     /// Threads of each run.
     #[serde(default = "one")]
     pub threads: u16,
@@ -186,14 +190,14 @@ pub struct ParameterSpec {
     pub name: String,
     /// The key of all cases that takes it, or several; none for one that is used by its name in `set` of the tests.
     #[serde(default)]
-    pub key: Keys,
+    pub key: CaseKeys,
     /// Lower limit.
     pub low: f64,
     /// Upper limit.
     pub high: f64,
     /// How it is spread.
     #[serde(default)]
-    pub scale: ScaleSpec,
+    pub scale: RangeScale,
     /// Unit for the reader.
     #[serde(default)]
     pub unit: String,
@@ -224,12 +228,8 @@ impl Default for SearchSpec {
     }
 }
 
-fn one() -> u16 {
-    1
-}
-
-fn one_percent() -> f64 {
-    0.01
+fn yes() -> bool {
+    true
 }
 
 fn seeds() -> (u16, u16) {
@@ -278,6 +278,17 @@ impl ReadFit {
         if spec.parameters.is_empty() {
             return fail("parameters", "a fit seeks one parameter or more");
         }
+        let names: Vec<&str> = spec.parameters.iter().map(|p| p.name.as_str()).collect();
+        let mut used = vec![false; names.len()];
+        for (k, test) in spec.tests.iter().enumerate() {
+            for (i, set) in test.common().2.iter().enumerate() {
+                let derived = Derived::parse(set, &names)
+                    .map_err(|why| self.source.error_at(&format!("tests.{k}.set.{i}"), why))?;
+                for place in derived.needs() {
+                    used[place] = true;
+                }
+            }
+        }
         for (k, parameter) in spec.parameters.iter().enumerate() {
             let path = format!("parameters.{k}.name");
             if spec.parameters[..k]
@@ -286,14 +297,16 @@ impl ReadFit {
             {
                 return fail(&path, "two parameters have this name");
             }
-            let used = spec
-                .tests
-                .iter()
-                .any(|t| t.common().2.iter().any(|s| s.contains(&parameter.name)));
-            if parameter.key.0.is_empty() && !used {
+            if parameter.key.0.is_empty() && !used[k] {
                 return fail(
                     &path,
                     "no test uses this parameter; give it a `key` of the case, or use it as `${name}` in `set` of a test",
+                );
+            }
+            if parameter.scale == RangeScale::Integer {
+                return fail(
+                    &format!("parameters.{k}.scale"),
+                    "a fit seeks numbers that vary continuously: `Linear` or `Log`; whole numbers are for the factors of a study",
                 );
             }
         }
@@ -318,6 +331,10 @@ impl ReadFit {
                 "seeds",
                 "the first number of seeds is 1 or more, the second not less",
             );
+        }
+        check_runs(&self.source, spec.threads, spec.unconverged, spec.residual)?;
+        if spec.search.points == Some(0) {
+            return fail("search.points", "the region has one point or more");
         }
         if spec.search.population.is_some_and(|n| n < 4) {
             return fail("search.population", "a generation has 4 points or more");

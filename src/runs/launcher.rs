@@ -146,14 +146,19 @@ impl Launcher {
         clear(&place).map_err(|e| fail(&e))?;
         let errors = File::create(place.join("stderr.txt")).map_err(|e| fail(&e))?;
         let started = Instant::now();
+        let unstarted = |e: &dyn std::fmt::Display| {
+            RunsError::Usage(format!(
+                "the program cannot be started for a run: {e}; was it moved or built again meanwhile?"
+            ))
+        };
         let mut child = self
             .command(sets, seed, &place)
-            .map_err(|e| fail(&e))?
+            .map_err(|e| unstarted(&e))?
             .stdin(Stdio::null())
             .stdout(Stdio::null())
             .stderr(errors)
             .spawn()
-            .map_err(|e| fail(&e))?;
+            .map_err(|e| unstarted(&e))?;
         let code = loop {
             if let Some(code) = child.try_wait().map_err(|e| fail(&e))? {
                 break Some(code);

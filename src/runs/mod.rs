@@ -3,7 +3,7 @@
 //! [`launcher`] starts them, [`stored`] says how they ended, [`key`] names them, [`quantity`] reads the numbers that they leave,
 //! [`offer`] says which a case has, [`randomness`] whether its seed matters, [`perturbation`] tells runs apart where it does not,
 //! [`cost`] estimates how long one takes, [`lock`] keeps a folder for one command at a time, [`pool`] makes
-//! several at once, and [`expression`] makes changes that follow from numbers. [`trade`](crate::trade) and [`study`](crate::study) are made of such runs.
+//! several at once, [`expression`] makes changes that follow from numbers, and [`spec`] has what files of studies and fits share. [`trade`](crate::trade) and [`study`](crate::study) are made of such runs.
 
 pub mod cost;
 pub mod duration;
@@ -16,6 +16,7 @@ pub mod perturbation;
 pub mod pool;
 pub mod quantity;
 pub mod randomness;
+pub mod spec;
 pub mod stored;
 pub mod unit;
 

@@ -1,6 +1,7 @@
 //! What varies in a study: a factor turns a number from 0 to 1, or a level, into changes of the case.
 
-use super::spec::{FactorSpec, Keys, OptionSpec, ReadSpec, ScaleSpec};
+use super::spec::{FactorSpec, OptionSpec, ReadSpec};
+use crate::runs::spec::{CaseKeys, RangeScale};
 use crate::scene::InputError;
 use fretwork_study::design::scale::Scale;
 
@@ -63,14 +64,15 @@ impl Factor {
     pub fn of(spec: &FactorSpec, read: &ReadSpec, path: &str) -> Result<Self, InputError> {
         let fail =
             |key: &str, text: String| Err(read.source.error_at(&format!("{path}{key}"), text));
-        let named = |name: &Option<String>, Keys(keys): &Keys| match name.as_ref().or(keys.first())
-        {
-            None => Err(read.source.error_at(
-                path,
-                "a factor has a `key` of the case, or a `name` for use in `set`",
-            )),
-            Some(first) => Ok((first.clone(), keys.clone())),
-        };
+        let named =
+            |name: &Option<String>, CaseKeys(keys): &CaseKeys| match name.as_ref().or(keys.first())
+            {
+                None => Err(read.source.error_at(
+                    path,
+                    "a factor has a `key` of the case, or a `name` for use in `set`",
+                )),
+                Some(first) => Ok((first.clone(), keys.clone())),
+            };
         match spec {
             FactorSpec::Values {
                 name,
@@ -114,12 +116,12 @@ impl Factor {
                 let (name, keys) = named(name, key)?;
                 let (from, to) = (*low, *high);
                 let scale = match scale {
-                    ScaleSpec::Linear => Scale::Linear { from, to },
-                    ScaleSpec::Log => Scale::Logarithmic { from, to },
-                    ScaleSpec::Integer if low.fract() != 0.0 || high.fract() != 0.0 => {
+                    RangeScale::Linear => Scale::Linear { from, to },
+                    RangeScale::Log => Scale::Logarithmic { from, to },
+                    RangeScale::Integer if low.fract() != 0.0 || high.fract() != 0.0 => {
                         return fail(".low", "a range of whole numbers has whole ends".to_owned());
                     }
-                    ScaleSpec::Integer => Scale::Integer {
+                    RangeScale::Integer => Scale::Integer {
                         from: from as i64,
                         to: to as i64,
                     },

@@ -1,6 +1,7 @@
 //! The file of a study.
 
 use crate::runs::launcher::Keep;
+use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
 use crate::scene::source::{InputError, Source};
 use ron::value::RawValue;
 use serde::Deserialize;
@@ -72,7 +73,7 @@ pub enum FactorSpec {
         name: Option<String>,
         /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
         #[serde(default)]
-        key: Keys,
+        key: CaseKeys,
         /// The values, as a case has them.
         values: Vec<Box<RawValue>>,
         /// SI unit of a factor without a key.
@@ -86,14 +87,14 @@ pub enum FactorSpec {
         name: Option<String>,
         /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
         #[serde(default)]
-        key: Keys,
+        key: CaseKeys,
         /// Lower end.
         low: f64,
         /// Upper end.
         high: f64,
         /// How numbers are spread.
         #[serde(default)]
-        scale: ScaleSpec,
+        scale: RangeScale,
         /// How many of them, from end to end, where the design is made of levels.
         #[serde(default)]
         levels: Option<u16>,
@@ -119,51 +120,6 @@ pub struct OptionSpec {
     /// `key.path=value`; none for the case as it is.
     #[serde(default)]
     pub set: Vec<String>,
-}
-
-/// One key or several.
-#[derive(Debug, Default)]
-pub struct Keys(pub Vec<String>);
-
-impl<'de> Deserialize<'de> for Keys {
-    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct OneOrMany;
-        impl<'de> serde::de::Visitor<'de> for OneOrMany {
-            type Value = Keys;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str("a key of the case, or a list of keys")
-            }
-
-            fn visit_str<E: serde::de::Error>(self, key: &str) -> Result<Keys, E> {
-                Ok(Keys(vec![key.to_owned()]))
-            }
-
-            fn visit_seq<A: serde::de::SeqAccess<'de>>(
-                self,
-                mut list: A,
-            ) -> Result<Keys, A::Error> {
-                let mut keys = Vec::new();
-                while let Some(key) = list.next_element()? {
-                    keys.push(key);
-                }
-                Ok(Keys(keys))
-            }
-        }
-        deserializer.deserialize_any(OneOrMany)
-    }
-}
-
-/// How the numbers of a range are spread.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-pub enum ScaleSpec {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// Evenly in their logarithms.
-    Log,
-    /// Whole numbers.
-    Integer,
 }
 
 /// At which points of its factors a case is run.
@@ -206,14 +162,6 @@ pub enum DesignSpec {
     },
 }
 
-fn one() -> u16 {
-    1
-}
-
-fn one_percent() -> f64 {
-    0.01
-}
-
 /// A study that was read, with the text for the places of errors.
 #[derive(Debug)]
 pub struct ReadSpec {
@@ -253,17 +201,7 @@ impl ReadSpec {
         if spec.seeds == 0 {
             return fail("seeds", "a point has one seed or more");
         }
-        if spec.threads == 0 {
-            return fail("threads", "a run has one thread or more");
-        }
-        for (key, limit) in [
-            ("unconverged", spec.unconverged),
-            ("residual", spec.residual),
-        ] {
-            if !(0.0..=1.0).contains(&limit) {
-                return fail(key, "a number from 0 to 1 is expected");
-            }
-        }
+        check_runs(&self.source, spec.threads, spec.unconverged, spec.residual)?;
         match spec.design {
             DesignSpec::LatinHypercube { points, .. }
             | DesignSpec::Sobol { points, .. }

@@ -42,9 +42,14 @@ impl Folder {
 
     /// A fit of the friction curve with these parameters and other fields.
     fn fit(&self, parameters: &str, more: &str, set: &str) -> Output {
+        self.fit_against("slider_vx - 0.01", parameters, more, set)
+    }
+
+    /// The same with this expression for the velocity.
+    fn fit_against(&self, velocity: &str, parameters: &str, more: &str, set: &str) -> Output {
         let text = format!(
             r#"(tests: [Curve(name: "friction", case: "slider.ron", set: [{set}],
-                measured: (file: "measured.csv", x: "v", y: "mu", sigma: Value(0.01)), model: (x: "slider_vx - 0.01", y: "mu"))],
+                measured: (file: "measured.csv", x: "v", y: "mu", sigma: Value(0.01)), model: (x: "{velocity}", y: "mu"))],
                 parameters: [{parameters}], {more})"#
         );
         self.put("fit.ron", &text);
@@ -199,11 +204,57 @@ fn failed_runs_are_data() {
     assert!(table.contains("run it farther"), "{table}");
 }
 
+/// A row has the velocity at the end of its step and the friction at its beginning: the curve is shifted by 10 m/s^2 times the step.
+/// The estimate is wrong in proportion to the step, so that the change with half the step is half its error; the sum of squares hides it.
+#[test]
+fn a_step_that_moves_a_parameter_is_told() {
+    let folder = Folder::new("step");
+    let coarse = r#""time.step=8e-3", "output.every=1""#;
+    let fit = |velocity: &str, set: &str| {
+        let output = folder.fit_against(velocity, MU_0, "search: (points: 6)", set);
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let page = std::fs::read_to_string(folder.0.join("out/fit.html")).unwrap();
+        let mu = parameter(&found, "mu_0").clone();
+        let half_width = 0.5 * (number(&mu, "high") - number(&mu, "low"));
+        let told = page.contains("STEP NOT SMALL");
+        (
+            number(&mu, "value"),
+            number(&mu, "half_step"),
+            half_width,
+            told,
+        )
+    };
+    let (value, half, width, told) = fit("slider_vx", coarse);
+    assert!(told && (value - 0.5).abs() > width, "{value} +- {width}");
+    assert!((2.0 * half - value - 0.5).abs() < width, "{value} {half}");
+    // With the shift in the abscissa nothing is left of it.
+    let (value, half, width, told) = fit("slider_vx - 10 * time_step", coarse);
+    assert!(!told && (value - 0.5).abs() < width, "{value} +- {width}");
+    assert!((half - value).abs() < 0.1 * width, "{value} {half}");
+}
+
 #[test]
 fn wrong_input_is_refused_with_what_to_change() {
     let folder = Folder::new("wrong");
     let said = folder.refused(r#"(name: "x", low: 0.0, high: 1.0)"#, "", "");
     assert!(said.contains("no test uses this parameter"), "{said}");
+    // A key that has the letters of its name is no use of it.
+    let said = folder.refused(
+        r#"(name: "mu", low: 0.0, high: 1.0)"#,
+        "",
+        r#""interfaces.dry.parameters.contact.mu_0=0.5""#,
+    );
+    assert!(said.contains("no test uses this parameter"), "{said}");
+    for (more, words) in [
+        ("threads: 0", "one thread or more"),
+        ("unconverged: 2.0", "a number from 0 to 1"),
+        ("search: (points: 0)", "one point or more"),
+    ] {
+        let said = folder.refused(MU_0, more, "");
+        assert!(said.contains(words), "{said}");
+    }
+    let said = folder.refused(&MU_0.replace(")", ", scale: Integer)"), "", "");
+    assert!(said.contains("vary continuously"), "{said}");
     let said = folder.refused(&MU_0.replace("mu_0\",", "mu\","), "", "");
     assert!(
         said.contains("did you mean") || said.contains("mu_0"),

@@ -54,6 +54,8 @@ pub(super) struct Information {
     pub by_measurement: DMatrix<f64>,
     /// Covariance by the errors of the simulated values.
     pub by_simulation: DMatrix<f64>,
+    /// Change of each parameter with each simulated value, a row for each parameter.
+    pub by_value: DMatrix<f64>,
 }
 
 impl Model<'_> {
@@ -230,6 +232,7 @@ impl Model<'_> {
             axes,
             by_measurement: &inverse * measured * &inverse,
             by_simulation: &inverse * simulated * &inverse,
+            by_value: -&inverse * weighted,
         }
     }
 }

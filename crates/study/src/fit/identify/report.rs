@@ -95,6 +95,9 @@ pub struct Identification {
     pub runs: usize,
     /// Whether the polynomials have second-order terms.
     pub quadratic: bool,
+    /// How the estimates move with the simulated values, in unit coordinates: a row per parameter, a column per value. To first
+    /// order -H^-1 J^T W; zero for a parameter at an end, and along directions that are not determined.
+    pub influence: Vec<Vec<f64>>,
 }
 
 pub(super) fn report(bounds: &Bounds, model: &Model<'_>) -> Identification {
@@ -161,6 +164,14 @@ pub(super) fn report(bounds: &Bounds, model: &Model<'_>) -> Identification {
         radius: model.surrogate.radius,
         runs: model.surrogate.runs,
         quadratic: model.surrogate.quadratic,
+        influence: (0..n).map(|i| influence(&part, &free, i, values)).collect(),
+    }
+}
+
+fn influence(information: &Information, free: &[usize], i: usize, values: usize) -> Vec<f64> {
+    match free.iter().position(|f| *f == i) {
+        Some(row) => information.by_value.row(row).iter().copied().collect(),
+        None => vec![0.0; values],
     }
 }
 
