@@ -221,9 +221,10 @@ fn read(name: &str) -> Result<Material, String> {
         Ok(missing) => {
             let near = missing.nearest.map(|n| format!("; did you mean `{n}`?"));
             format!(
-                "material: there is no file `{name}.ron` in {}{}",
+                "material: there is no file `{name}.ron` in {}{}; there are {}",
                 missing.looked,
-                near.unwrap_or_default()
+                near.unwrap_or_default(),
+                missing.available
             )
         }
     })?;
