@@ -153,6 +153,8 @@ impl PluginArgs {
     fn words(&self) -> Vec<String> {
         let mut words = Vec::new();
         for folder in &self.plugin_path {
+            // It may be made from another folder.
+            let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
             words.extend(["--plugin-path".to_owned(), folder.display().to_string()]);
         }
         words.extend(self.trust_plugins.then(|| "--trust-plugins".to_owned()));

@@ -107,6 +107,9 @@ pub struct ExportArgs {
     /// Runs of one task; by default as few as give at most 1000 tasks
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     chunk: Option<u32>,
+    /// Stop a run that takes longer: 90s, 10m, 2h
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    limit: Option<Duration>,
     /// A line for the head of the batch scripts of Slurm, such as --line=--partition=short
     #[arg(long = "line", value_name = "OPTION", allow_hyphen_values = true)]
     lines: Vec<String>,
@@ -265,7 +268,7 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
     let ended = execute(&plan, points, 1, args.limit, stop, &|event| {
         if let Event::Ended(point, run) = event {
             report(&format!("{}: {}", name(&plan, point), how(run)));
-            if run.temporary
+            if !run.is_result()
                 && let Ok(mut wanting) = wanting.lock()
             {
                 wanting.push(point.number);
@@ -278,7 +281,6 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
             "interrupted: finished runs are kept; the same command continues".into(),
         ));
     }
-    // A failure that the case determines is a result; one that may be temporary is not.
     match wanting.first() {
         None => Ok(()),
         Some(k) => Err(Failure::Failed(format!(
@@ -303,6 +305,7 @@ fn export(args: &ExportArgs) -> Result<(), Failure> {
     let export = Export {
         plan: &plan,
         options: args.of.options(),
+        limit: args.limit,
         chunk,
         task_seconds: one.map(|s| s * chunk as f64),
         lines: args.lines.clone(),

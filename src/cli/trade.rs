@@ -149,7 +149,6 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     }
     launcher.perturbation = (!random).then_some(Perturbation {
         first: loaded.case.seed,
-        step: loaded.case.time.step,
     });
     let stop = interrupt::watch();
     refuse::after_two_steps(args, &loaded, &launcher, &outputs, stop)?;

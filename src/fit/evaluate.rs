@@ -111,7 +111,6 @@ impl Tests {
             random |= matters;
             launcher.perturbation = (!matters).then_some(Perturbation {
                 first: loaded.case.seed,
-                step: loaded.case.time.step,
             });
             let (yields, measurement) = match test {
                 TestSpec::Curve {

@@ -6,6 +6,7 @@ use super::key::Keys;
 use super::perturbation::Perturbation;
 use super::stored::{Finished, Limits, StoredRun, interrupted};
 use crate::program;
+use crate::scene::load;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -205,7 +206,11 @@ impl Launcher {
     /// The `--set` arguments of a run, all of them, the last of which counts.
     fn all_sets(&self, sets: &[String], seed: u64) -> Vec<String> {
         let mut all = [self.sets.as_slice(), sets].concat();
-        let perturbed_step = self.perturbation.and_then(|p| p.step(&all, seed));
+        let perturbation = self.perturbation.filter(|p| p.of(seed));
+        let perturbed_step = perturbation.and_then(|p| {
+            let step = load(&self.case, &all).ok()?.case.time.step;
+            Some(p.step(step, seed))
+        });
         if self.keep == Keep::Numbers {
             all.extend(NUMBERS_ONLY.map(str::to_owned));
         }

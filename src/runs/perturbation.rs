@@ -8,22 +8,17 @@ pub const RELATIVE_PERTURBATION: f64 = 1e-10;
 pub struct Perturbation {
     /// Seed of the unperturbed run.
     pub first: u64,
-    /// The case's own step (s).
-    pub step: f64,
 }
 
 impl Perturbation {
-    /// Step of a run with these `--set` arguments (s); `None` if it is the setting's own, or is part of a
-    /// whole `time`.
-    pub fn step(&self, sets: &[String], seed: u64) -> Option<f64> {
-        let times = seed.wrapping_sub(self.first);
-        let key = |set: &String| set.split('=').next().unwrap_or_default().trim().to_owned();
-        if times == 0 || sets.iter().any(|s| key(s) == "time") {
-            return None;
-        }
-        let last = sets.iter().rfind(|s| key(s) == "time.step");
-        let value = last.and_then(|s| s.split_once('=')?.1.trim().parse().ok());
-        Some(value.unwrap_or(self.step) * (1.0 + RELATIVE_PERTURBATION * times as f64))
+    /// Whether the run with this seed has a step of its own.
+    pub fn of(&self, seed: u64) -> bool {
+        seed != self.first
+    }
+
+    /// Step of the run with this seed (s), of a setting with this step.
+    pub fn step(&self, step: f64, seed: u64) -> f64 {
+        step * (1.0 + RELATIVE_PERTURBATION * seed.wrapping_sub(self.first) as f64)
     }
 }
 
@@ -33,19 +28,10 @@ mod tests {
 
     #[test]
     fn a_perturbed_step_is_that_of_the_setting() {
-        let perturbation = Perturbation {
-            first: 7,
-            step: 1e-3,
-        };
-        let step = |sets: &[&str], seed| {
-            let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-            perturbation.step(&sets, seed)
-        };
-        assert_eq!(step(&[], 7), None);
-        let twice = step(&["solver.tolerance=1e-3"], 9).unwrap();
+        let perturbation = Perturbation { first: 7 };
+        assert!(!perturbation.of(7) && perturbation.of(8));
+        assert_eq!(perturbation.step(1e-3, 7), 1e-3);
+        let twice = perturbation.step(1e-3, 9);
         assert!((twice / 1e-3 - 1.0 - 2e-10).abs() < 1e-15);
-        let set = step(&["time.step=5e-4", "time.step = 2e-4"], 8);
-        assert!((set.unwrap() / 2e-4 - 1.0 - 1e-10).abs() < 1e-15);
-        assert_eq!(step(&["time=(step: 1e-4, end: 1.0)"], 8), None);
     }
 }

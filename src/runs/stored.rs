@@ -50,6 +50,9 @@ pub(super) struct StoredRun {
     slow: Option<f64>,
 }
 
+/// Begins the reason of a run whose case was refused.
+const REFUSED: &str = "refused:";
+
 /// A run that ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
@@ -69,6 +72,19 @@ pub struct Finished {
     pub visits: f64,
     /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none of one that is.
     pub doubts: Vec<String>,
+}
+
+impl Finished {
+    /// Whether it says something of the case: also that it is refused, or takes too long. Otherwise it was ended by a signal, could
+    /// not write, or left nothing.
+    pub fn is_result(&self) -> bool {
+        !self.temporary
+            || match &self.status {
+                Status::Slow(_) => true,
+                Status::Failed(why) => why.starts_with(REFUSED),
+                Status::Done => false,
+            }
+    }
 }
 
 impl StoredRun {
@@ -124,8 +140,8 @@ impl StoredRun {
             0 => self.rejection(limits).map_or(Status::Done, Status::Failed),
             -1 => Status::Failed("ended by a signal".into()),
             code => {
-                let what = if code == 2 { "refused" } else { "failed" };
-                Status::Failed(format!("{what}: {}", self.said))
+                let what = if code == 2 { REFUSED } else { "failed:" };
+                Status::Failed(format!("{what} {}", self.said))
             }
         };
         Finished {

@@ -162,10 +162,7 @@ impl Plan {
             }
         };
         let first = base.case.seed;
-        launcher.perturbation = (!known.random).then_some(Perturbation {
-            first,
-            step: base.case.time.step,
-        });
+        launcher.perturbation = (!known.random).then_some(Perturbation { first });
         let outputs = known.outputs.iter().map(|name| Quantity::parse(name));
         Ok(Self {
             title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),

@@ -11,6 +11,7 @@ use super::plan::Plan;
 use crate::program;
 use crate::runs::RunsError;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// An engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -32,6 +33,8 @@ pub struct Export<'a> {
     pub plan: &'a Plan,
     /// Options that every call needs: plugins, cache.
     pub options: Vec<String>,
+    /// Limit of the time of a run.
+    pub limit: Option<Duration>,
     /// Runs of a task.
     pub chunk: usize,
     /// Expected time of a task (s), if it is known.
@@ -79,6 +82,9 @@ impl Export<'_> {
         words.extend(middle.iter().map(|w| (*w).to_owned()));
         words.extend(["--out".to_owned(), absolute(&self.plan.out)]);
         words.extend(self.options.iter().cloned());
+        if let Some(limit) = self.limit.filter(|_| verb == "point") {
+            words.extend(["--limit".to_owned(), format!("{}s", limit.as_secs_f64())]);
+        }
         Ok(words)
     }
 

@@ -14,6 +14,10 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     // A text of JSON is one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));
+    // Where they have changed, the runs are looked at again; those that are there still are not made.
+    let inputs =
+        [&export.plan.file, &export.plan.launcher.case].map(|path| python(&absolute(path)));
+    let inputs = inputs.join(", ");
     let text = format!(
         "# {count} runs in {tasks} tasks of {chunk}; written by fretwork study export --to snakemake.\n\
          OUT = {folder}\n\
@@ -24,6 +28,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
          rule all:\n    \
              input: OUT + \"/table.csv\"\n\n\
          rule point:\n    \
+             input: {inputs}\n    \
              output: touch(OUT + \"/tasks/{{task}}.done\")\n    \
              params: runs=runs\n    \
              threads: {}\n    \

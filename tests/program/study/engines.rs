@@ -62,11 +62,23 @@ fn a_list_of_commands_makes_every_run() {
     }
     let study = folder.answer(&["collect", "study.ron", "--out", out, "--json"]);
     assert_eq!(study["runs"]["done"], 6);
+    std::fs::create_dir(folder.0.join("laws")).unwrap();
     for engine in ["slurm", "hq", "snakemake"] {
-        let export = folder.call(&["export", "study.ron", "--out", out, "--to", engine]);
+        let more = ["--limit", "2m", "--plugin-path", "laws"];
+        let words = ["export", "study.ron", "--out", out, "--to", engine];
+        let export = folder.call(&[&words[..], &more[..]].concat());
         assert!(export.status.success(), "{engine}");
     }
     let slurm = std::fs::read_to_string(folder.0.join(out).join("array.sbatch")).unwrap();
+    assert!(slurm.contains("--limit 120s"), "{slurm}");
+    let laws = folder.0.join("laws").display().to_string();
+    assert!(slurm.contains(&laws), "{slurm}");
+    let snakemake = std::fs::read_to_string(folder.0.join(out).join("Snakefile")).unwrap();
+    let inputs = snakemake.lines().find(|l| l.contains("input: \"")).unwrap();
+    assert!(
+        inputs.contains("study.ron\"") && inputs.contains("heap.ron\""),
+        "{snakemake}"
+    );
     assert!(
         slurm.contains("#SBATCH --array=1-6\n") && slurm.contains("\"$first-$last\""),
         "{slurm}"

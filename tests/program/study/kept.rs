@@ -74,6 +74,28 @@ fn only_what_is_new_is_run() {
     assert_eq!(folder.runs().len(), 6);
 }
 
+/// A case that draws nothing has perturbed steps in place of seeds, also where the study sets its whole `time`.
+#[test]
+fn perturbed_steps_take_the_place_of_seeds() {
+    let folder = Folder::new("perturbed");
+    let case = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("cases/verification/slide_to_stop.ron");
+    let text = format!(
+        r#"(case: {case:?}, set: ["time=(step: 1e-3, end: 0.01)"], outputs: ["statistics.time:last"], seeds: 3,
+            factors: [Values(name: "tolerance", key: "solver.tolerance", values: [1e-9])])"#
+    );
+    folder.put("study.ron", &text);
+    let study = folder.run();
+    let ends: Vec<f64> = values(&study, "statistics.time:last")
+        .iter()
+        .map(|v| v.as_f64().unwrap())
+        .collect();
+    for (k, end) in ends.iter().enumerate() {
+        let expected = 0.01 * (1.0 + 1e-10 * k as f64);
+        assert!((end / expected - 1.0).abs() < 1e-12, "{ends:?}");
+    }
+}
+
 /// A run that fails is a row with its reason, and the study ends well.
 #[test]
 fn failed_runs_are_rows() {
@@ -95,6 +117,9 @@ fn failed_runs_are_rows() {
     assert_eq!(values(&study, "status")[1], "refused");
     let reason = values(&study, "reason")[1].as_str().unwrap();
     assert!(reason.contains("`mu`"), "{reason}");
+    // Engines take it as a result.
+    let point = folder.call(&["point", "study.ron", "2", "--out", "out"]);
+    assert!(point.status.success());
     folder.put("heap.ron", &HEAP.replace("end: 0.05", "end: 500.0"));
     folder.study(&mu("0.1"), "");
     let words = [
