@@ -1,7 +1,7 @@
 //! The figures of a study as a picture, `study.png`.
 
 use super::analysis::{Analysis, Regimes, logarithmic_axis};
-use super::page::{REGIMES, title_of};
+use super::page::title_of;
 use super::plan::Plan;
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
 use std::path::Path;
@@ -71,7 +71,7 @@ fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
         axis(plan, first),
         y,
     );
-    chart.subtitle = Some(REGIMES.to_owned());
+    chart.subtitle = Some("Shown by at least half of the runs of a setting.".to_owned());
     for (regime, places) in &map.places {
         chart = chart.with(Series::new(regime.clone(), places.clone()).style(Style::Markers));
     }

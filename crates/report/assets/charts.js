@@ -12,12 +12,29 @@
   const colour = (k) => (FW.isDark() ? DARK : LIGHT)[k % LIGHT.length];
   const ink = () => (FW.isDark() ? ["#c3c8d0", "#2c3038"] : ["#444a54", "#e6e8ec"]);
 
-  const axis = (label, scale, side, whole) => {
+  // Ticks of a logarithmic axis: whole multiples of powers of ten, with labels at the powers, and over few of them at 2 and 5 times these.
+  const multiples = (min, max) => {
+    const ticks = [];
+    for (let k = Math.floor(Math.log10(min)); k <= Math.log10(max); k++) for (let m = 1; m < 10; m++) ticks.push([m, Number(`${m}e${k}`)]);
+    return ticks.filter(([, t]) => t >= min && t <= max);
+  };
+  const logarithmic = (scale) => ({
+    splits: (u, _, min, max) => multiples(min, max).map(([, t]) => t),
+    filter: (u, ticks) => {
+      const { min, max } = u.scales[scale];
+      const labels = max / min > 200 ? [1] : [1, 2, 5];
+      const shown = new Set(multiples(min, max).filter(([m]) => labels.includes(m)).map(([, t]) => t));
+      return ticks.map((t) => (shown.has(t) ? t : null));
+    },
+  });
+
+  const axis = (label, scale, side, whole, log) => {
     const [stroke, grid] = ink();
     const font = "12px system-ui, sans-serif";
     return {
       scale, side, label, stroke, font, labelFont: font, labelSize: 20, size: side === 2 ? 38 : 62, gap: 4,
       grid: { stroke: grid, width: 1, show: side !== 1 }, ticks: { stroke: grid, width: 1, size: 5 },
+      ...(log ? logarithmic(scale) : {}),
       ...(whole ? { incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000] } : {}),
       values: (_, ticks) => ticks.map((t) => (t === null ? "" : FW.number(t, 6))),
     };
@@ -90,7 +107,8 @@
   const keys = (chart, event) => {
     const { min, max } = chart.scales.x;
     const width = max - min;
-    const move = (a, b) => chart.setScale("x", { min: a, max: b });
+    // A logarithmic axis has no zero.
+    const move = (a, b) => chart.setScale("x", { min: chart.scales.x.distr === 3 ? Math.max(a, 0.5 * min) : a, max: b });
     const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
     if (step && event.shiftKey) move(min + 0.1 * step * width, max + 0.1 * step * width);
     else if (step) chart.setCursor({ left: Math.max(0, Math.min(chart.over.clientWidth, (chart.cursor.left < 0 ? chart.over.clientWidth / 2 : chart.cursor.left) + 8 * step)), top: chart.over.clientHeight / 2 });
@@ -138,7 +156,7 @@
       const options = {
         width, height: Math.round(Math.min(340, Math.max(230, 0.55 * width))), mode: spec.loose ? 2 : 1,
         scales: { x: { time: false, ...(xlog ? { distr: 3, range: decades } : { range: spec.loose ? pad : plain }) }, y: ylog ? { distr: 3, range: decades } : { range: around(0) }, ...(units.length > 1 ? { y2: { range: pad } } : {}) },
-        axes: [axis(named(spec.x.label, across.unit), "x", 2, spec.x.label === "cycle"), axis(labels[0], "y", 3), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
+        axes: [axis(named(spec.x.label, across.unit), "x", 2, spec.x.label === "cycle", xlog), axis(labels[0], "y", 3, false, ylog), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
         series: [spec.loose ? null : { label: named(spec.x.label, across.unit), value: (_, v) => FW.number(v, 5) }, ...series],
         cursor: { drag: { x: true, y: spec.loose === true, uni: 20 }, ...(spec.link ? { sync: { key: "time" } } : {}),
           ...(spec.loose ? { dataIdx: nearest, points: { size: 0 } } : {}) },

@@ -15,9 +15,6 @@ const LISTED: usize = 100;
 /// Failed runs that a page lists.
 const FAILURES: usize = 30;
 
-/// What a map of regimes shows.
-pub(super) const REGIMES: &str = "The regime that at least half of the runs of a setting show; a setting without a mark shows several.";
-
 /// The page of a study.
 pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
     let counts = table.counts();
@@ -137,7 +134,7 @@ fn regime_figure(plan: &Plan, regimes: &Regimes) -> Option<SheetFigure> {
     });
     Some(SheetFigure {
         title: format!("Regimes by {}", title_of(&regimes.name)),
-        note: REGIMES.to_owned(),
+        note: "The regime that at least half of the runs of a setting show; a setting without a mark shows several.".to_owned(),
         x: axis(first),
         y: second.map_or((String::new(), String::new()), axis),
         logarithmic: (
