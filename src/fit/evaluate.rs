@@ -37,12 +37,12 @@ struct Test {
     step: f64,
     every: u64,
     derived: Vec<Derived>,
-    yields: Yield,
+    output: Output,
 }
 
 /// What is taken of a run.
 #[derive(Debug)]
-enum Yield {
+enum Output {
     Curve(Box<Model>),
     Value(Quantity),
 }
@@ -112,7 +112,7 @@ impl Tests {
             launcher.perturbation = (!matters).then_some(Perturbation {
                 first: loaded.case.seed,
             });
-            let (yields, measurement) = match test {
+            let (output, measurement) = match test {
                 TestSpec::Curve {
                     measured: from,
                     model,
@@ -127,7 +127,7 @@ impl Tests {
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
                     let (curve, reach) =
                         measured::read(name, from, &read.beside(&from.file), model.along)?;
-                    (Yield::Curve(Box::new(made.reaching(reach))), curve)
+                    (Output::Curve(Box::new(made.reaching(reach))), curve)
                 }
                 TestSpec::Value {
                     output,
@@ -148,7 +148,7 @@ impl Tests {
                         sigma: vec![*sigma],
                         weight: 1.0,
                     };
-                    (Yield::Value(quantity), single)
+                    (Output::Value(quantity), single)
                 }
             };
             measurements.push(measurement);
@@ -158,7 +158,7 @@ impl Tests {
                 step: loaded.case.time.step,
                 every: loaded.case.output.every,
                 derived,
-                yields,
+                output,
             });
         }
         let target = Target::new(measurements).map_err(|e| FitError::Usage(e.to_string()))?;
@@ -228,9 +228,9 @@ impl Tests {
             }
         }
         let work = |(point, seed, test): &(&Vec<f64>, u64, &Test)| {
-            let told = test.run(&self.keys, point, *seed, finer, self.limit, stop)?;
+            let curve = test.run(&self.keys, point, *seed, finer, self.limit, stop)?;
             watch();
-            Ok(told)
+            Ok(curve)
         };
         let results = each(&items, jobs, stop, &work)?;
         let count = self.tests.len();
@@ -243,9 +243,9 @@ impl Tests {
     }
 
     /// The values of all tests for one seed, from what each of them gave.
-    fn sample(&self, told: &[Option<Option<Told>>]) -> Option<Sample> {
+    fn sample(&self, runs: &[Option<Option<RunCurve>>]) -> Option<Sample> {
         let mut curves = Vec::new();
-        for one in told {
+        for one in runs {
             match one.as_ref()?.as_ref()? {
                 Ok(curve) => curves.push(curve),
                 Err(why) => {
@@ -263,10 +263,10 @@ impl Tests {
     /// The curve of a test from a run that was made.
     pub fn curve(&self, test: usize, values: &[f64], seed: u64) -> Option<(Vec<f64>, Vec<f64>)> {
         let stop = AtomicBool::new(false);
-        let told = self.tests[test]
+        let curve = self.tests[test]
             .run(&self.keys, values, seed, 1, None, &stop)
             .ok()??;
-        told.ok()
+        curve.ok()
     }
 
     /// The `--set` arguments of a test for values of the parameters.
@@ -283,7 +283,7 @@ impl Tests {
 }
 
 /// A curve, or why a run gave none.
-type Told = Result<(Vec<f64>, Vec<f64>), String>;
+type RunCurve = Result<(Vec<f64>, Vec<f64>), String>;
 
 impl Test {
     /// One run, with its step over `finer` and rows at the same times; `None` if it was interrupted.
@@ -295,7 +295,7 @@ impl Test {
         finer: u32,
         limit: Option<Duration>,
         stop: &AtomicBool,
-    ) -> Result<Option<Told>, RunsError> {
+    ) -> Result<Option<RunCurve>, RunsError> {
         let mut sets = match changes(keys, &self.derived, values) {
             Ok(sets) => sets,
             Err(why) => return Ok(Some(Err(why.to_string()))),
@@ -317,9 +317,9 @@ impl Test {
             Status::Slow(s) => return Ok(Some(Err(format!("it took more than {s:.0} s")))),
         }
         let place = self.launcher.place(&sets, seed);
-        Ok(Some(match &self.yields {
-            Yield::Curve(model) => model.curve(&place.join("statistics.csv"), step),
-            Yield::Value(quantity) => match quantity.read(&summary(&place), &place) {
+        Ok(Some(match &self.output {
+            Output::Curve(model) => model.curve(&place.join("statistics.csv"), step),
+            Output::Value(quantity) => match quantity.read(&summary(&place), &place) {
                 Some(value) => Ok((vec![0.0], vec![value])),
                 None => Err(format!("it has no value of {}", quantity.name)),
             },

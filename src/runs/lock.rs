@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn refuses_a_second_study_and_a_strangers_folder() {
+    fn refuses_a_second_study_and_a_folder_of_something_else() {
         const OWNER: Owner = Owner {
             command: "fretwork trade",
             mark: "trade.lock",
