@@ -3,7 +3,7 @@
 use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
 use crate::row::Row;
 use crate::sample::{Estimate, difference, line};
-use crate::table::Setting;
+use crate::table::{Run, Setting};
 use fretwork::report::{Axis, Chart, Series, Style};
 
 pub const COMPARISON: Comparison = Comparison {
@@ -18,27 +18,35 @@ const I: &str = "measures.bulk_I";
 const PHI: &str = "measures.bulk_phi";
 /// Velocity of the wall at which all cohesion numbers are compared (m/s).
 const COMMON: f64 = 1.75;
+/// Inertial number below which the middle of the layer counts as a plug.
+const SHEARED: f64 = 0.02;
 
 fn show(found: &Found) -> Result<Shown, Failure> {
     let table = found.table("cohesive_shear")?;
     // Without cohesion: the points of plane shear at the same velocities.
     let plain = found.table("plane_shear")?.settings(|r| {
         let same = [0.22, 0.78, COMMON].contains(&r.number("velocity"));
-        same && r.number("mu") == 0.4 && r.number("tolerance") == 1e-3
+        let usual = r.number("tolerance") == 1e-3 && r.number("restitution") == 0.0;
+        same && usual && r.number("mu") == 0.4
     });
-    let cohesive = table.settings(|r| r.number("tolerance") == 1e-3);
+    let usual = |r: &Run| r.number("tolerance") == 1e-3 && r.number("range") == 1e-4;
+    let cohesive = table.settings(usual);
     let case: Vec<Setting> = plain.into_iter().chain(cohesive).collect();
     let common: Vec<&Setting> = case
         .iter()
         .filter(|s| s.factor("velocity") == COMMON)
         .collect();
     let at = |eta: f64| common.iter().find(|s| eta_of(s) == eta).copied();
-    let (Some(none), Some(weak), Some(strong)) = (at(0.0), at(1.0), at(30.0)) else {
-        return Err("the cohesion numbers 0, 1 and 30 are not all done".into());
+    // Where the layer moves as a plug between slipping walls, there is no shear to compare.
+    let sheared = common.iter().filter(|s| s.mean(I).mean > SHEARED);
+    let strongest = sheared.map(|s| eta_of(s)).fold(0.0, f64::max);
+    let (Some(none), Some(weak), Some(strong)) = (at(0.0), at(1.0), at(strongest)) else {
+        return Err("the cohesion numbers 0 and 1 are not both done".into());
     };
     let mut shown = Shown::default();
-    let fine = table.settings(|r| r.number("tolerance") < 1e-3);
-    let change = fine.first().and_then(|f| {
+    let varied = table.settings(|r| !usual(r));
+    let fine = varied.iter().find(|s| s.factor("tolerance") < 1e-3);
+    let change = fine.and_then(|f| {
         let coarse = at(eta_of(f))?;
         let whole = coarse.mean(MU).mean;
         let (mu, phi) = (
@@ -48,19 +56,26 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         Some((mu.percent(whole), phi.percent(coarse.mean(PHI).mean)))
     });
     let (of_mu, of_phi) = change.unzip();
-    // Shares of the value without cohesion.
+    // Over the value without cohesion at the same inertial number, from the straight line through its points.
     let share = |s: &Setting, column: &str| {
-        let (a, b) = (s.mean(column), none.mean(column));
-        let d = difference(a, b);
+        let bare = |s: &&Setting| eta_of(s) == 0.0;
+        let points: Vec<(f64, f64)> = case
+            .iter()
+            .filter(bare)
+            .map(|s| (s.mean(I).mean, s.mean(column).mean))
+            .collect();
+        let (start, slope) = line(&points);
+        let plain = start + slope * s.mean(I).mean;
+        let half = s.mean(column).half.hypot(none.mean(column).half);
         Estimate {
-            mean: 100.0 * d.mean / b.mean,
-            half: 100.0 * d.half / b.mean,
+            mean: 100.0 * (s.mean(column).mean / plain - 1.0),
+            half: 100.0 * half / plain,
         }
     };
     let percent = |e: Estimate| format!("{:+.1} ± {:.1} %", e.mean, e.half);
     let rise = share(strong, MU);
     shown.rows.push(Row::statement(
-        "friction at η = 30, over that without cohesion",
+        format!("friction at η = {strongest}, over that without cohesion"),
         percent(rise),
         of_mu.clone(),
         "strong increase above a threshold of η",
@@ -74,7 +89,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         "unchanged by weak cohesion",
         (early.half < 10.0).then_some(early.mean.abs() <= early.half.max(5.0)),
     ));
-    for (s, eta) in [(weak, 1), (strong, 30)] {
+    for (s, eta) in [(weak, 1.0), (strong, strongest)] {
         let d = share(s, PHI);
         shown.rows.push(Row::statement(
             format!("solid fraction at η = {eta}, over that without cohesion"),
@@ -132,17 +147,16 @@ fn show(found: &Found) -> Result<Shown, Failure> {
     }
     let cells: Vec<Vec<String>> = case
         .iter()
-        .chain(&fine)
+        .chain(&varied)
         .map(|s| {
             vec![
                 format!("{}", eta_of(s)),
                 format!("{}", s.factor("velocity")),
-                if s.factor("tolerance") < 1e-3 {
-                    "half the step, a tenth of the tolerance"
-                } else {
-                    ""
-                }
-                .to_owned(),
+                match (s.factor("tolerance") < 1e-3, s.factor("range") < 1e-4) {
+                    (true, _) => "half the step, a tenth of the tolerance".to_owned(),
+                    (_, true) => "attraction to a gap of 1/800 of a diameter".to_owned(),
+                    _ => String::new(),
+                },
                 s.mean(I).text(4),
                 s.mean(MU).text(3),
                 s.mean(PHI).text(4),
@@ -154,7 +168,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         &[
             "η",
             "wall, m/s",
-            "",
+            "changed",
             "I",
             "friction",
             "solid fraction",
