@@ -33,9 +33,6 @@ struct Test {
     launcher: Launcher,
     /// Its first seed.
     seed: u64,
-    /// Its step (s), and steps between rows of the statistics.
-    step: f64,
-    every: u64,
     derived: Vec<Derived>,
     output: Output,
 }
@@ -155,8 +152,6 @@ impl Tests {
             tests.push(Test {
                 launcher,
                 seed: loaded.case.seed,
-                step: loaded.case.time.step,
-                every: loaded.case.output.every,
                 derived,
                 output,
             });
@@ -300,11 +295,18 @@ impl Test {
             Ok(sets) => sets,
             Err(why) => return Ok(Some(Err(why.to_string()))),
         };
-        let step = self.step / f64::from(finer);
+        let whole = [self.launcher.sets.clone(), sets.clone()].concat();
+        let case = match load(&self.launcher.case, &whole) {
+            Ok(loaded) => loaded.case,
+            Err(why) => return Ok(Some(Err(why.to_string()))),
+        };
+        let step = case.time.step / f64::from(finer);
         if finer > 1 {
+            let every = case.output.every * u64::from(finer);
             sets.push(format!("time.step={step:e}"));
-            sets.push(format!("output.every={}", self.every * u64::from(finer)));
+            sets.push(format!("output.every={every}"));
         }
+        let limit = limit.map(|l| l * finer);
         let seed = self.seed.wrapping_add(seed);
         let deadline = Instant::now() + FOREVER;
         let ended = self.launcher.run(&sets, seed, deadline, limit, stop)?;

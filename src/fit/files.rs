@@ -1,8 +1,7 @@
 //! Files of a fit: `fit.json`, `evaluations.csv`, `curves.csv`.
 
 use super::evaluate::Tests;
-use super::half_step::HalfStep;
-use super::outcome::{Outcome, mean_of};
+use super::outcome::{HalfStep, Outcome, mean_of};
 use super::search::Found;
 use super::spec::ReadFit;
 use crate::runs::RunsError;
@@ -20,7 +19,15 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
         .map(|p| p.name.as_str())
         .collect();
     let half = |place: usize| match &outcome.half_step {
-        Some(HalfStep::Moves { values, .. }) => json!(values[place]),
+        Some(HalfStep::Moves { parameters, .. }) => json!(parameters[place]),
+        _ => Value::Null,
+    };
+    let step_not_small: Vec<&str> = match &outcome.half_step {
+        Some(HalfStep::Moves { beyond, .. }) => beyond.iter().map(|&i| names[i]).collect(),
+        _ => Vec::new(),
+    };
+    let half_step_failed = match &outcome.half_step {
+        Some(HalfStep::Failed(why)) => json!(why),
         _ => Value::Null,
     };
     let parameters: Vec<Value> = told
@@ -56,7 +63,7 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
         "reduced": told.reduced.map(number), "p": told.p, "describes": told.describes, "widened": number(told.widened), "at_edge": told.at_edge, "settled": outcome.settled,
         "ended": found.ended, "evaluations": found.evaluations.len(),
         "failed": found.evaluations.iter().filter(|e| e.chi_squared.is_none()).count(),
-        "random": tests.random, "tests": sets,
+        "step_not_small": step_not_small, "half_step_failed": half_step_failed, "random": tests.random, "tests": sets,
     })
 }
 

@@ -5,29 +5,13 @@
 //! method of first order the error of the step is twice the change, for one of second order four thirds of it.
 
 use super::FitError;
-use super::outcome::{Outcome, half_widths};
+use super::outcome::{HalfStep, Moved, Outcome, half_widths};
 use super::search::{Found, Search};
+use fretwork_study::interval::Mean;
 use std::sync::atomic::Ordering;
 
 /// Share of the half-width of its interval by which a parameter may move.
 const SMALL: f64 = 0.5;
-
-/// Standard errors beyond which a change is not the scatter of the runs.
-const CLEAR: f64 = 2.0;
-
-/// What half the step does to the estimates.
-#[derive(Clone, Debug, PartialEq)]
-pub enum HalfStep {
-    /// The estimates move.
-    Moves {
-        /// Values of the parameters with half the step.
-        values: Vec<f64>,
-        /// Parameters that move by more than half the half-width of their intervals, and more than runs scatter.
-        beyond: Vec<usize>,
-    },
-    /// A run with half the step failed, for this reason.
-    Failed(String),
-}
 
 /// Repeats the runs at the estimate with half their step; `None` if it was interrupted.
 ///
@@ -55,42 +39,34 @@ pub fn half_step(
         let moved = |row: &Vec<f64>| row.iter().zip(&change).map(|(a, b)| a * b).sum();
         shifts.push(influence.iter().map(moved).collect());
     }
+    let bounds = &search.tests.bounds;
     let widths = half_widths(search, &outcome.identification);
-    let mut place = search.tests.bounds.point(&outcome.values());
-    let mut beyond = Vec::new();
-    for (i, width) in widths.iter().enumerate() {
-        let (mean, error) = mean_and_error(shifts.iter().map(|s| s[i]));
-        if mean.abs() > SMALL * width && mean.abs() > CLEAR * error {
+    let place = bounds.point(&outcome.values());
+    let (mut parameters, mut beyond) = (Vec::new(), Vec::new());
+    for (i, estimate) in outcome.identification.estimates.iter().enumerate() {
+        let of_seeds: Vec<f64> = shifts.iter().map(|s| s[i]).collect();
+        let shift = match search.tests.random {
+            true => Mean::of(&of_seeds),
+            false => of_seeds.first().copied().map(Mean::certain),
+        };
+        let Some(shift) = shift.filter(|_| estimate.determined && estimate.at.is_none()) else {
+            parameters.push(None);
+            continue;
+        };
+        if shift.mean.abs() > SMALL * widths[i] && !shift.may_be_zero() {
             beyond.push(i);
         }
-        place[i] = (place[i] + mean).clamp(0.0, 1.0);
+        let half_width = shift.half_width.unwrap_or(f64::INFINITY);
+        let value = |by: f64| {
+            let mut moved = place.clone();
+            moved[i] = (place[i] + by).clamp(0.0, 1.0);
+            bounds.values(&moved)[i]
+        };
+        parameters.push(Some(Moved {
+            value: value(shift.mean),
+            low: value(shift.mean - half_width),
+            high: value(shift.mean + half_width),
+        }));
     }
-    Ok(Some(HalfStep::Moves {
-        values: search.tests.bounds.values(&place),
-        beyond,
-    }))
-}
-
-/// Mean, and its standard error; zero for one value.
-fn mean_and_error(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
-    let count = values.clone().count() as f64;
-    let mean = values.clone().sum::<f64>() / count;
-    let squares: f64 = values.map(|v| (v - mean).powi(2)).sum();
-    match count > 1.0 {
-        true => (mean, (squares / (count * (count - 1.0))).sqrt()),
-        false => (mean, 0.0),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_error_of_a_mean_is_that_of_independent_values() {
-        // s^2 = 5/3 of 1, 2, 3, 4.
-        let (mean, error) = mean_and_error([1.0, 2.0, 3.0, 4.0].into_iter());
-        assert!((mean - 2.5).abs() < 1e-15 && (error - (5.0f64 / 12.0).sqrt()).abs() < 1e-15);
-        assert_eq!(mean_and_error([3.0].into_iter()), (3.0, 0.0));
-    }
+    Ok(Some(HalfStep::Moves { parameters, beyond }))
 }

@@ -1,10 +1,10 @@
 //! What the measurements say of the parameters: estimates with intervals, from runs around the best point.
 
 use super::FitError;
-use super::half_step::HalfStep;
 use super::search::{Evaluation, Found, Search, Stage};
 use fretwork_study::fit::identify::{self as mathematics, Data, Identification, Run};
 use fretwork_study::fit::residuals::over_seeds;
+use serde::Serialize;
 
 /// Half-width of the first neighbourhood, of the range of each parameter.
 const FIRST: f64 = 0.1;
@@ -30,6 +30,31 @@ pub struct Outcome {
     pub settled: bool,
     /// What half the step does to the estimates, if the fit asks.
     pub half_step: Option<HalfStep>,
+}
+
+/// What half the step of the runs does to the estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub enum HalfStep {
+    /// The estimates move.
+    Moves {
+        /// Parameters with half the step; `None` for one at an end of its range, and for one that is not determined.
+        parameters: Vec<Option<Moved>>,
+        /// Parameters that move by more than half the half-width of their intervals, and more than runs scatter.
+        beyond: Vec<usize>,
+    },
+    /// A run with half the step failed, for this reason.
+    Failed(String),
+}
+
+/// A parameter with half the step, with its interval of 95 % over the seeds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Moved {
+    /// Its value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
 }
 
 impl Outcome {

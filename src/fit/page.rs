@@ -1,8 +1,7 @@
 //! What a fit says: lines for the terminal, the page `fit.html` and the picture `fit.png`.
 
 use super::evaluate::Tests;
-use super::half_step::HalfStep;
-use super::outcome::{Outcome, mean_of};
+use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
 use super::spec::{ReadFit, TestSpec};
 use crate::report::{Axis, Chart, ReportError, Series, Style, draw_panels};
@@ -96,12 +95,14 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
         }
     }
     match &outcome.half_step {
-        Some(HalfStep::Moves { values, beyond }) => {
+        Some(HalfStep::Moves { parameters, beyond }) => {
             for &i in beyond {
-                let (e, unit) = (&told.estimates[i], &read.spec.parameters[i].unit);
+                let e = &told.estimates[i];
+                let unit = &read.spec.parameters[i].unit;
+                let half = parameters[i].map_or(String::new(), moved_text);
                 out.push(format!(
-                    "STEP NOT SMALL: with half the step {} would be {} instead of {} {unit}, a change that the interval does not have; take a smaller step (`time.step` in `set` of the tests)",
-                    e.name, number(values[i], 4), number(e.value, 4)
+                    "STEP NOT SMALL: with half the step {} would be {half} instead of {} {unit}, a change by more than half the half-width of its interval; take a smaller step (`time.step` in `set` of the tests)",
+                    e.name, number(e.value, 4)
                 ));
             }
         }
@@ -148,6 +149,20 @@ fn value_text(e: &Estimate, unit: &str) -> String {
             number(e.interval.low, 4),
             number(e.interval.high, 4)
         ),
+    }
+}
+
+/// A parameter with half the step, with its interval if runs scatter.
+fn moved_text(moved: Moved) -> String {
+    let Moved { value, low, high } = moved;
+    match low < high {
+        true => format!(
+            "{} ({} to {})",
+            number(value, 4),
+            number(low, 4),
+            number(high, 4)
+        ),
+        false => number(value, 4),
     }
 }
 
@@ -289,7 +304,9 @@ fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Blo
         .enumerate()
         .map(|(i, (e, p))| {
             let half = match &outcome.half_step {
-                Some(HalfStep::Moves { values, .. }) => number(values[i], 4),
+                Some(HalfStep::Moves { parameters, .. }) => {
+                    parameters[i].map_or("-".to_owned(), moved_text)
+                }
                 _ => String::new(),
             };
             let both = format!(

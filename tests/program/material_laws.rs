@@ -72,6 +72,18 @@ fn laws_of_a_material_that_are_missing_or_wrong_are_refused_at_their_place() {
         none.contains("the file `none.ron` of the material `grain` has no `laws`"),
         "{none}"
     );
+    // A material that is none of the case.
+    let sets = [
+        "materials.grain=bad",
+        "interfaces.grain.parameters_from=none",
+    ];
+    let loaded = load(&folder.join("case.ron"), &sets.map(str::to_owned)).unwrap();
+    let built = loaded.build_in::<Dim2>(&fretwork::shipped::search_path());
+    let file = built.err().unwrap().to_string();
+    assert!(
+        file.contains("`none.ron` is the file of a material") && file.contains("(grain)"),
+        "{file}"
+    );
     let wrong = said("bad");
     assert!(
         wrong.contains("bad.ron:1:") && wrong.contains("GPa"),

@@ -205,11 +205,25 @@ impl FromFile {
         };
         let path = format!("{here}.parameters_from");
         let at = |f: ValidationError| source.locate(f.under(here));
-        let material = case.materials.get(name);
-        if let Some(file) = material.and_then(|file| library.read(file).ok())
-            && let Some(parameters) = file.parse::<Material>()?.laws
-        {
+        let from = case.materials.get(name).unwrap_or(name);
+        let file = library.read(from).map_err(|e| match e {
+            Err(error) => source.named_at(&path, error),
+            Ok(missing) => at(ValidationError::new(
+                "parameters_from",
+                format!("there is no file `{from}.ron` in {}", missing.looked),
+            )
+            .expected(format!("one of {}", missing.available))
+            .nearest(missing.nearest.as_deref())),
+        })?;
+        if case.materials.contains_key(name) {
             let place = "laws";
+            let Some(parameters) = file.parse::<Material>()?.laws else {
+                return Err(at(ValidationError::new(
+                    "parameters_from",
+                    format!("the file `{from}.ron` of the material `{name}` has no `laws`"),
+                )
+                .expected("`laws: (...)` there, or the name of a file of parameters")));
+            };
             parameters
                 .units()
                 .map_err(|fault| file.locate(fault.under(place)))?;
@@ -218,24 +232,17 @@ impl FromFile {
                 place: Some((file, place)),
             });
         }
-        let file = library.read(name).map_err(|e| match e {
-            Err(error) => source.named_at(&path, error),
-            Ok(missing) => {
-                let (message, expected) = match material {
-                    Some(material) => (
-                        format!("the file `{material}.ron` of the material `{name}` has no `laws`"),
-                        format!("`laws: (...)` there, or one of {}", missing.available),
-                    ),
-                    None => (
-                        format!("there is no file `{name}.ron` in {}", missing.looked),
-                        format!("one of {}", missing.available),
-                    ),
-                };
-                at(ValidationError::new("parameters_from", message)
-                    .expected(expected)
-                    .nearest(missing.nearest.as_deref()))
-            }
-        })?;
+        if file.parse::<Material>().is_ok() {
+            let names: Vec<&str> = case.materials.keys().map(String::as_str).collect();
+            return Err(at(ValidationError::new(
+                "parameters_from",
+                format!("`{from}.ron` is the file of a material, not of parameters"),
+            )
+            .expected(format!(
+                "a material by its name in the case ({}), or a file of parameters",
+                names.join(", ")
+            ))));
+        }
         let parameters: InterfaceParameters = file.parse()?;
         parameters.units().map_err(|fault| file.locate(fault))?;
         if !files.iter().any(|f| f.0 == *name) {

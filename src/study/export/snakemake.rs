@@ -2,6 +2,8 @@
 
 use super::super::StudyError;
 use super::{Export, Written, absolute, quote, shell};
+use crate::study::spec::DesignSpec;
+use std::path::{Path, PathBuf};
 
 pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     let out = absolute(&export.plan.out);
@@ -15,8 +17,13 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));
     // Where they have changed, the runs are looked at again; those that are there still are not made.
-    let inputs =
-        [&export.plan.file, &export.plan.launcher.case].map(|path| python(&absolute(path)));
+    let mut inputs = vec![export.plan.file.clone(), export.plan.launcher.case.clone()];
+    if let DesignSpec::Table { file } = &export.plan.design {
+        let beside = export.plan.file.parent().unwrap_or(Path::new(""));
+        inputs.push(beside.join(file));
+    }
+    let input = |path: &PathBuf| python(&absolute(path).replace('{', "{{").replace('}', "}}"));
+    let inputs: Vec<String> = inputs.iter().map(input).collect();
     let inputs = inputs.join(", ");
     let text = format!(
         "# {count} runs in {tasks} tasks of {chunk}; written by fretwork study export --to snakemake.\n\
