@@ -1,11 +1,12 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 11] = [
+pub const FILES: [(&str, &str); 14] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
     ),
+    ("clay", include_str!("../../../materials/clay.ron")),
     (
         "contact_polymer",
         include_str!("../../../materials/contact_polymer.ron"),
@@ -23,6 +24,10 @@ pub const FILES: [(&str, &str); 11] = [
         include_str!("../../../materials/magnetite.ron"),
     ),
     (
+        "molybdenum_disulfide",
+        include_str!("../../../materials/molybdenum_disulfide.ron"),
+    ),
+    (
         "oxide_third_body",
         include_str!("../../../materials/oxide_third_body.ron"),
     ),
@@ -34,6 +39,7 @@ pub const FILES: [(&str, &str); 11] = [
         "rail_steel_r350ht",
         include_str!("../../../materials/rail_steel_r350ht.ron"),
     ),
+    ("sand", include_str!("../../../materials/sand.ron")),
     (
         "verification_grain",
         include_str!("../../../materials/verification_grain.ron"),
