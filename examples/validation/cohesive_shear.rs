@@ -1,8 +1,8 @@
 //! Disks that attract each other, in plane shear: friction and solid fraction by inertial and cohesion number.
 
-use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
-use crate::row::Row;
-use crate::sample::{Estimate, difference, line};
+use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
+use crate::row::{Finer, Row, Verdict, judge, judged, rises};
+use crate::sample::{Estimate, Line, difference};
 use crate::table::{Run, Setting};
 use fretwork::report::{Axis, Chart, Series, Style};
 
@@ -10,6 +10,7 @@ pub const COMPARISON: Comparison = Comparison {
     name: "cohesive_shear",
     title: "Plane shear of cohesive disks",
     studies: &["cohesive_shear", "plane_shear"],
+    published: true,
     show,
 };
 
@@ -18,13 +19,20 @@ const I: &str = "measures.bulk_I";
 const PHI: &str = "measures.bulk_phi";
 /// Velocity of the wall at which all cohesion numbers are compared (m/s).
 const COMMON: f64 = 1.75;
-/// Inertial number below which the middle of the layer counts as a plug.
+/// Published cohesion number above which friction rises.
+const THRESHOLD: f64 = 10.0;
+/// Inertial number below which the layer counts as a plug between slipping walls.
 const SHEARED: f64 = 0.02;
+const CORE: &str = "measures.core_mu";
+const COLUMNS: [&str; 7] = ["velocity", "step", "tolerance", MU, I, PHI, CORE];
 
-fn show(found: &Found) -> Result<Shown, Failure> {
-    let table = found.table("cohesive_shear")?;
+fn show(inputs: &Inputs) -> Result<Results, Failure> {
+    let table = inputs.table("cohesive_shear", &COLUMNS)?;
+    table.require(&["eta", "range"])?;
     // Without cohesion: the points of plane shear at the same velocities.
-    let plain = found.table("plane_shear")?.settings(|r| {
+    let plain = inputs.table("plane_shear", &COLUMNS)?;
+    plain.require(&["restitution", "mu"])?;
+    let plain = plain.settings(|r| {
         let same = [0.22, 0.78, COMMON].contains(&r.number("velocity"));
         let usual = r.number("tolerance") == 1e-3 && r.number("restitution") == 0.0;
         same && usual && r.number("mu") == 0.4
@@ -37,111 +45,104 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         .filter(|s| s.factor("velocity") == COMMON)
         .collect();
     let at = |eta: f64| common.iter().find(|s| eta_of(s) == eta).copied();
-    // Where the layer moves as a plug between slipping walls, there is no shear to compare.
-    let sheared = common.iter().filter(|s| s.mean(I).mean > SHEARED);
-    let strongest = sheared.map(|s| eta_of(s)).fold(0.0, f64::max);
-    let (Some(none), Some(weak), Some(strong)) = (at(0.0), at(1.0), at(strongest)) else {
-        return Err("the cohesion numbers 0 and 1 are not both done".into());
-    };
-    let mut shown = Shown::default();
+    if at(0.0).is_none() || common.len() < 2 {
+        return Err("the cohesion number 0 and one above are not both done".into());
+    }
+    let mut results = Results::default();
     let varied = table.settings(|r| !usual(r));
     let fine = varied.iter().find(|s| s.factor("tolerance") < 1e-3);
-    let change = fine.and_then(|f| {
-        let coarse = at(eta_of(f))?;
-        let whole = coarse.mean(MU).mean;
-        let (mu, phi) = (
-            difference(f.mean(MU), coarse.mean(MU)),
-            difference(f.mean(PHI), coarse.mean(PHI)),
-        );
-        Some((mu.percent(whole), phi.percent(coarse.mean(PHI).mean)))
-    });
-    let (of_mu, of_phi) = change.unzip();
-    // Over the value without cohesion at the same inertial number, from the straight line through its points.
+    // Over the value without cohesion at the same inertial number, from the straight line through its points, less 1.
     let share = |s: &Setting, column: &str| {
-        let bare = |s: &&Setting| eta_of(s) == 0.0;
-        let points: Vec<(f64, f64)> = case
-            .iter()
-            .filter(bare)
-            .map(|s| (s.mean(I).mean, s.mean(column).mean))
-            .collect();
-        let (start, slope) = line(&points);
-        let plain = start + slope * s.mean(I).mean;
-        let half = s.mean(column).half.hypot(none.mean(column).half);
-        Estimate {
-            mean: 100.0 * (s.mean(column).mean / plain - 1.0),
-            half: 100.0 * half / plain,
-        }
+        let without = case.iter().filter(|s| eta_of(s) == 0.0);
+        let points: Vec<_> = without.map(|s| (s.mean(I), s.mean(column))).collect();
+        let line = Line::through(&points);
+        let ratio = s.over(|r| r.number(column) / line.at(r.number(I)));
+        let i = s.mean(I).mean;
+        let of_line = Estimate {
+            mean: -1.0,
+            half: ratio.mean * line.half_at(i) / line.at(i),
+        };
+        ratio.plus(of_line)
     };
-    let percent = |e: Estimate| format!("{:+.1} ± {:.1} %", e.mean, e.half);
-    let rise = share(strong, MU);
-    shown.rows.push(Row::statement(
-        format!("friction at η = {strongest}, over that without cohesion"),
-        percent(rise),
-        of_mu.clone(),
-        "strong increase above a threshold of η",
-        Some(rise.low() > 20.0),
-    ));
-    let early = share(weak, MU);
-    shown.rows.push(Row::statement(
-        "friction at η = 1, over that without cohesion",
-        percent(early),
-        of_mu.clone(),
-        "unchanged by weak cohesion",
-        (early.half < 10.0).then_some(early.mean.abs() <= early.half.max(5.0)),
-    ));
-    for (s, eta) in [(weak, 1.0), (strong, strongest)] {
-        let d = share(s, PHI);
-        shown.rows.push(Row::statement(
-            format!("solid fraction at η = {eta}, over that without cohesion"),
-            percent(d),
-            of_phi.clone(),
-            "the material expands",
-            if d.high() < 0.0 {
-                Some(true)
-            } else if d.low() > 0.0 {
-                Some(false)
-            } else {
-                None
-            },
+    let finer = |s: &Setting, column: &str| -> Option<Finer> {
+        let fine = fine?;
+        let coarse = at(eta_of(fine))?;
+        Some(Finer {
+            change: difference(share(fine, column), share(coarse, column)),
+            difference: (eta_of(s) == eta_of(fine)).then(|| share(fine, column)),
+        })
+    };
+    let plug = |s: &Setting| s.mean(I).mean < SHEARED;
+    for s in common.iter().filter(|s| eta_of(s) > 0.0) {
+        let eta = eta_of(s);
+        let change = share(s, MU);
+        let of_finer = finer(s, MU);
+        let off = judged(change, of_finer);
+        let (published, verdict) = if eta < THRESHOLD {
+            ("unchanged below η of about 10", judge(off, 0.0, 1.0))
+        } else if plug(s) {
+            ("rises above η of about 10", Verdict::Undecided)
+        } else {
+            ("rises above η of about 10", rises(off))
+        };
+        let moves = if plug(s) {
+            format!(": a plug, I = {:.4}", s.mean(I).mean)
+        } else {
+            String::new()
+        };
+        results.rows.push(Row::statement(
+            format!("friction at η = {eta}, over that without cohesion"),
+            change.percent(1.0) + &moves,
+            of_finer.map(|f| f.change.percent(1.0)),
+            published,
+            Some(verdict),
         ));
     }
-    for eta in [0.0, 10.0] {
+    for s in common.iter().filter(|s| eta_of(s) > 0.0 && !plug(s)) {
+        let change = share(s, PHI);
+        let of_finer = finer(s, PHI);
+        results.rows.push(Row::statement(
+            format!(
+                "solid fraction at η = {}, over that without cohesion",
+                eta_of(s)
+            ),
+            change.percent(1.0),
+            of_finer.map(|f| f.change.percent(1.0)),
+            "falls: the material expands",
+            Some(rises(judged(change, of_finer).scaled(-1.0))),
+        ));
+    }
+    for eta in [0.0, THRESHOLD] {
         let of: Vec<&Setting> = case.iter().filter(|s| eta_of(s) == eta).collect();
+        if of.len() < 3 || of.iter().any(|s| plug(s) && eta > 0.0) {
+            continue;
+        }
         for (what, column) in [("friction", MU), ("solid fraction", PHI)] {
-            let points: Vec<(f64, f64)> = of
-                .iter()
-                .map(|s| (s.mean(I).mean, s.mean(column).mean))
-                .collect();
-            if points.len() < 3 {
-                continue;
-            }
-            let (a, b) = line(&points);
-            let off = points
-                .iter()
-                .map(|p| (p.1 - a - b * p.0).abs())
-                .fold(0.0, f64::max);
-            let half = of.iter().map(|s| s.mean(column).half).fold(0.0, f64::max);
-            let middle = points[points.len() / 2].1;
-            shown.rows.push(Row::statement(
+            let points: Vec<_> = of.iter().map(|s| (s.mean(I), s.mean(column))).collect();
+            let line = Line::through(&points);
+            let off = |p: &(Estimate, Estimate)| Estimate {
+                mean: p.1.mean - line.at(p.0.mean),
+                half: p.1.half.hypot(line.slope * p.0.half),
+            };
+            let middle = points[points.len() / 2].1.mean;
+            let far = |p: &(Estimate, Estimate)| off(p).mean.abs();
+            let farthest = points.iter().max_by(|a, b| far(a).total_cmp(&far(b)));
+            results.rows.push(Row::statement(
                 format!(
                     "{what} at η = {eta} from I = {:.3} to {:.3}",
-                    points[0].0,
-                    points[points.len() - 1].0
+                    points[0].0.mean,
+                    points[points.len() - 1].0.mean
                 ),
                 format!(
-                    "{a:.3} {} {:.3} I; farthest point {:.1} %, interval of a point {:.1} %",
-                    if b < 0.0 { '-' } else { '+' },
-                    b.abs(),
-                    100.0 * off / middle,
-                    100.0 * half / middle
+                    "{:.3} {} {:.3} I; farthest point {}",
+                    line.intercept,
+                    if line.slope < 0.0 { '-' } else { '+' },
+                    line.slope.abs(),
+                    farthest.map_or(String::new(), |p| off(p).percent(middle))
                 ),
-                if column == MU {
-                    of_mu.clone()
-                } else {
-                    of_phi.clone()
-                },
+                None,
                 "linear in I",
-                (half < 0.1 * middle).then_some(off <= half.max(0.02 * middle)),
+                points.iter().map(|p| judge(off(p), 0.0, middle)).max(),
             ));
         }
     }
@@ -152,7 +153,10 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             vec![
                 format!("{}", eta_of(s)),
                 format!("{}", s.factor("velocity")),
-                match (s.factor("tolerance") < 1e-3, s.factor("range") < 1e-4) {
+                match (
+                    s.factor("tolerance") < 1e-3,
+                    s.runs[0].optional("range").is_some_and(|r| r < 1e-4),
+                ) {
                     (true, _) => "half the step, a tenth of the tolerance".to_owned(),
                     (_, true) => "attraction to a gap of 1/800 of a diameter".to_owned(),
                     _ => String::new(),
@@ -160,11 +164,12 @@ fn show(found: &Found) -> Result<Shown, Failure> {
                 s.mean(I).text(4),
                 s.mean(MU).text(3),
                 s.mean(PHI).text(4),
-                s.mean("measures.core_mu").text(3),
+                s.mean(CORE).text(3),
+                not_trustworthy(s),
             ]
         })
         .collect();
-    shown.points = markdown(
+    results.points = markdown(
         &[
             "η",
             "wall, m/s",
@@ -173,6 +178,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             "friction",
             "solid fraction",
             "friction, middle of the layer",
+            "not trustworthy",
         ],
         &cells,
     );
@@ -196,15 +202,27 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         }
         chart
     };
-    shown.charts = vec![
+    results.charts = vec![
         chart("Friction of cohesive disks", "friction coefficient τ/p", MU),
         chart("Solid fraction of cohesive disks", "solid fraction φ", PHI),
     ];
-    Ok(shown)
+    Ok(results)
 }
 
 /// Cohesion number; plane shear has none.
 fn eta_of(s: &Setting) -> f64 {
-    let eta = s.factor("eta");
-    if eta.is_nan() { 0.0 } else { eta }
+    s.runs[0].optional("eta").unwrap_or(0.0)
+}
+
+/// What runs say of themselves, with the number of runs.
+fn not_trustworthy(s: &Setting) -> String {
+    let said: Vec<&str> = s.runs.iter().map(|r| r.text("not_trustworthy")).collect();
+    let mut kinds: Vec<&str> = said.iter().copied().filter(|t| !t.is_empty()).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let count = |kind: &str| said.iter().filter(|t| **t == kind).count();
+    let texts = kinds
+        .iter()
+        .map(|k| format!("{k} ({} of {} runs)", count(k), said.len()));
+    texts.collect::<Vec<_>>().join(", ")
 }

@@ -15,28 +15,34 @@ pub struct Comparison {
     pub title: &'static str,
     /// `validation/STUDY.ron`.
     pub studies: &'static [&'static str],
-    pub show: fn(&Found) -> Result<Shown, Failure>,
+    /// Whether the reference is published; else it is of an independent program.
+    pub published: bool,
+    pub show: fn(&Inputs) -> Result<Results, Failure>,
 }
 
 /// What a comparison is made of: tables of its studies, and the published numbers.
-pub struct Found {
+pub struct Inputs {
     pub tables: BTreeMap<String, Table>,
     pub published: Published,
 }
 
-impl Found {
-    /// The table of a study.
-    pub fn table(&self, study: &str) -> Result<&Table, Failure> {
-        Ok(self
+impl Inputs {
+    /// The table of a study, whose runs have numbers in these columns.
+    pub fn table(&self, study: &str, columns: &[&str]) -> Result<&Table, Failure> {
+        let table = self
             .tables
             .get(study)
-            .ok_or_else(|| format!("`{study}` has no table"))?)
+            .ok_or_else(|| format!("`{study}` has no table"))?;
+        table
+            .require(columns)
+            .map_err(|e| format!("`{study}`: {e}"))?;
+        Ok(table)
     }
 }
 
 /// Rows of the summary, a table in Markdown of the single points, and charts of the figure.
 #[derive(Default)]
-pub struct Shown {
+pub struct Results {
     pub rows: Vec<Row>,
     pub points: String,
     pub charts: Vec<Chart>,

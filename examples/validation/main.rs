@@ -1,4 +1,4 @@
-//! Numbers published by others beside ours: runs the studies of `validation/`, draws a figure for each comparison and writes
+//! Numbers of others beside ours: runs the studies of `validation/`, draws a figure for each comparison and writes
 //! `docs/validation.md`.
 //!
 //! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`, from the root of the project.
@@ -19,7 +19,7 @@ mod table;
 mod third_body;
 mod wet_spheres;
 
-use comparison::{Comparison, Failure, Shown};
+use comparison::{Comparison, Failure, Results};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -37,7 +37,8 @@ const ALL: [Comparison; 8] = [
         name: "smallest_particle",
         title: "Smallest wear particle",
         studies: &[],
-        show: |_| Ok(Shown::default()),
+        published: true,
+        show: |_| Ok(Results::default()),
     },
 ];
 
@@ -116,7 +117,7 @@ fn make(root: &Path, study: &str, options: &Options) -> Result<(), Failure> {
             options.program.display()
         )
     })?;
-    // What cannot be collected is not shown; the program has said why.
+    // What cannot be collected is not results; the program has said why.
     if !status.success() && options.runs {
         return Err(format!("the study `{study}` ended with {status}").into());
     }

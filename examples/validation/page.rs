@@ -1,11 +1,11 @@
 //! The page.
 
-use crate::comparison::{Comparison, Failure, Found, Shown, folder, markdown};
+use crate::comparison::{Comparison, Failure, Inputs, Results, folder, markdown};
 use crate::published::Published;
-use crate::row::{CLOSE, WIDE};
+use crate::row::{CLOSE, Row, WIDE};
 use crate::table::Table;
 use fretwork::report::{Chart, DrawChart};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Pixels of a figure: under 120 kB as a file.
@@ -17,11 +17,13 @@ pub struct Section {
     title: &'static str,
     /// `validation/NAME.md`.
     text: String,
-    shown: Option<Shown>,
-    /// Why it is not shown, or what of it is missing.
+    results: Option<Results>,
+    /// Why it is not results, or what of it is missing.
     missing: Vec<String>,
-    /// Runs and processor time (s) of its studies.
-    cost: Vec<(String, usize, f64)>,
+    /// Whether the reference is published.
+    published: bool,
+    /// Of its studies, by name.
+    studies: Vec<(String, Table)>,
 }
 
 impl Section {
@@ -31,11 +33,12 @@ impl Section {
             name: comparison.name,
             title: comparison.title,
             text: std::fs::read_to_string(at("md"))?,
-            shown: None,
+            results: None,
             missing: Vec::new(),
-            cost: Vec::new(),
+            published: comparison.published,
+            studies: Vec::new(),
         };
-        let mut found = Found {
+        let mut inputs = Inputs {
             tables: BTreeMap::new(),
             published: Published::read(&at("csv"))?,
         };
@@ -45,7 +48,8 @@ impl Section {
                 section.missing.push(format!("`{study}` was not run"));
                 continue;
             }
-            let table = Table::read(&path)?;
+            let mut table = Table::read(&path)?;
+            table.programs = programs(&folder(root, study), &table)?;
             let done = table.runs.len();
             if done < table.wanted {
                 section.missing.push(format!(
@@ -53,14 +57,12 @@ impl Section {
                     table.wanted
                 ));
             }
-            section
-                .cost
-                .push(((*study).to_owned(), done, table.seconds));
-            found.tables.insert((*study).to_owned(), table);
+            section.studies.push(((*study).to_owned(), table.clone()));
+            inputs.tables.insert((*study).to_owned(), table);
         }
         if !comparison.studies.is_empty() {
-            match (comparison.show)(&found) {
-                Ok(shown) => section.shown = Some(shown),
+            match (comparison.show)(&inputs) {
+                Ok(results) => section.results = Some(results),
                 Err(e) => section.missing.push(e.to_string()),
             }
         }
@@ -80,7 +82,7 @@ impl Section {
     }
 
     fn figures(&self) -> impl Iterator<Item = (&Chart, String)> {
-        let charts = self.shown.iter().flat_map(|s| &s.charts);
+        let charts = self.results.iter().flat_map(|s| &s.charts);
         charts.enumerate().map(|(k, chart)| {
             let number = if k > 0 {
                 format!("_{}", k + 1)
@@ -93,22 +95,89 @@ impl Section {
 
     fn markdown(&self) -> String {
         let mut text = format!("## {}\n\n{}\n", self.title, self.text.trim());
-        for (study, runs, seconds) in &self.cost {
+        for (study, table) in &self.studies {
+            let by = if table.programs.is_empty() {
+                String::new()
+            } else {
+                format!(", by fretwork {}", table.programs.join(" and "))
+            };
             text += &format!(
-                "\n`validation/{study}.ron`: {runs} runs, {:.0} minutes of one processor.\n",
-                seconds / 60.0
+                "\n`validation/{study}.ron`: {} runs, {:.0} minutes of one processor{by}.\n",
+                table.runs.len(),
+                table.seconds / 60.0
             );
         }
         for line in &self.missing {
             text += &format!("\nNot complete: {line}.\n");
         }
-        if let Some(shown) = &self.shown {
+        if let Some(results) = &self.results {
             for (chart, file) in self.figures() {
                 text += &format!("\n![{}](figures/{file})\n", chart.title);
             }
-            text += &format!("\n{}", shown.points);
+            text += &format!("\n{}", results.points);
         }
         text
+    }
+}
+
+/// Versions of the program that made the runs.
+fn programs(folder: &Path, table: &Table) -> Result<Vec<String>, Failure> {
+    let mut versions = BTreeSet::new();
+    for run in &table.runs {
+        let path = folder
+            .join("runs")
+            .join(run.text("folder"))
+            .join("summary.json");
+        let text =
+            std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let summary: serde_json::Value = serde_json::from_str(&text)?;
+        let version = summary["version"].as_str().ok_or_else(|| {
+            let path = path.display();
+            format!("{path} does not say the `version` of the program; make the run again")
+        })?;
+        versions.insert(version.to_owned());
+    }
+    Ok(versions.into_iter().collect())
+}
+
+impl Section {
+    /// Rows of the summary. A verdict from a study whose runs are not all done says so.
+    fn rows(&self) -> Vec<Vec<String>> {
+        let link = format!(
+            "[{}](#{})",
+            self.title,
+            self.title.to_lowercase().replace(' ', "-")
+        );
+        let Some(results) = &self.results else {
+            let mut cells = vec![link];
+            cells.extend(std::iter::repeat_n("-".to_owned(), 5));
+            let ran = self.studies.iter().any(|s| !s.1.runs.is_empty());
+            cells.push(
+                if ran {
+                    "not decided: see below"
+                } else {
+                    "not run"
+                }
+                .to_owned(),
+            );
+            return vec![cells];
+        };
+        let incomplete: Vec<String> = self
+            .studies
+            .iter()
+            .filter(|(_, t)| t.runs.len() < t.wanted)
+            .map(|(_, t)| format!("incomplete: {} of {} runs", t.runs.len(), t.wanted))
+            .collect();
+        let cells = |(k, row): (usize, &Row)| {
+            let mut cells = row.cells();
+            cells.insert(0, if k == 0 { link.clone() } else { String::new() });
+            let judged = |v: &&mut String| *v != "-" && !incomplete.is_empty();
+            if let Some(verdict) = cells.last_mut().filter(judged) {
+                *verdict += &format!(" ({})", incomplete.join("; "));
+            }
+            cells
+        };
+        results.rows.iter().enumerate().map(cells).collect()
     }
 }
 
@@ -117,42 +186,27 @@ pub fn page(sections: &[Section]) -> String {
     let mut text = include_str!("head.md")
         .replace("CLOSE", &format!("{:.0} %", 100.0 * CLOSE))
         .replace("WIDE", &format!("{:.0} %", 100.0 * WIDE));
-    let mut rows = Vec::new();
-    for section in sections {
-        let link = format!(
-            "[{}](#{})",
-            section.title,
-            section.title.to_lowercase().replace(' ', "-")
-        );
-        match &section.shown {
-            Some(shown) => {
-                for (k, row) in shown.rows.iter().enumerate() {
-                    let mut cells = row.cells();
-                    cells.insert(0, if k == 0 { link.clone() } else { String::new() });
-                    rows.push(cells);
-                }
-            }
-            None => {
-                let mut cells = vec![link];
-                cells.extend(std::iter::repeat_n("-".to_owned(), 5));
-                cells.push("not run".to_owned());
-                rows.push(cells);
-            }
-        }
-    }
-    text += "\n";
-    text += &markdown(
-        &[
+    for (published, heading, column) in [
+        (true, "Beside publications:", "published"),
+        (
+            false,
+            "Beside an independent program of soft disks (DEM), whose numbers are not published:",
+            "independent DEM",
+        ),
+    ] {
+        let of = sections.iter().filter(|s| s.published == published);
+        let rows: Vec<Vec<String>> = of.flat_map(Section::rows).collect();
+        let columns = [
             "comparison",
             "quantity",
             "ours",
-            "with finer step and tolerance",
-            "published",
+            "change with finer step and tolerance",
+            column,
             "difference",
             "verdict",
-        ],
-        &rows,
-    );
+        ];
+        text += &format!("\n{heading}\n\n{}", markdown(&columns, &rows));
+    }
     for section in sections {
         text += &format!("\n{}", section.markdown());
     }

@@ -1,7 +1,7 @@
 //! Disks in plane shear: friction and solid fraction by the inertial number, with and without friction between grains.
 
-use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
-use crate::row::{Row, Theirs};
+use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
+use crate::row::{Finer, Reference, Row};
 use crate::sample::{Estimate, difference};
 use crate::table::Setting;
 use fretwork::report::{Axis, Chart, Series, Style};
@@ -10,12 +10,28 @@ pub const COMPARISON: Comparison = Comparison {
     name: "plane_shear",
     title: "Plane shear of disks",
     studies: &["plane_shear", "plane_shear_walls"],
+    published: false,
     show,
 };
 
 const MU: &str = "measures.bulk_mu";
 const I: &str = "measures.bulk_I";
 const PHI: &str = "measures.bulk_phi";
+const CORE_MU: &str = "measures.core_mu";
+const CORE_I: &str = "measures.core_I";
+const COLUMNS: [&str; 11] = [
+    "mu",
+    "velocity",
+    "start",
+    "step",
+    "tolerance",
+    "restitution",
+    MU,
+    I,
+    PHI,
+    CORE_MU,
+    CORE_I,
+];
 const TOLERANCE: f64 = 1e-3;
 
 /// mu = a + b/(1 + c/I)
@@ -28,9 +44,9 @@ impl Law {
     }
 }
 
-fn show(found: &Found) -> Result<Shown, Failure> {
-    let table = found.table("plane_shear")?;
-    let known = |name: &str| found.published.value(name);
+fn show(inputs: &Inputs) -> Result<Results, Failure> {
+    let table = inputs.table("plane_shear", &COLUMNS)?;
+    let known = |name: &str| inputs.published.value(name);
     let rough = Law([known("dem_a")?, known("dem_b")?, known("dem_c")?]);
     let smooth = Law([known("smooth_a")?, known("smooth_b")?, known("smooth_c")?]);
     let (phi_0, phi_1) = (known("dem_phi_0")?, known("dem_phi_1")?);
@@ -41,53 +57,56 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         settings
             .iter()
             .find(|o| same_flow(o, s))
-            .map(Setting::number_of)
+            .map(Setting::index)
     };
-    let (case, others): (Vec<&Setting>, Vec<&Setting>) = settings
-        .iter()
-        .partition(|s| first(s) == Some(s.number_of()));
-    // Changes at the point that was repeated stand for all points of that friction, as a share.
-    let change = |mu: f64, column: &str| -> Option<Estimate> {
-        let fine = others.iter().find(|s| s.factor("mu") == mu && is_fine(s))?;
+    let (case, others): (Vec<&Setting>, Vec<&Setting>) =
+        settings.iter().partition(|s| first(s) == Some(s.index()));
+    let law_of = |s: &Setting| {
+        if s.factor("mu") > 0.0 {
+            &rough
+        } else {
+            &smooth
+        }
+    };
+    // Differences from the DEM, each run at its own inertial number.
+    let off_mu = |s: &Setting| s.over(|r| r.number(MU) - law_of(s).at(r.number(I)));
+    let off_phi = |s: &Setting| s.over(|r| r.number(PHI) - phi_0 - phi_1 * r.number(I));
+    // The change at the point that was repeated stands for all points of that friction, as a share.
+    let finer = |s: &Setting, off: &dyn Fn(&Setting) -> Estimate, column: &str| -> Option<Finer> {
+        let same_grains = |o: &&&Setting| o.factor("mu") == s.factor("mu") && is_fine(o);
+        let fine = others.iter().find(same_grains)?;
         let coarse = settings
             .iter()
-            .find(|s| !is_fine(s) && same_flow(s, fine) && same_conditions(s, fine))?;
-        let d = difference(fine.mean(column), coarse.mean(column));
-        let whole = coarse.mean(column).mean;
-        Some(Estimate {
-            mean: d.mean / whole,
-            half: d.half / whole,
-        })
-    };
-    let scaled = |e: Option<Estimate>, by: f64| {
-        e.map(|e| Estimate {
-            mean: e.mean * by,
-            half: e.half * by,
+            .find(|o| !is_fine(o) && same_flow(o, fine) && same_conditions(o, fine))?;
+        let by = s.mean(column).mean / coarse.mean(column).mean;
+        let same = same_flow(s, fine) && same_conditions(s, fine);
+        Some(Finer {
+            change: difference(off(fine), off(coarse)).scaled(by),
+            difference: same.then(|| off(fine)),
         })
     };
 
-    let mut shown = Shown::default();
+    let mut results = Results::default();
     let mut cells = Vec::new();
     for setting in &case {
         let (mu, i) = (setting.mean(MU), setting.mean(I));
         let friction = setting.factor("mu");
-        let law = if friction > 0.0 { &rough } else { &smooth };
-        let off = setting.over(|r| r.number(MU) - law.at(r.number(I)));
-        let core =
-            setting.over(|r| r.number("measures.core_mu") - law.at(r.number("measures.core_I")));
+        let law = law_of(setting);
+        let off = off_mu(setting);
+        let core = setting.over(|r| r.number(CORE_MU) - law.at(r.number(CORE_I)));
         let expected = law.at(i.mean);
-        let theirs = |value: f64| Theirs {
+        let reference = |value: f64| Reference {
             value,
             range: 0.0,
             digits: 3,
         };
         let named = |what: &str| format!("{what} at I = {:.3}, grains with µ = {friction}", i.mean);
-        shown.rows.push(Row::number(
+        results.rows.push(Row::number(
             named("friction"),
             mu,
             off,
-            scaled(change(friction, MU), mu.mean),
-            &theirs(expected),
+            finer(setting, &off_mu, MU),
+            &reference(expected),
         ));
         let phi = setting.mean(PHI);
         let mut line = vec![
@@ -100,13 +119,12 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         ];
         if friction > 0.0 {
             let solid = phi_0 + phi_1 * i.mean;
-            let off = setting.over(|r| r.number(PHI) - phi_0 - phi_1 * r.number(I));
-            shown.rows.push(Row::number(
+            results.rows.push(Row::number(
                 named("solid fraction"),
                 phi,
-                off,
-                scaled(change(friction, PHI), phi.mean),
-                &theirs(solid),
+                off_phi(setting),
+                finer(setting, &off_phi, PHI),
+                &reference(solid),
             ));
             line.extend([
                 format!("{:.3}", cruz_0 + cruz_1 * i.mean),
@@ -118,7 +136,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         }
         cells.push(line);
     }
-    shown.points = markdown(
+    results.points = markdown(
         &[
             "µ of grains",
             "I",
@@ -154,13 +172,8 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             [_, true, _] => format!("start of the means, s: {}", value("start")),
             _ => format!("restitution {}", value("restitution")),
         };
-        let law = if setting.factor("mu") > 0.0 {
-            &rough
-        } else {
-            &smooth
-        };
-        let off = |s: &Setting| s.over(|r| r.number(MU) - law.at(r.number(I)));
-        let d = difference(off(setting), off(partner));
+        let law = law_of(setting);
+        let d = difference(off_mu(setting), off_mu(partner));
         cells.push(vec![
             format!("{}", setting.factor("mu")),
             setting.mean(I).text(4),
@@ -170,8 +183,8 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             setting.mean(PHI).text(4),
         ]);
     }
-    shown.points += "\nThe same points with other settings; the change is that of the difference from the DEM:\n\n";
-    shown.points += &markdown(
+    results.points += "\nThe same points with other settings; the change is that of the difference from the DEM:\n\n";
+    results.points += &markdown(
         &[
             "µ of grains",
             "I",
@@ -183,7 +196,8 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         &cells,
     );
 
-    if let Ok(straight) = found.table("plane_shear_walls") {
+    if inputs.tables.contains_key("plane_shear_walls") {
+        let straight = inputs.table("plane_shear_walls", &[MU, I, PHI])?;
         let mut cells = Vec::new();
         for setting in straight.settings(|_| true) {
             let off = setting.over(|r| r.number(MU) - rough.at(r.number(I)));
@@ -195,8 +209,8 @@ fn show(found: &Found) -> Result<Shown, Failure> {
                 setting.mean(PHI).text(4),
             ]);
         }
-        shown.points += "\nBetween straight rows of equal disks, µ = 0.4 between grains:\n\n";
-        shown.points += &markdown(
+        results.points += "\nBetween straight rows of equal disks, µ = 0.4 between grains:\n\n";
+        results.points += &markdown(
             &["I", "friction", "difference from the DEM", "solid fraction"],
             &cells,
         );
@@ -225,7 +239,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             .map(|i| (i, f(i)))
             .collect()
     };
-    let at = |name: &str, i: f64| found.published.value(name).map(|v| (i, v));
+    let at = |name: &str, i: f64| inputs.published.value(name).map(|v| (i, v));
     let smooth_points = vec![
         at("smooth_0.01", 0.01)?,
         at("smooth_0.03", 0.03)?,
@@ -250,8 +264,8 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         .with(drawn(0.4, PHI).coloured(0, 114, 178))
         .with(drawn(0.0, PHI).coloured(0, 158, 115))
         .with(Series::new("independent DEM", along(&|i| phi_0 + phi_1 * i)).coloured(213, 94, 0));
-    shown.charts = vec![friction, solid];
-    Ok(shown)
+    results.charts = vec![friction, solid];
+    Ok(results)
 }
 
 /// Same friction and velocity of the wall.

@@ -1,7 +1,7 @@
 //! Regular polygons and disks with the rolling resistance that is to stand for them.
 
-use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
-use crate::row::{Row, Theirs};
+use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
+use crate::row::{Reference, Row};
 use crate::sample::difference;
 use fretwork::report::{Axis, Chart, Series, Style};
 
@@ -9,19 +9,25 @@ pub const COMPARISON: Comparison = Comparison {
     name: "polygons",
     title: "Polygons and rolling resistance",
     studies: &["polygons_6", "polygons_12"],
+    published: true,
     show,
 };
 
 const MU: &str = "measures.bulk_mu";
 const I: &str = "measures.bulk_I";
+const PRESSURE: &str = "measures.bulk_p";
 
-fn show(found: &Found) -> Result<Shown, Failure> {
-    let mut shown = Shown::default();
+fn show(inputs: &Inputs) -> Result<Results, Failure> {
+    let mut results = Results::default();
     let mut cells = Vec::new();
     let (mut polygons, mut disks) = ((Vec::new(), Vec::new()), (Vec::new(), Vec::new()));
     // From the least resistance up.
     for sides in [12, 6] {
-        let table = found.table(&format!("polygons_{sides}"))?;
+        let study = format!("polygons_{sides}");
+        if !inputs.tables.contains_key(&study) {
+            continue;
+        }
+        let table = inputs.table(&study, &[MU, I, PRESSURE])?;
         let named = |name: &str| {
             table
                 .named("shape", name)
@@ -30,7 +36,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         let (shape, rolling) = (named("polygons")?, named("rolling")?);
         let rolling_resistance = 0.25 * (std::f64::consts::PI / (2.0 * f64::from(sides))).tan();
         let (a, b) = (rolling.mean(MU), shape.mean(MU));
-        let theirs = Theirs {
+        let reference = Reference {
             value: b.mean,
             range: 0.0,
             digits: 3,
@@ -40,10 +46,10 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             a,
             difference(a, b),
             None,
-            &theirs,
+            &reference,
         );
-        row.published = format!("equal to polygons of {sides} sides; ours {}", b.text(3));
-        shown.rows.push(row);
+        row.reference = format!("equal to polygons of {sides} sides; ours {}", b.text(3));
+        results.rows.push(row);
         for (e, drawn) in [(b, &mut polygons), (a, &mut disks)] {
             drawn.0.push((rolling_resistance, e.mean));
             drawn.1.push((e.low(), e.high()));
@@ -56,7 +62,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
                 what,
                 s.mean(MU).text(3),
                 s.mean(I).text(4),
-                s.mean("measures.bulk_p").text(0),
+                s.mean(PRESSURE).text(0),
             ]);
         }
         if let Some(plain) = table.named("shape", "disks") {
@@ -65,14 +71,17 @@ fn show(found: &Found) -> Result<Shown, Failure> {
                 "disks, µ_r = 0".to_owned(),
                 e.text(3),
                 plain.mean(I).text(4),
-                plain.mean("measures.bulk_p").text(0),
+                plain.mean(PRESSURE).text(0),
             ]);
             disks.0.insert(0, (0.0, e.mean));
             disks.1.insert(0, (e.low(), e.high()));
         }
     }
-    shown.points = markdown(&["grains", "friction", "I", "pressure, Pa"], &cells);
-    shown.charts = vec![
+    if cells.is_empty() {
+        return Err("no run is done".into());
+    }
+    results.points = markdown(&["grains", "friction", "I", "pressure, Pa"], &cells);
+    results.charts = vec![
         Chart::new(
             "Polygons and disks with rolling resistance",
             Axis::new("rolling resistance tan(π/2n)/4", ""),
@@ -92,5 +101,5 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             .intervals(disks.1),
         ),
     ];
-    Ok(shown)
+    Ok(results)
 }

@@ -1,7 +1,7 @@
-//! Published numbers: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`, `source`; `#` begins a comment.
+//! Numbers of others: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`, `source`; `#` begins a comment.
 
 use crate::comparison::Failure;
-use crate::row::Theirs;
+use crate::row::Reference;
 use std::path::Path;
 
 pub struct Published {
@@ -39,15 +39,15 @@ impl Published {
 
     /// A number, the middle of a range.
     pub fn value(&self, name: &str) -> Result<f64, Failure> {
-        Ok(self.theirs(name, 0)?.value)
+        Ok(self.reference(name, 0)?.value)
     }
 
     /// A number with half of its range.
-    pub fn theirs(&self, name: &str, digits: usize) -> Result<Theirs, Failure> {
+    pub fn reference(&self, name: &str, digits: usize) -> Result<Reference, Failure> {
         let row = self.rows.iter().find(|r| r.0 == name);
         let (_, value, range) =
             row.ok_or_else(|| format!("`{name}` is not among the published numbers"))?;
-        Ok(Theirs {
+        Ok(Reference {
             value: *value,
             range: *range,
             digits,

@@ -1,8 +1,8 @@
-//! Means over seeds with their intervals.
+//! Means over seeds with their intervals, and straight lines through them.
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use fretwork_study::interval::Mean;
 
-/// Mean over seeds, and half-width of its 95 % interval by Student's t; infinite for one seed.
+/// A number with the half-width of its 95 % interval; infinite for a mean of one seed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     pub mean: f64,
@@ -10,15 +10,23 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// Mean over seeds, with the interval by Student's t.
     pub fn of(values: &[f64]) -> Self {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
-        let half = match StudentsT::new(0.0, 1.0, n - 1.0) {
-            Ok(t) if n > 1.0 => t.inverse_cdf(0.975) * (square / (n * (n - 1.0))).sqrt(),
-            _ => f64::INFINITY,
-        };
-        Self { mean, half }
+        Mean::of(values).map_or(
+            Self {
+                mean: f64::NAN,
+                half: f64::INFINITY,
+            },
+            |m| Self {
+                mean: m.mean,
+                half: m.half_width.unwrap_or(f64::INFINITY),
+            },
+        )
+    }
+
+    /// A number without an error.
+    pub fn certain(mean: f64) -> Self {
+        Self { mean, half: 0.0 }
     }
 
     /// Lower end; NaN for one seed, for which a figure has no bar and a comparison no answer.
@@ -39,6 +47,22 @@ impl Estimate {
         }
     }
 
+    /// In other units.
+    pub fn scaled(self, by: f64) -> Self {
+        Self {
+            mean: self.mean * by,
+            half: self.half * by.abs(),
+        }
+    }
+
+    /// Sum with an independent number.
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            mean: self.mean + other.mean,
+            half: self.half.hypot(other.half),
+        }
+    }
+
     /// `0.284 ± 0.003`.
     pub fn text(self, digits: usize) -> String {
         if self.half.is_finite() {
@@ -50,31 +74,64 @@ impl Estimate {
 
     /// In per cent of `whole`, with sign.
     pub fn percent(self, whole: f64) -> String {
-        let by = 100.0 / whole.abs();
-        if self.half.is_finite() {
-            format!("{:+.1} ± {:.1} %", self.mean * by, self.half * by)
+        let e = self.scaled(100.0 / whole.abs());
+        if e.half.is_finite() {
+            format!("{:+.1} ± {:.1} %", e.mean, e.half)
         } else {
-            format!("{:+.1} % (one run)", self.mean * by)
+            format!("{:+.1} % (one run)", e.mean)
         }
     }
 }
 
 /// Difference of two means of independent samples, with the root of the sum of squares of their half-widths.
 pub fn difference(a: Estimate, b: Estimate) -> Estimate {
-    Estimate {
-        mean: a.mean - b.mean,
-        half: a.half.hypot(b.half),
-    }
+    a.plus(b.scaled(-1.0))
 }
 
-/// Least-squares straight line through points: intercept and slope.
-pub fn line(points: &[(f64, f64)]) -> (f64, f64) {
-    let n = points.len() as f64;
-    let x = points.iter().map(|p| p.0).sum::<f64>() / n;
-    let y = points.iter().map(|p| p.1).sum::<f64>() / n;
-    let square: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
-    let slope = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>() / square;
-    (y - slope * x, slope)
+/// Least-squares straight line, all points with the same weight.
+pub struct Line {
+    pub intercept: f64,
+    pub slope: f64,
+    middle: f64,
+    square: f64,
+    /// Abscissa, and half-width of the ordinate with that of the abscissa times the slope.
+    points: Vec<(f64, f64)>,
+}
+
+impl Line {
+    pub fn through(points: &[(Estimate, Estimate)]) -> Self {
+        let n = points.len() as f64;
+        let middle = points.iter().map(|p| p.0.mean).sum::<f64>() / n;
+        let height = points.iter().map(|p| p.1.mean).sum::<f64>() / n;
+        let square: f64 = points.iter().map(|p| (p.0.mean - middle).powi(2)).sum();
+        let product: f64 = points
+            .iter()
+            .map(|p| (p.0.mean - middle) * (p.1.mean - height))
+            .sum();
+        let slope = product / square;
+        Self {
+            intercept: height - slope * middle,
+            slope,
+            middle,
+            square,
+            points: points
+                .iter()
+                .map(|(x, y)| (x.mean, y.half.hypot(slope * x.half)))
+                .collect(),
+        }
+    }
+
+    pub fn at(&self, x: f64) -> f64 {
+        self.intercept + self.slope * x
+    }
+
+    /// Half-width of the ordinate, by propagation of those of the points.
+    pub fn half_at(&self, x: f64) -> f64 {
+        let n = self.points.len() as f64;
+        let weight = |x_k: f64| 1.0 / n + (x - self.middle) * (x_k - self.middle) / self.square;
+        let squares = self.points.iter().map(|p| (weight(p.0) * p.1).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
 }
 
 #[cfg(test)]
@@ -90,8 +147,20 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_found_again() {
-        let (a, b) = line(&[(0.0, 1.0), (1.0, 3.0), (3.0, 7.0)]);
-        assert!((a - 1.0).abs() < 1e-12 && (b - 2.0).abs() < 1e-12);
+    fn a_line_is_found_again_with_its_error() {
+        let point = |x: f64| {
+            let y = Estimate {
+                mean: 1.0 + 2.0 * x,
+                half: 0.3,
+            };
+            (Estimate::certain(x), y)
+        };
+        let line = Line::through(&[0.0, 1.0, 3.0].map(point));
+        assert!((line.intercept - 1.0).abs() < 1e-12 && (line.slope - 2.0).abs() < 1e-12);
+        // h² (1/n + (x - x̄)²/Σ(x_k - x̄)²), of regression with equal errors: x̄ = 4/3, the sum is 14/3.
+        let expected = |x: f64| 0.3 * (1.0 / 3.0 + (x - 4.0 / 3.0).powi(2) * 3.0 / 14.0f64).sqrt();
+        for x in [0.0, 4.0 / 3.0, 5.0] {
+            assert!((line.half_at(x) - expected(x)).abs() < 1e-12);
+        }
     }
 }

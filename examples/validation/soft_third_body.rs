@@ -1,7 +1,7 @@
 //! Friction of a soft third body against the cohesion of its grains.
 
-use crate::comparison::{Comparison, Failure, Found, Shown, markdown};
-use crate::row::Row;
+use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
+use crate::row::{Row, judge, rises};
 use crate::sample::difference;
 use fretwork::report::{Axis, Chart, Series, Style};
 
@@ -9,26 +9,33 @@ pub const COMPARISON: Comparison = Comparison {
     name: "soft_third_body",
     title: "Cohesion of a soft third body",
     studies: &["soft_third_body"],
+    published: true,
     show,
 };
 
 const MU: &str = "friction_coefficient";
+const SHEAR: &str = "measures.layer_interior_shear";
 
-fn show(found: &Found) -> Result<Shown, Failure> {
-    let table = found.table("soft_third_body")?;
+fn show(inputs: &Inputs) -> Result<Results, Failure> {
+    let table = inputs.table("soft_third_body", &["cohesion", MU, SHEAR])?;
     let settings = table.settings(|_| true);
     let at = |cohesion: f64| settings.iter().find(|s| s.factor("cohesion") == cohesion);
     let (Some(none), Some(four), Some(eight)) = (at(0.0), at(4.0), at(8.0)) else {
         return Err("the cohesions 0, 4 and 8 are not all done".into());
     };
-    let mut shown = Shown::default();
-    let error = settings
+    let mut results = Results::default();
+    // Unknown if one run does not know it.
+    let errors: Option<Vec<f64>> = settings
         .iter()
-        .map(|s| s.mean("friction_coefficient_numerical_error").mean)
-        .fold(0.0, f64::max);
-    let numerical = Some(format!("at most {error:.3}, of the runs"));
+        .flat_map(|s| &s.runs)
+        .map(|r| r.optional("friction_coefficient_numerical_error"))
+        .collect();
+    let numerical = Some(errors.map_or("not known".to_owned(), |e| {
+        let largest = e.into_iter().fold(0.0, f64::max);
+        format!("at most {largest:.3}, of the runs")
+    }));
     let rise = difference(four.mean(MU), none.mean(MU));
-    shown.rows.push(Row::statement(
+    results.rows.push(Row::statement(
         "friction from C/P = 0 to 4",
         format!(
             "{} and {}: {}",
@@ -38,28 +45,16 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         ),
         numerical.clone(),
         "rises with cohesion",
-        if rise.low() > 0.0 {
-            Some(true)
-        } else if rise.high() < 0.0 {
-            Some(false)
-        } else {
-            None
-        },
+        Some(rises(rise)),
     ));
     let later = difference(eight.mean(MU), four.mean(MU));
-    shown.rows.push(Row::statement(
+    results.rows.push(Row::statement(
         "friction from C/P = 4 to 8",
         later.text(2),
         numerical,
         "levels off",
-        // Level: a rise clearly below that of the first four, per cohesion.
-        if later.high() < rise.low() {
-            Some(true)
-        } else if later.low() > rise.high() {
-            Some(false)
-        } else {
-            None
-        },
+        // Level: no change, neither up nor down.
+        Some(judge(later, 0.0, four.mean(MU).mean)),
     ));
     let cells: Vec<Vec<String>> = settings
         .iter()
@@ -67,7 +62,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             vec![
                 format!("{}", s.factor("cohesion")),
                 s.mean(MU).text(3),
-                s.mean("measures.layer_interior_shear").text(2),
+                s.mean(SHEAR).text(2),
                 s.runs
                     .iter()
                     .map(|r| r.text("findings.layer_regime"))
@@ -82,7 +77,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
             ]
         })
         .collect();
-    shown.points = markdown(
+    results.points = markdown(
         &[
             "C/P",
             "friction",
@@ -100,7 +95,7 @@ fn show(found: &Found) -> Result<Shown, Failure> {
         .iter()
         .map(|s| (s.mean(MU).low(), s.mean(MU).high()))
         .collect();
-    shown.charts = vec![
+    results.charts = vec![
         Chart::new(
             "Soft third body (trend of Zhang et al. 2020: rises, then levels)",
             Axis::new("cohesion over pressure C/P", ""),
@@ -112,5 +107,5 @@ fn show(found: &Found) -> Result<Shown, Failure> {
                 .intervals(bars),
         ),
     ];
-    Ok(shown)
+    Ok(results)
 }

@@ -10,12 +10,15 @@ use std::path::Path;
 pub struct Run(BTreeMap<String, String>);
 
 impl Run {
-    /// A number; NaN if there is none.
+    /// A number of a column that [`Table::require`] has checked; panics if there is none.
     pub fn number(&self, column: &str) -> f64 {
-        self.0
-            .get(column)
-            .and_then(|t| t.parse().ok())
-            .unwrap_or(f64::NAN)
+        self.optional(column)
+            .unwrap_or_else(|| panic!("`{column}` has no number and was not required of its table"))
+    }
+
+    pub fn optional(&self, column: &str) -> Option<f64> {
+        let number: Option<f64> = self.text(column).parse().ok();
+        number.filter(|x| x.is_finite())
     }
 
     pub fn text(&self, column: &str) -> &str {
@@ -31,13 +34,15 @@ pub struct Table {
     pub wanted: usize,
     /// Processor time of the runs that are done (s).
     pub seconds: f64,
+    /// Versions of the program that made the runs.
+    pub programs: Vec<String>,
 }
 
 impl Table {
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let mut reader = csv::Reader::from_path(path)?;
-        let bare = |name: &str| name.split(" [").next().unwrap_or(name).to_owned();
-        let names: Vec<String> = reader.headers()?.iter().map(bare).collect();
+        let without_unit = |name: &str| name.split(" [").next().unwrap_or(name).to_owned();
+        let names: Vec<String> = reader.headers()?.iter().map(without_unit).collect();
         let mut table = Self::default();
         for record in reader.records() {
             let record = record?;
@@ -45,11 +50,27 @@ impl Table {
             let run = Run(cells.collect());
             table.wanted += 1;
             if run.text("status") == "done" {
-                table.seconds += run.number("cpu_seconds");
+                table.seconds += run.optional("cpu_seconds").unwrap_or(0.0);
                 table.runs.push(run);
             }
         }
         Ok(table)
+    }
+
+    /// Checks that each run that is done has a finite number in these columns.
+    pub fn require(&self, columns: &[&str]) -> Result<(), Failure> {
+        for column in columns {
+            for run in &self.runs {
+                if run.optional(column).is_none() {
+                    let point = run.text("point");
+                    return Err(format!(
+                        "run {point} of its table has no number in the column `{column}`"
+                    )
+                    .into());
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The runs that meet a condition, by setting, in the order of the study.
@@ -90,7 +111,7 @@ impl Setting<'_> {
     }
 
     /// Number of the setting in its study.
-    pub fn number_of(&self) -> f64 {
+    pub fn index(&self) -> f64 {
         self.factor("setting")
     }
 
@@ -118,5 +139,12 @@ mod tests {
         );
         let settings = table.settings(|_| true);
         assert_eq!((settings.len(), settings[0].mean("p").mean), (1, 3.0));
+        assert!(table.require(&["p"]).is_ok());
+        // An absent column, and an empty cell of a run that is done.
+        let refusal = |t: &Table, c: &str| t.require(&[c]).unwrap_err().to_string();
+        assert!(refusal(&table, "q").contains("`q`"));
+        let mut empty = table.clone();
+        empty.runs[1].0.insert("p".to_owned(), String::new());
+        assert!(refusal(&empty, "p").contains("`p`"));
     }
 }
