@@ -6,7 +6,8 @@
 >>> results.summary["steps"]
 50
 
-A :class:`Case` is read, edited, checked and run; a :class:`Simulation` is stepped by hand; :class:`Results` reads what a run wrote.
+A :class:`Case` is read, edited, checked and run; a :class:`Simulation` is stepped by hand; :class:`Results` reads what a run wrote,
+:func:`read_study` the table of a study.
 ``fretwork.law`` has laws written in Python. ``docs/python.md`` shows all of it.
 """
 
@@ -24,6 +25,7 @@ from ._report import compare, report
 from ._results import Results
 from ._sections import Section
 from ._simulation import Simulation, StepReport
+from ._study import read_study
 
 # The compiled part is the program here: its file identifies the built-in laws, and laws are tried out in another process of it.
 _fretwork.declare(
@@ -49,5 +51,6 @@ __all__ = [
     "compare",
     "contact_patch",
     "law",
+    "read_study",
     "report",
 ]
