@@ -110,6 +110,9 @@ fn failed_runs_are_rows() {
     let reason = values(&study, "reason")[1].as_str().unwrap();
     assert!(reason.contains("did not converge"), "{reason}");
     assert_eq!(values(&study, "status")[0], "done");
+    // The table of settings says how its runs ended.
+    let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
+    assert!(page.contains("<th scope=\"row\">2</th><td>1</td><td>rejected</td>"));
     // A combination that the case refuses, though it takes each value alone, and a run that takes too long.
     let set = r#"set: ["interfaces.all.parameters.contact.mu=${0.5 - sign}"]"#;
     folder.study(r#"Values(name: "sign", values: [0.1, 1.0])"#, set);
