@@ -32,5 +32,4 @@ mod samples;
 mod solve;
 mod study;
 mod trade;
-mod validation;
 mod wear_coefficient;

@@ -1,15 +1,16 @@
-//! The studies of `studies/`.
+//! The studies of `studies/` and of `validation/`, whose results are in `docs/`.
 
+use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// Each is right, has the outputs that it asks for and refuses no level; nothing is run.
-#[test]
-fn shipped_studies_are_right() {
+/// What `study check` says of each study in a folder; nothing is run or written.
+fn checks(folder: &str) -> Vec<Value> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let out = std::env::temp_dir().join(format!("fretwork-shipped-{}", std::process::id()));
-    let mut count = 0;
-    for entry in std::fs::read_dir(root.join("studies")).unwrap() {
+    let name = format!("fretwork-shipped-{folder}-{}", std::process::id());
+    let out = std::env::temp_dir().join(name);
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(root.join(folder)).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|e| e != "ron") {
             continue;
@@ -23,10 +24,29 @@ fn shipped_studies_are_right() {
             .unwrap();
         let said = String::from_utf8_lossy(&output.stderr);
         assert!(output.status.success(), "{}: {said}", path.display());
-        let check: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        found.push(serde_json::from_slice(&output.stdout).unwrap());
+    }
+    assert!(!out.exists());
+    found
+}
+
+/// Each has the outputs that it asks for and refuses no level.
+#[test]
+fn shipped_studies_are_right() {
+    let found = checks("studies");
+    assert!(found.len() >= 7);
+    for check in found {
         assert_eq!(check["runs"]["all"], check["runs"]["to_be_made"]);
         assert!(check["runs"]["all"].as_u64() > Some(1) && check["forecast"].is_null());
-        count += 1;
     }
-    assert!(count >= 4 && !out.exists());
+}
+
+/// Each has three seeds or more, for an interval.
+#[test]
+fn studies_of_the_validation_are_right() {
+    let found = checks("validation");
+    assert!(found.len() >= 8);
+    for check in found {
+        assert!(check["seeds"].as_array().unwrap().len() >= 3, "{check}");
+    }
 }
