@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 AXES = ("x", "y", "z")
 
 
-def _need(package: str, extra: str, what: str) -> Any:
+def need(package: str, extra: str, what: str) -> Any:
     from importlib import import_module
 
     try:
@@ -76,7 +76,7 @@ class Results:
     @contextmanager
     def open(self) -> Iterator[h5py.File]:
         """The file ``results.h5`` in h5py, also while a run writes it."""
-        h5py = _need("h5py", "results", "reading fields of results")
+        h5py = need("h5py", "results", "reading fields of results")
         path = self.folder / "results.h5"
         if not path.is_file():
             raise InputError(f"{path}: there is no such file", str(path))
@@ -94,8 +94,8 @@ class Results:
     def statistics(self) -> pd.DataFrame:
         """The statistics as a table, one row a line of ``statistics.csv`` with the same numbers. ``attrs`` has two dictionaries by
         column: ``units``, and ``long_name`` with the explanations."""
-        pandas = _need("pandas", "results", "the table of statistics")
-        np = _need("numpy", "results", "arrays")
+        pandas = need("pandas", "results", "the table of statistics")
+        np = need("numpy", "results", "arrays")
         path = self.folder / "statistics.csv"
         if not path.is_file():
             raise InputError(f"{path}: there is no such file", str(path))
@@ -122,7 +122,7 @@ class Results:
     def grains(self) -> xr.Dataset:
         """Balls and other parts of grains and first bodies over time: ``(time, grain)``, vectors ``(time, grain, axis)``, with the
         fields of ``results.h5``."""
-        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        xarray, np = need("xarray", "results", "fields over time"), need("numpy", "results", "arrays")
         with self.open() as file:
             view = file["views/grains"]
             times, counts = view["Steps/Values"][:], view["NumberOfPoints"][:]
@@ -149,7 +149,7 @@ class Results:
     def contacts(self) -> xr.Dataset:
         """Contacts at all recorded times, one after another: ``(contact,)`` with the coordinates ``time`` and ``record``, the number
         of the recorded time. ``contacts.sel(contact=contacts.record == 3)`` has those of one time. ``ends`` are the places of candidate and antagonist."""
-        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        xarray, np = need("xarray", "results", "fields over time"), need("numpy", "results", "arrays")
         with self.open() as file:
             view = file["views/contacts"]
             times, counts = view["Steps/Values"][:], view["Lines/NumberOfCells"][:]
@@ -175,7 +175,7 @@ class Results:
     def bodies(self) -> xr.Dataset:
         """First bodies over time: ``position``, ``velocity`` and ``force`` of all contacts, ``(time, body, axis)``, at the rows of
         the statistics."""
-        xarray, np = _need("xarray", "results", "fields over time"), _need("numpy", "results", "arrays")
+        xarray, np = need("xarray", "results", "fields over time"), need("numpy", "results", "arrays")
         with self.open() as file:
             columns = file["statistics"]
             names = [n.removesuffix("_fx") for n in columns if n.endswith("_fx")]
@@ -226,7 +226,7 @@ class Results:
     def mesh(self, state: int = -1, view: str = "grains") -> pv.DataSet:
         """A recorded state as a mesh of pyvista, with its fields. ``state`` counts the recorded :attr:`times`, negative from the
         end; ``view`` is one of :attr:`views`."""
-        pyvista, np = _need("pyvista", "mesh", "meshes"), _need("numpy", "mesh", "arrays")
+        pyvista, np = need("pyvista", "mesh", "meshes"), need("numpy", "mesh", "arrays")
         with self.open() as file:
             group = file["views"].get(view)
             if group is None or "Steps" not in group:

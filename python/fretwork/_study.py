@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Union
 
 from ._errors import InputError
-from ._results import _need
+from ._results import need
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,7 @@ def read_study(folder: Union[str, PathLike[str]], *, settings: bool = False) -> 
     >>> done = table[table.status == "done"]  # doctest: +SKIP
     >>> done.groupby("law").friction_coefficient.agg(["mean", "std"])  # doctest: +SKIP
     """
-    pandas = _need("pandas", "results", "the table of a study")
+    pandas = need("pandas", "results", "the table of a study")
     path = Path(os.fspath(folder)) / ("settings.csv" if settings else "table.csv")
     if not path.is_file():
         text = f"{path}: there is no such table; give the folder of a study, in which `fretwork study run` or `collect` wrote it"

@@ -238,7 +238,7 @@ fn report_event(event: &Event<'_>, started: Instant) {
         Event::Ended(name, seed, run) => {
             let how = match &run.status {
                 Status::Done => "done",
-                Status::Failed(_) => "FAILED",
+                Status::Refused(_) | Status::Failed(_) | Status::Rejected(_) => "FAILED",
                 Status::Slow(_) => "slower than the reference",
             };
             report(&format!(

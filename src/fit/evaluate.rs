@@ -313,10 +313,11 @@ impl Test {
         let Ended::Finished(run) = ended else {
             return Ok(None);
         };
-        match run.status {
-            Status::Done => {}
-            Status::Failed(why) => return Ok(Some(Err(why))),
-            Status::Slow(s) => return Ok(Some(Err(format!("it took more than {s:.0} s")))),
+        if let Status::Slow(s) = run.status {
+            return Ok(Some(Err(format!("it took more than {s:.0} s"))));
+        }
+        if let Some(why) = run.status.failure() {
+            return Ok(Some(Err(why)));
         }
         let place = self.launcher.place(&sets, seed);
         Ok(Some(match &self.output {

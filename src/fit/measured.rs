@@ -6,6 +6,27 @@ use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
 use fretwork_study::fit::residuals::Measurement;
 use std::path::Path;
 
+fn open(path: &Path) -> csv::Result<csv::Reader<std::fs::File>> {
+    csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(path)
+}
+
+fn without_unit(heading: &str) -> &str {
+    heading.split(" [").next().unwrap_or(heading).trim()
+}
+
+/// The heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot be read.
+pub fn heading(path: &Path, column: &str) -> String {
+    let found = open(path).ok().and_then(|mut reader| {
+        let headings = reader.headers().ok()?;
+        let own = headings.iter().find(|h| without_unit(h) == column)?;
+        Some(own.to_owned())
+    });
+    found.unwrap_or_else(|| column.to_owned())
+}
+
 /// Reads a measured curve, and its largest distance from 0, which sets the distance of branches. Lines that begin with `#` are comments, headings may have a unit, `stress [MPa]`.
 ///
 /// # Errors
@@ -17,15 +38,11 @@ pub fn read(
     along: AlongSpec,
 ) -> Result<(Measurement, f64), FitError> {
     let fail = |why: String| FitError::Usage(format!("{}: {why}", path.display()));
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path)
-        .map_err(|e| fail(e.to_string()))?;
+    let mut reader = open(path).map_err(|e| fail(e.to_string()))?;
     let headings = reader.headers().map_err(|e| fail(e.to_string()))?;
     let names: Vec<String> = headings
         .iter()
-        .map(|h| h.split(" [").next().unwrap_or(h).trim().to_owned())
+        .map(|h| without_unit(h).to_owned())
         .collect();
     let place = |column: &str| {
         let place = names.iter().position(|n| n == column);
@@ -103,6 +120,8 @@ mod tests {
             std::env::temp_dir().join(format!("fretwork-measured-{}.csv", std::process::id()));
         let text = "# a shear test\nu [mm], tau [MPa], s\n0, 0, 1\n0.1, 50, 2\n0.2, -80, 3\n";
         std::fs::write(&path, text).unwrap();
+        assert_eq!(heading(&path, "tau"), "tau [MPa]");
+        assert_eq!(heading(&path, "s"), "s");
         let spec = |y: &str, sigma| MeasuredSpec {
             file: path.clone(),
             x: "u".into(),

@@ -39,7 +39,7 @@ pub enum HalfStep {
     Moves {
         /// Parameters with half the step; `None` for one at an end of its range, and for one that is not determined.
         parameters: Vec<Option<Moved>>,
-        /// Parameters that move by more than half the half-width of their intervals, and more than runs scatter.
+        /// Parameters that move by more than an eighth of the half-width of their intervals, and more than runs scatter.
         beyond: Vec<usize>,
     },
     /// A run with half the step failed, for this reason.

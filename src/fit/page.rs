@@ -1,6 +1,7 @@
 //! What a fit says: lines for the terminal, the page `fit.html` and the picture `fit.png`.
 
 use super::evaluate::Tests;
+use super::measured::heading;
 use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
 use super::spec::{ReadFit, TestSpec};
@@ -101,7 +102,7 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
                 let unit = &read.spec.parameters[i].unit;
                 let half = parameters[i].map_or(String::new(), moved_text);
                 out.push(format!(
-                    "STEP NOT SMALL: with half the step {} would be {half} instead of {} {unit}, a change by more than half the half-width of its interval; take a smaller step (`time.step` in `set` of the tests)",
+                    "STEP NOT SMALL: with half the step {} would be {half} instead of {} {unit}, a change by more than an eighth of the half-width of its interval; take a smaller step (`time.step` in `set` of the tests)",
                     e.name, number(e.value, 4)
                 ));
             }
@@ -197,7 +198,11 @@ pub fn answer(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -
 /// Axes of a test: names of abscissae and values.
 fn axes(read: &ReadFit, test: usize) -> (String, String) {
     match &read.spec.tests[test] {
-        TestSpec::Curve { measured, .. } => (measured.x.clone(), measured.y.clone()),
+        TestSpec::Curve { measured, .. } => {
+            let file = read.beside(&measured.file);
+            let of = |column: &str| heading(&file, column);
+            (of(&measured.x), of(&measured.y))
+        }
         TestSpec::Value { output, .. } => (String::new(), output.clone()),
     }
 }

@@ -10,10 +10,26 @@ use std::path::Path;
 pub enum Status {
     /// It finished, and can be compared.
     Done,
-    /// It failed, was rejected or is not trustworthy: reason.
+    /// Its case was refused: reason.
+    Refused(String),
+    /// It failed: reason.
     Failed(String),
+    /// It finished, and is beyond the limits: reason.
+    Rejected(String),
     /// It was stopped after this many seconds, since it took longer than it may.
     Slow(f64),
+}
+
+impl Status {
+    /// Reason why there is nothing to compare, unless it is done or was too slow.
+    pub fn failure(&self) -> Option<String> {
+        match self {
+            Self::Refused(why) => Some(format!("refused: {why}")),
+            Self::Failed(why) => Some(format!("failed: {why}")),
+            Self::Rejected(why) => Some(why.clone()),
+            Self::Done | Self::Slow(_) => None,
+        }
+    }
 }
 
 /// Limits beyond which a run is not trusted.
@@ -50,9 +66,6 @@ pub(super) struct StoredRun {
     slow: Option<f64>,
 }
 
-/// Begins the reason of a run whose case was refused.
-const REFUSED: &str = "refused:";
-
 /// A run that ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finished {
@@ -78,12 +91,7 @@ impl Finished {
     /// Whether it says something of the case: also that it is refused, or takes too long. Otherwise it was ended by a signal, could
     /// not write, or left nothing.
     pub fn is_result(&self) -> bool {
-        !self.temporary
-            || match &self.status {
-                Status::Slow(_) => true,
-                Status::Failed(why) => why.starts_with(REFUSED),
-                Status::Done => false,
-            }
+        !self.temporary || matches!(self.status, Status::Slow(_) | Status::Refused(_))
     }
 }
 
@@ -137,12 +145,12 @@ impl StoredRun {
         let temporary = self.temporary();
         let status = match self.exit {
             _ if self.slow.is_some() => Status::Slow(self.slow.unwrap_or_default()),
-            0 => self.rejection(limits).map_or(Status::Done, Status::Failed),
+            0 => self
+                .rejection(limits)
+                .map_or(Status::Done, Status::Rejected),
+            2 => Status::Refused(self.said),
             -1 => Status::Failed("ended by a signal".into()),
-            code => {
-                let what = if code == 2 { REFUSED } else { "failed:" };
-                Status::Failed(format!("{what} {}", self.said))
-            }
+            _ => Status::Failed(self.said),
         };
         Finished {
             status,
@@ -241,7 +249,7 @@ mod tests {
             };
             run(0, "").assess(&limits).status
         };
-        assert!(matches!(status(0.01), Status::Failed(why) if why.contains("3 of 100 steps")));
+        assert!(matches!(status(0.01), Status::Rejected(why) if why.contains("3 of 100 steps")));
         assert_eq!(status(0.05), Status::Done);
         assert!(run(1, "cannot write x: full").temporary() && run(2, "no such mesh").temporary());
         assert!(run(0, "").stopped(9.0).temporary());

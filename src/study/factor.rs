@@ -5,6 +5,9 @@ use crate::runs::spec::{CaseKeys, RangeScale};
 use crate::scene::InputError;
 use fretwork_study::design::scale::Scale;
 
+/// Label of the value that a case has, where its file does not give it.
+pub const AS_IN_THE_CASE: &str = "as in the case";
+
 /// A value that a factor takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value {
@@ -17,6 +20,11 @@ pub struct Value {
 }
 
 impl Value {
+    /// Whether it is that of the case as it is, and the case does not tell it.
+    pub fn is_unknown(&self) -> bool {
+        self.label == AS_IN_THE_CASE && self.number.is_none() && self.sets.is_empty()
+    }
+
     /// Whether it is the same number, or without numbers the same text.
     pub fn equals(&self, other: &Self) -> bool {
         match (self.number, other.number) {

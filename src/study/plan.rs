@@ -2,7 +2,7 @@
 
 use super::StudyError;
 use super::design::{Setting, settings};
-use super::factor::{Factor, Kind, Value};
+use super::factor::{AS_IN_THE_CASE, Factor, Kind, Value};
 use super::spec::{DesignSpec, ReadSpec};
 use crate::laws::SearchPath;
 use crate::runs::RunsError;
@@ -349,7 +349,7 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Value {
     let text = own.map_or("", |i| i.value.trim_matches('"'));
     Value {
         label: if text.is_empty() {
-            "as in the case".to_owned()
+            AS_IN_THE_CASE.to_owned()
         } else {
             text.to_owned()
         },

@@ -1,12 +1,13 @@
 //! One table of all runs of a study: what was asked, what came out, and how each run ended. Failed runs are rows too.
 
-use super::analysis::Analysis;
+use super::analysis::{Analysis, numeric};
+use super::factor::Value;
 use super::plan::Plan;
 use crate::runs::quantity::Quantity;
 use crate::runs::stored::{Finished, Status, summary};
 use crate::runs::unit::unit_of;
 use fretwork_study::interval::Mean;
-use serde_json::Value;
+use serde_json::Value as Json;
 
 /// A value of a table.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +67,7 @@ pub struct Counts {
 /// A run of the study as it is on disk.
 struct Row {
     run: Option<Finished>,
-    summary: Value,
+    summary: Json,
     place: std::path::PathBuf,
 }
 
@@ -82,7 +83,7 @@ impl Table {
                 let summary = if run.is_some() {
                     summary(&place)
                 } else {
-                    Value::Null
+                    Json::Null
                 };
                 Row {
                     run,
@@ -113,11 +114,8 @@ impl Table {
         ));
         for (k, factor) in plan.factors.iter().enumerate() {
             let values = points.iter().map(|p| &plan.settings[p.setting - 1][k]);
-            let numbers = values.clone().all(|v| v.number.is_some());
-            let cell = |v: &super::factor::Value| match v.number.filter(|_| numbers) {
-                Some(x) => Cell::Number(x),
-                None => Cell::Text(v.label.clone()),
-            };
+            let numbers = numeric(plan, k);
+            let cell = |v: &Value| factor_cell(v, numbers);
             columns.push(Column {
                 name: factor.name.clone(),
                 unit: plan.unit_of(k),
@@ -207,12 +205,8 @@ impl Table {
         let numbers = (1..=count).map(|k| Cell::Number(k as f64)).collect();
         let mut columns = vec![column("setting".to_owned(), "", Type::Whole, numbers)];
         for (k, factor) in plan.factors.iter().enumerate() {
-            let values = plan.settings.iter().map(|s| &s[k]);
-            let all = values.clone().all(|v| v.number.is_some());
-            let cells = values.map(|v| match v.number.filter(|_| all) {
-                Some(x) => Cell::Number(x),
-                None => Cell::Text(v.label.clone()),
-            });
+            let all = numeric(plan, k);
+            let cells = plan.settings.iter().map(|s| factor_cell(&s[k], all));
             let kind = if all { Type::Real } else { Type::Text };
             columns.push(column(
                 factor.name.clone(),
@@ -296,6 +290,18 @@ impl Table {
         counts
     }
 
+    /// Those of some columns in which no run that is done has anything.
+    pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
+        let empty = |name: &&str| {
+            let cells = self.column(name).map_or(&[][..], |c| &c.cells);
+            cells.iter().all(|cell| *cell == Cell::Unknown)
+        };
+        match self.counts().done {
+            0 => Vec::new(),
+            _ => names.iter().map(String::as_str).filter(empty).collect(),
+        }
+    }
+
     /// In place of a mean of a setting none of whose runs is done: how they ended.
     pub fn without_result(&self, setting: usize, seeds: usize) -> String {
         let cells = self.column("status").map(|c| c.cells.as_slice());
@@ -330,9 +336,9 @@ impl Table {
 }
 
 /// A text of a summary, up to the first sign that ends a name.
-fn regime_of(summary: &Value, name: &str) -> String {
+fn regime_of(summary: &Json, name: &str) -> String {
     let found = name.split('.').try_fold(summary, |v, part| v.get(part));
-    let text = found.and_then(Value::as_str).unwrap_or_default();
+    let text = found.and_then(Json::as_str).unwrap_or_default();
     let end = text.find([':', ',', ';', '(']).unwrap_or(text.len());
     text[..end].trim().to_owned()
 }
@@ -351,11 +357,18 @@ pub fn status(run: Option<&Finished>) -> (&'static str, String) {
     match &run.status {
         Status::Done => (DONE, String::new()),
         Status::Slow(s) => ("stopped", format!("it took more than {s:.0} s")),
-        Status::Failed(why) => match why.split_once(": ") {
-            Some(("refused", rest)) => ("refused", rest.to_owned()),
-            Some(("failed", rest)) => ("failed", rest.to_owned()),
-            _ => ("rejected", why.clone()),
-        },
+        Status::Refused(why) => ("refused", why.clone()),
+        Status::Failed(why) => ("failed", why.clone()),
+        Status::Rejected(why) => ("rejected", why.clone()),
+    }
+}
+
+/// The value of a factor in a column of numbers or of texts.
+fn factor_cell(value: &Value, numbers: bool) -> Cell {
+    match (value.number, numbers) {
+        (Some(x), true) => Cell::Number(x),
+        (None, true) => Cell::Unknown,
+        (_, false) => Cell::Text(value.label.clone()),
     }
 }
 
@@ -364,7 +377,7 @@ fn real(value: Option<f64>) -> Cell {
 }
 
 /// Half-width of the error of step, tolerance and coupling that a run estimates of an output.
-fn own_error(output: &Quantity, summary: &Value) -> Option<f64> {
+fn own_error(output: &Quantity, summary: &Json) -> Option<f64> {
     let own = &summary["uncertainty"][output.name.as_str()];
     let parts = ["step", "tolerance", "coupling"].map(|key| own[key].as_f64());
     let known: Vec<f64> = parts.into_iter().flatten().collect();

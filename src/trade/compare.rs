@@ -281,10 +281,9 @@ impl Compared<'_> {
         let runs: Vec<(u64, &Finished)> = self.runs(setting).collect();
         let n = runs.len().max(1) as f64;
         let failed = runs.iter().find_map(|(seed, r)| match &r.status {
-            Status::Done => None,
-            Status::Failed(why) if self.random => Some(format!("seed {seed}: {why}")),
-            Status::Failed(why) => Some(why.clone()),
             Status::Slow(s) => Some(format!("slower than the reference, stopped after {s:.0} s")),
+            status if self.random => status.failure().map(|why| format!("seed {seed}: {why}")),
+            status => status.failure(),
         });
         let base: BTreeMap<u64, f64> = self.runs(reference).map(|(s, r)| (s, r.seconds)).collect();
         let ratios: Vec<f64> = runs

@@ -264,10 +264,7 @@ impl Study {
                 .retain(|(s, _), r| *s != reference || !matches!(r.status, Status::Slow(_)));
             self.batch(std::slice::from_ref(&reference), stop, watch)?;
             let mut runs = self.done.iter().filter(|((s, _), _)| *s == reference);
-            let why = runs.find_map(|(_, r)| match &r.status {
-                Status::Failed(why) => Some((why.clone(), r.temporary)),
-                _ => None,
-            });
+            let why = runs.find_map(|(_, r)| Some((r.status.failure()?, r.temporary)));
             let Some((why, temporary)) = why else { break };
             let name = reference.name(&self.parameters);
             if temporary {

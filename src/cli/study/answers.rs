@@ -1,10 +1,11 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
 use crate::runs::duration::seconds;
+use crate::runs::stored::summary;
 use crate::study::analysis::{labels, numeric};
 use crate::study::forecast::Forecast;
 use crate::study::plan::{Plan, Point};
-use crate::study::table::{Cell, Table};
+use crate::study::table::{Cell, DONE, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -76,7 +77,8 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
     if !numeric(plan, factor) {
         return None;
     }
-    let values = || plan.settings.iter().map(|s| &s[factor]);
+    let given = |v: &&crate::study::factor::Value| v.number.is_some();
+    let values = || plan.settings.iter().map(|s| &s[factor]).filter(given);
     let number = |v: &&crate::study::factor::Value| v.number.unwrap_or(f64::NAN);
     let low = values().min_by(|a, b| number(a).total_cmp(&number(b)))?;
     let high = values().max_by(|a, b| number(a).total_cmp(&number(b)))?;
@@ -134,7 +136,40 @@ pub fn collected(plan: &Plan, table: &Table) -> String {
         "\n{0}/study.html, {0}/study.png, {0}/table.csv, {0}/table.parquet, {0}/settings.csv",
         plan.out.display()
     );
+    for name in table.without_text(&plan.regimes) {
+        let texts = match first_texts(plan, table).join("`, `") {
+            none if none.is_empty() => String::new(),
+            texts => format!("; there are `{texts}`"),
+        };
+        let _ = write!(
+            out,
+            "\n`{name}` of `regimes` is no text in the summary of any run{texts}"
+        );
+    }
     out
+}
+
+/// The names of the texts in the summary of the first run that is done, which `regimes` may name.
+fn first_texts(plan: &Plan, table: &Table) -> Vec<String> {
+    let cells = |name: &str| table.column(name).map_or(&[][..], |c| &c.cells);
+    let done = |status: &Cell| matches!(status, Cell::Text(text) if text == DONE);
+    let mut runs = cells("status").iter().zip(cells("folder"));
+    let Some((_, Cell::Text(folder))) = runs.find(|(status, _)| done(status)) else {
+        return Vec::new();
+    };
+    let summary = summary(&plan.launcher.folder.join(folder));
+    let mut names = Vec::new();
+    for (key, value) in summary.as_object().into_iter().flatten() {
+        match value {
+            Value::String(_) => names.push(key.clone()),
+            Value::Object(parts) => {
+                let texts = parts.iter().filter(|(_, v)| v.is_string());
+                names.extend(texts.map(|(part, _)| format!("{key}.{part}")));
+            }
+            _ => {}
+        }
+    }
+    names
 }
 
 /// The table as JSON: columns with units, rows, and counts.

@@ -135,9 +135,12 @@ pub fn labels(plan: &Plan, factor: usize) -> Vec<&str> {
     all.filter(|label| seen.insert(*label)).collect()
 }
 
-/// Whether all values of a factor are numbers.
+/// Whether all values of a factor are numbers; that of the case as it is may be unknown, where it is a default that the file does not
+/// give.
 pub fn numeric(plan: &Plan, factor: usize) -> bool {
-    plan.settings.iter().all(|s| s[factor].number.is_some())
+    let values = plan.settings.iter().map(|s| &s[factor]);
+    let mut given = values.filter(|v| !v.is_unknown()).peekable();
+    given.peek().is_some() && given.all(|v| v.number.is_some())
 }
 
 /// Whether a factor is spread evenly in its logarithm.

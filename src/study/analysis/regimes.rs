@@ -87,8 +87,10 @@ fn map(plan: &Plan, shown: &[Vec<(String, usize)>]) -> Option<RegimeMap> {
     let mut places: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for (setting, shown) in plan.settings.iter().zip(shown) {
         let runs: usize = shown.iter().map(|(_, runs)| runs).sum();
-        let x = setting[first].number.unwrap_or(f64::NAN);
-        let y = second.and_then(|f| setting[f].number).unwrap_or(0.0);
+        let place = |axis: Option<usize>| axis.map_or(Some(0.0), |f| setting[f].number);
+        let Some((x, y)) = place(Some(first)).zip(place(second)) else {
+            continue;
+        };
         for (regime, _) in shown.iter().filter(|(_, own)| 2 * own >= runs) {
             match places.iter_mut().find(|(name, _)| name == regime) {
                 Some(known) => known.1.push((x, y)),

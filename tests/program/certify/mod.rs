@@ -230,6 +230,24 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
+/// Whether a law converges does not depend on where within a step its bond breaks: every energy of the rate law, also where it breaks
+/// soon after its onset.
+#[test]
+fn convergence_is_not_a_matter_of_chance() {
+    let path = SearchPath::new(&[]);
+    let open = |kind| Loaded::with_defaults(path.find(kind, "mac").unwrap());
+    let (cohesion, damage) = (open(Kind::COHESION), open(Kind::DAMAGE));
+    assert_eq!(damage.plugin.parameters[0].name, "w");
+    for k in 0..40 {
+        let mut values = damage.parameters.clone();
+        values[0] = 0.05 * 1.07f64.powi(k);
+        let found = certify_parameters(&damage.plugin, &values, Some(&cohesion), &path).unwrap();
+        let line = found.lines.iter().find(|l| l.check == "convergence");
+        let order = line.unwrap().number;
+        assert!((0.9..2.5).contains(&order), "w = {}: {order}", values[0]);
+    }
+}
+
 #[test]
 fn wrong_laws_fail_their_line_and_no_other() {
     let folder = std::env::temp_dir().join(format!("fretwork-certify-{}", std::process::id()));

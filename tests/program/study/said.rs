@@ -130,3 +130,37 @@ fn designs_have_their_points() {
     let study = folder.run();
     assert_eq!(numbers(&study, "friction"), [0.3, 0.1, 0.5]);
 }
+
+/// The value of a case that its file does not give, a default of a law, is unknown; the levels beside it are numbers.
+#[test]
+fn levels_beside_a_default_are_numbers() {
+    let folder = Folder::new("default");
+    folder.study(
+        r#"Values(name: "bounce", key: "interfaces.all.parameters.contact.restitution_n", values: [0.3, 0.6])"#,
+        "design: OneAtATime",
+    );
+    let study = folder.run();
+    let bounce = values(&study, "bounce");
+    assert!(bounce[0].is_null(), "{bounce:?}");
+    assert_eq!(numbers(&study, "bounce")[1..], [0.3, 0.6]);
+    let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
+    assert!(page.contains("The other factors as in the case"));
+}
+
+/// A misspelled regime is told with the texts that there are; a right one is not.
+#[test]
+fn a_regime_that_no_run_has_is_told() {
+    let folder = Folder::new("regime");
+    let said = |name: &str| {
+        folder.study(&mu("0.3"), &format!("regimes: [\"{name}\"]"));
+        let output = folder.call(&["run", "study.ron", "--out", "out"]);
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let wrong = said("trustworth");
+    assert!(
+        wrong.contains("`trustworth` of `regimes` is no text in the summary"),
+        "{wrong}"
+    );
+    assert!(wrong.contains("there are `"), "{wrong}");
+    assert!(!said("identity").contains("is no text"));
+}
