@@ -14,12 +14,13 @@ mod polygons;
 mod published;
 mod row;
 mod sample;
+mod smallest_particle;
 mod soft_third_body;
 mod table;
 mod third_body;
 mod wet_spheres;
 
-use comparison::{Comparison, Failure, Results};
+use comparison::{Comparison, Failure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -32,14 +33,7 @@ const ALL: [Comparison; 8] = [
     polygons::COMPARISON,
     soft_third_body::COMPARISON,
     wet_spheres::COMPARISON,
-    // Described only: nothing is run.
-    Comparison {
-        name: "smallest_particle",
-        title: "Smallest wear particle",
-        studies: &[],
-        published: true,
-        show: |_| Ok(Results::default()),
-    },
+    smallest_particle::COMPARISON,
 ];
 
 struct Options {

@@ -60,11 +60,9 @@ impl Section {
             section.studies.push(((*study).to_owned(), table.clone()));
             inputs.tables.insert((*study).to_owned(), table);
         }
-        if !comparison.studies.is_empty() {
-            match (comparison.show)(&inputs) {
-                Ok(results) => section.results = Some(results),
-                Err(e) => section.missing.push(e.to_string()),
-            }
+        match (comparison.show)(&inputs) {
+            Ok(results) => section.results = Some(results),
+            Err(e) => section.missing.push(e.to_string()),
         }
         Ok(section)
     }

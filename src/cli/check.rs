@@ -15,6 +15,7 @@ use crate::runs::cost::Trial;
 use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
+use crate::scene::phases::most_steps;
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
@@ -67,8 +68,7 @@ pub type CheckLine = (String, String);
 
 /// The estimated time of a run, from steps that are made for half a second.
 pub fn run_time<S: Steps>(loaded: &Loaded, built: Built<S>) -> CheckLine {
-    let time = &loaded.case.time;
-    let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+    let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     let mut text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
     if loaded.case.accuracy.is_some() {
@@ -98,7 +98,7 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     let (case, s) = (&loaded.case, &built.simulation);
     let mut out = Vec::new();
     let mut line = |label: &str, value: String| out.push((label.to_owned(), value));
-    let steps = (case.time.end / case.time.step).round();
+    let steps = most_steps(case);
     line("dimension", S::D.to_string());
     line(
         "steps",

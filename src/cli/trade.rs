@@ -16,6 +16,7 @@ use crate::runs::randomness::seed_matters;
 use crate::runs::stored::{Limits, Status};
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
+use crate::scene::phases::most_steps;
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
@@ -209,7 +210,7 @@ fn new_study(
             .map(|k| loaded.case.seed.wrapping_add(k))
             .collect(),
         random,
-        steps: (loaded.case.time.end / loaded.case.time.step).ceil(),
+        steps: most_steps(&loaded.case) as f64,
         jobs: args.jobs.into(),
         budget: args.budget,
         done: Ledger::new(),

@@ -5,6 +5,7 @@ use super::plan::{Plan, Point};
 use crate::laws::SearchPath;
 use crate::runs::cost::{RunTime, Trial};
 use crate::scene::build::Built;
+use crate::scene::phases::most_steps;
 use crate::scene::{Loaded, Scene, load};
 use crate::step::Steps;
 
@@ -95,8 +96,7 @@ impl Forecast {
 }
 
 fn trial<S: Steps>(loaded: &Loaded, built: Built<S>) -> Option<RunTime> {
-    let time = &loaded.case.time;
-    let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+    let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     Trial::of(built.simulation, steps).run_time(steps, grains, S::D)
 }

@@ -432,3 +432,29 @@ fn moduli_come_from_the_materials() {
         "{refused}"
     );
 }
+
+/// Damped bonds in tension only on springs, with damage: they open, close, pull while closed and would push while open. What damping takes
+/// closes the ledger with any step.
+#[test]
+fn damped_bonds_on_springs_keep_the_ledger() {
+    for step in [1e-3, 1e-4, 1e-5] {
+        for damping in [1e4, 1e5, 1e6] {
+            let mut s: Simulation<Dim2> = built(
+                r#"contact: "linear-contact", cohesion: "elastic-bond", damage: "linear-softening", bonds: Start, bonds_within: 1e-6"#,
+                &format!(
+                    r#"stiffness: 1e6, ratio: 0.8, restitution: 0.3, mu: 0.3}},
+                    cohesion: {{"k_n": 1e7, "k_t": 1e7, "d_n": {damping:e}, "d_t": {damping:e}}}, damage: {{"strength": 5e3, "energy": 50.0"#
+                ),
+                step,
+                r#"grains: [List(material: "grain", grains: [
+                    (at: [0.0, 0.05], radius: 0.05, velocity: [0.02, 0.05]), (at: [0.0, 0.15], radius: 0.05, velocity: [-0.03, -0.3])
+                ])],
+                bodies: [(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])])]"#,
+            );
+            steps(&mut s, (0.2 / step) as usize);
+            let e = s.state.energy;
+            assert!(e.viscous > 0.01 * e.initial_kinetic, "{e:?}");
+            assert!(s.state.network.bonds_made() > 0);
+        }
+    }
+}

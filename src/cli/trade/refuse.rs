@@ -8,6 +8,7 @@ use crate::runs::launcher::{Ended, Launcher};
 use crate::runs::offer::{Offer, measure_names};
 use crate::runs::stored::summary;
 use crate::scene::build::Built;
+use crate::scene::phases::most_steps;
 use crate::scene::{Loaded, Scene};
 use crate::step::Steps;
 use crate::trade::TradeError;
@@ -79,8 +80,7 @@ pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Fai
 }
 
 fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
-    let time = &loaded.case.time;
-    let steps = (time.end / time.step - 1e-6).ceil().max(1.0) as u64;
+    let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     let trial = Trial::of(built.simulation, steps);
     let budget = args.budget.as_secs_f64();

@@ -50,7 +50,7 @@ struct BondEnd<S: Space> {
     lost: f64,
     /// Dissipated by friction against sliding and against rotation (J).
     friction: [f64; 2],
-    /// Whether the tension-only normal part was switched on or off within the step.
+    /// Whether a part in tension only is not linear over the step, so that what is lost follows from the stored energy.
     turned: bool,
     /// Length of the change of the opening (m).
     slide: f64,
@@ -126,7 +126,6 @@ impl<S: Space> Opening<'_, S> {
         step: &SolvedStep<'_, S>,
         at: usize,
         normal: &S::Vector,
-        before: &Bond<S>,
         after: &BondAfter<S>,
     ) -> BondEnd<S> {
         let contact_step = &step.contacts[at];
@@ -147,11 +146,10 @@ impl<S: Space> Opening<'_, S> {
             rotation: after.rotation,
             work: [opens, shears, 0.0],
             given: opens + shears,
-            lost: contact_step.lost,
+            lost: contact_step.lost.unwrap_or(0.0),
             friction: [slips, 0.0],
-            // A tension-only bond is not linear across zero opening; its energy there depends on the step.
-            turned: self.source.law.tension_only()
-                && (before.opening_n > 0.0) != (after.opening.0 > 0.0),
+            // What a bond loses that is not linear over the step follows from its stored energy.
+            turned: contact_step.lost.is_none(),
             slide: step.info.h * un.hypot(ut.norm()),
             intact: 0.0,
             damage: 0.0,
@@ -197,8 +195,8 @@ impl LawEvaluator {
                 moment_places,
             };
             let mut ends = Vec::with_capacity(members.len());
-            batch.open_bonds(&opening, members, |at, normal, before, after| {
-                ends.push(opening.end(step, at, normal, before, after));
+            batch.open_bonds(&opening, members, |at, normal, _, after| {
+                ends.push(opening.end(step, at, normal, after));
             })?;
             let given = batch.bond_step.intact.iter().zip(&batch.bond_step.damage);
             for (end, (intact, damage)) in ends.iter_mut().zip(given) {

@@ -16,8 +16,9 @@ pub struct ContactStep<S: Space> {
     pub average: S::Vector,
     /// Whether the unilateral part can carry tension (h c_n > 0).
     pub adheres: bool,
-    /// Work dissipated by the bond's damping and by the time scheme (J).
-    pub lost: f64,
+    /// Work dissipated by the bond's damping and by the time scheme (J); `None` where it follows from the bond's stored energy, see
+    /// [`crate::solve::Elastic::lost`].
+    pub lost: Option<f64>,
     /// Work of the position correction (J).
     pub corrected: f64,
     /// Whether friction is at its bound (slip).

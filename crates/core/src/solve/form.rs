@@ -93,6 +93,29 @@ impl<S: Space> Elastic<S> {
             loss_t: 0.0,
         }
     }
+
+    /// Energy that damping and the time scheme take in a step (J), given the opening at its start (m) and the relative velocity, its average over
+    /// the step and at its end (m/s). `None` for a bond in tension only whose force is not linear over the step: it opens, closes, or would push by
+    /// its damping, and what is lost follows from its stored energy.
+    pub fn lost(
+        &self,
+        solution: &ContactSolution<S>,
+        normal: &S::Vector,
+        opening: f64,
+        [average, after]: [&S::Vector; 2],
+        h: f64,
+    ) -> Option<f64> {
+        let (un, ut) = (normal.dot(average), S::tangential(normal, average));
+        let pulls = self.a_n + self.b_n * normal.dot(after) > 0.0;
+        let normal_part = match (opening > 0.0, opening + h * un > 0.0) {
+            _ if !self.tension_only => self.loss_n * un * un,
+            // It stores nothing in compression, so that all the work of its damping is lost.
+            (false, false) => (solution.unilateral_n - normal.dot(&solution.impulse)) * un,
+            (true, true) if pulls => self.loss_n * un * un,
+            _ => return None,
+        };
+        Some(normal_part + self.loss_t * ut.dot(&ut))
+    }
 }
 
 /// Solution of one contact.

@@ -178,12 +178,14 @@ impl<S: Space> Simulation<S> {
             let (form, solution) = (&forms[k], problem.solution(k));
             let average = *before * (1.0 - theta) + after_all[k] * theta;
             let n = &contact.normal;
-            let lost = form.elastic.map_or(0.0, |e| {
-                let pulls = n.dot(&solution.impulse) != solution.unilateral_n;
-                let (un, ut) = (n.dot(&average), S::tangential(n, &average));
-                let normal = if pulls { e.loss_n * un * un } else { 0.0 };
-                normal + e.loss_t * ut.dot(&ut)
-            });
+            let lost = match &form.elastic {
+                None => Some(0.0),
+                Some(e) => {
+                    let bond = network.bond(contact).filter(|_| e.tension_only);
+                    let opening = bond.map_or(0.0, |b| b.opening_n);
+                    e.lost(&solution, n, opening, [&average, &after_all[k]], h)
+                }
+            };
             // The shift comes from the position correction unless restitution replaced it; a bounce does no
             // correction work.
             let lifts = form.shift_n < 0.0
