@@ -4,7 +4,7 @@
 
 Writes a case for each size of the junction, ductility ratio and packing, runs it (a finished run is not made again), reads the last
 state from `results.h5` (needs h5py) and prints a table of the runs, and one of all runs in the folder that have the same travel, speed and
-step. A changed constant below needs another folder.
+step; writes their outcomes to `table.csv` in that folder, from which the page of the validation is made. A changed constant below needs another folder.
 """
 
 import argparse
@@ -336,7 +336,7 @@ def kind(found):
 
 def summary(found):
     """A row for each size and ratio: how often each outcome came, and means with the smallest and the largest value."""
-    print("\n| D/d | R | D/(R d) | runs | particle | transfer | sheared | particle, D^2 | largest piece otherwise, D^2 | height of fracture, D | peak of Q/(s D) |")
+    print("\n| D/d | R | D/(R d) | runs | particle | transfer | sheared | particle, D^2 | largest turned piece otherwise, D^2 | height of fracture, D | peak of Q/(s D) |")
     print("|" + "---|" * 11)
     def spread(values):
         values = list(values)
@@ -416,10 +416,13 @@ def main():
                     cells = [size, f"{ratio:g}", f"{size / ratio:g}", seed, f"{r['particle']:.2f}", r["grains"], *numbers, f"{r['cpu']:.0f}", " ".join(r["reasons"])]
                     print("| " + " | ".join(str(c) for c in cells) + " |", flush=True)
     # Of all runs that are there with this travel, speed and step.
-    found = []
+    found, rows = [], []
     for kept in sorted(given.out.glob(f"d*_r*_p*_u{given.travel:g}_v{given.speed:g}_h{given.step:g}/outcome.json")):
-        size, ratio = kept.parent.name.split("_")[:2]
+        size, ratio, packing = kept.parent.name.split("_")[:3]
         found.append(((int(size[1:]), float(ratio[1:])), json.loads(kept.read_text())))
+        rows.append([int(size[1:]), float(ratio[1:]), int(packing[1:]), kind(found[-1][1])])
+    with open(given.out / "table.csv", "w", newline="") as file:
+        csv.writer(file).writerows([["size", "ratio", "packing", "outcome"], *rows])
     summary(found)
     shares(found)
     for least in (4, 8):

@@ -15,7 +15,7 @@ use crate::runs::cost::Trial;
 use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
-use crate::scene::phases::most_steps;
+use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
@@ -103,7 +103,12 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     line(
         "steps",
         format!(
-            "{steps} of {:e} s, theta {}{}",
+            "{}{steps} of {:e} s, theta {}{}",
+            if may_end_earlier(case) {
+                "at most "
+            } else {
+                ""
+            },
             case.time.step,
             case.time.theta,
             chosen_steps(case, s)

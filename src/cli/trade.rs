@@ -16,7 +16,7 @@ use crate::runs::randomness::seed_matters;
 use crate::runs::stored::{Limits, Status};
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
-use crate::scene::phases::most_steps;
+use crate::scene::most_steps::most_steps;
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;

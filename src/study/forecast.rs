@@ -5,7 +5,7 @@ use super::plan::{Plan, Point};
 use crate::laws::SearchPath;
 use crate::runs::cost::{RunTime, Trial};
 use crate::scene::build::Built;
-use crate::scene::phases::most_steps;
+use crate::scene::most_steps::most_steps;
 use crate::scene::{Loaded, Scene, load};
 use crate::step::Steps;
 

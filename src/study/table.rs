@@ -292,9 +292,11 @@ impl Table {
 
     /// Those of some columns in which no run that is done has anything.
     pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
+        let cells = |name: &str| self.column(name).map_or(&[][..], |c| &c.cells);
+        let done = |status: &Cell| matches!(status, Cell::Text(text) if text == DONE);
         let empty = |name: &&str| {
-            let cells = self.column(name).map_or(&[][..], |c| &c.cells);
-            cells.iter().all(|cell| *cell == Cell::Unknown)
+            let mut runs = cells(name).iter().zip(cells("status"));
+            !runs.any(|(cell, status)| done(status) && *cell != Cell::Unknown)
         };
         match self.counts().done {
             0 => Vec::new(),

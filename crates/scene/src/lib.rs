@@ -25,6 +25,7 @@ pub mod material;
 pub mod measures;
 pub mod mesh_file;
 pub mod methods;
+pub mod most_steps;
 pub mod phases;
 pub mod processes;
 pub mod profile_file;

@@ -129,34 +129,6 @@ pub fn drives_of(case: &Case, body: &BodySpec) -> Vec<(usize, Dof)> {
     .collect()
 }
 
-/// Largest number of steps of a run: to the end of its phases where all of them have one, at most to `time.end`.
-pub fn most_steps(case: &Case) -> u64 {
-    let time = &case.time;
-    let end = end_of_phases(case).map_or(time.end, |end| end.min(time.end));
-    (end / time.step - 1e-6).ceil().max(1.0) as u64
-}
-
-/// The latest end of the last phase (s); `None` if a phase may last to the end of the run.
-fn end_of_phases(case: &Case) -> Option<f64> {
-    let mut end = 0.0f64;
-    if case.phases.is_empty() {
-        return None;
-    }
-    for (group, times) in groups(case) {
-        for _ in 0..times {
-            for phase in &case.phases[group.clone()] {
-                end = match phase.until.as_ref()? {
-                    Until::Time(at) => end.max(*at),
-                    Until::After(duration) => end + duration,
-                    Until::Steps(steps) => end + *steps as f64 * case.time.step,
-                    Until::AtRest { at_most, .. } => end + (*at_most)?,
-                };
-            }
-        }
-    }
-    Some(end)
-}
-
 /// Checks the phases of a case.
 ///
 /// # Errors
@@ -223,7 +195,7 @@ fn first(case: &Case, k: usize) -> usize {
 }
 
 /// The groups of phases in order, and how often each is run.
-fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
+pub(super) fn groups(case: &Case) -> impl Iterator<Item = (std::ops::Range<usize>, u32)> + '_ {
     let mut groups: Vec<(std::ops::Range<usize>, u32)> = Vec::new();
     for (k, phase) in case.phases.iter().enumerate() {
         let first = first(case, k);
@@ -504,36 +476,4 @@ fn changes<S: Space>(
         open: spec.open.iter().filter_map(|n| place(s, n)).collect(),
         tolerance: spec.tolerance,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::most_steps;
-    use crate::source::Source;
-
-    #[test]
-    fn phases_bound_the_number_of_steps() {
-        let steps = |phases: &str| {
-            let text = format!(
-                r#"(name: "a", dimension: 2, time: (step: 0.1, end: 10.0), materials: {{}}, interfaces: [], phases: [{phases}])"#
-            );
-            most_steps(&Source::from_text("case", &text).parse().unwrap())
-        };
-        assert_eq!(steps(""), 100);
-        assert_eq!(
-            steps(r#"(name: "a", until: After(1.0)), (name: "b", until: Steps(5))"#),
-            15
-        );
-        assert_eq!(steps(r#"(name: "a", until: After(1.0)), (name: "b")"#), 100);
-        let taps = r#"(name: "a", until: After(0.5)), (name: "b", until: AtRest(share: 1e-3, held: 0.1, at_most: 0.5), repeat: (from: "a", times: 3))"#;
-        assert_eq!(steps(taps), 30);
-        assert_eq!(
-            steps(r#"(name: "a", until: AtRest(share: 1e-3, held: 0.1))"#),
-            100
-        );
-        assert_eq!(
-            steps(r#"(name: "a", until: Time(2.0)), (name: "b", until: After(90.0))"#),
-            100
-        );
-    }
 }

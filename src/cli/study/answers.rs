@@ -139,11 +139,11 @@ pub fn collected(plan: &Plan, table: &Table) -> String {
     for name in table.without_text(&plan.regimes) {
         let texts = match first_texts(plan, table).join("`, `") {
             none if none.is_empty() => String::new(),
-            texts => format!("; there are `{texts}`"),
+            texts => format!("; name one of `{texts}`"),
         };
         let _ = write!(
             out,
-            "\n`{name}` of `regimes` is no text in the summary of any run{texts}"
+            "\n`regimes` names `{name}`, which is no text in the summary of any run{texts}"
         );
     }
     out

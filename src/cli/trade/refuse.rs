@@ -8,7 +8,7 @@ use crate::runs::launcher::{Ended, Launcher};
 use crate::runs::offer::{Offer, measure_names};
 use crate::runs::stored::summary;
 use crate::scene::build::Built;
-use crate::scene::phases::most_steps;
+use crate::scene::most_steps::most_steps;
 use crate::scene::{Loaded, Scene};
 use crate::step::Steps;
 use crate::trade::TradeError;

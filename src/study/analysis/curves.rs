@@ -4,6 +4,7 @@ use super::{Data, numeric};
 use crate::study::plan::Plan;
 use crate::study::spec::DesignSpec;
 use fretwork_study::interval::Mean;
+use std::collections::BTreeSet;
 
 /// Lines of a response; of more, the mean over the other factors is shown.
 const LINES: usize = 7;
@@ -33,9 +34,16 @@ pub struct Curve {
 /// The responses to all factors with two numbers or more.
 pub(super) fn responses(data: &Data<'_>) -> Vec<Response> {
     (0..data.plan.factors.len())
-        .filter(|&f| numeric(data.plan, f) && data.labels(f).len() > 1)
+        .filter(|&f| numeric(data.plan, f) && numbers(data.plan, f) > 1)
         .map(|f| response(data, f))
         .collect()
+}
+
+/// Different numbers that a factor takes.
+fn numbers(plan: &Plan, factor: usize) -> usize {
+    let numbers = plan.settings.iter().filter_map(|s| s[factor].number);
+    let different: BTreeSet<u64> = numbers.map(|x| (x + 0.0).to_bits()).collect();
+    different.len()
 }
 
 fn response(data: &Data<'_>, factor: usize) -> Response {
@@ -61,8 +69,13 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
                     .all(|&f| setting[f].label == data.plan.settings[0][f].label)
             };
             let curve = curve(data, factor, String::new(), own);
+            let unknown = data.plan.settings[0][factor].is_unknown();
+            let base = match unknown {
+                true => " The case's own value is a default and is not shown.",
+                false => "",
+            };
             of(
-                format!("The other factors as in the case; {seeds}."),
+                format!("The other factors as in the case; {seeds}.{base}"),
                 vec![curve],
                 false,
             )

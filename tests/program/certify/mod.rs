@@ -238,9 +238,9 @@ fn convergence_is_not_a_matter_of_chance() {
     let open = |kind| Loaded::with_defaults(path.find(kind, "mac").unwrap());
     let (cohesion, damage) = (open(Kind::COHESION), open(Kind::DAMAGE));
     assert_eq!(damage.plugin.parameters[0].name, "w");
-    for k in 0..40 {
+    for k in 0..12 {
         let mut values = damage.parameters.clone();
-        values[0] = 0.05 * 1.07f64.powi(k);
+        values[0] = 0.05 * 1.25f64.powi(k);
         let found = certify_parameters(&damage.plugin, &values, Some(&cohesion), &path).unwrap();
         let line = found.lines.iter().find(|l| l.check == "convergence");
         let order = line.unwrap().number;

@@ -158,9 +158,9 @@ fn a_regime_that_no_run_has_is_told() {
     };
     let wrong = said("trustworth");
     assert!(
-        wrong.contains("`trustworth` of `regimes` is no text in the summary"),
+        wrong.contains("`regimes` names `trustworth`, which is no text in the summary"),
         "{wrong}"
     );
-    assert!(wrong.contains("there are `"), "{wrong}");
+    assert!(wrong.contains("name one of `"), "{wrong}");
     assert!(!said("identity").contains("is no text"));
 }

@@ -285,18 +285,19 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     const COARSEST: u32 = 50;
     const HALVINGS: u32 = 4;
     const REACHES: u32 = 16;
-    /// The golden ratio: its multiples spread evenly over the places within a step, whatever the step.
+    /// Fraction of the golden ratio, whose multiples spread evenly over the places of the onset within a step.
     const SPREAD: f64 = 0.618_033_988_749_894_9;
     let reach = rig.end.map_or(2.0 * rig.onset, |end| {
         (2.0 * rig.onset).min(0.5 * (rig.onset + end))
     });
-    // The error of a pull through an onset or a break depends on where within a step it falls, so that an order of one pull is a matter
-    // of chance: the root mean square over several reaches is not.
+    // The error of a pull depends on where within a step the onset falls, so that the order of one pull is a matter of chance: that of the
+    // root mean square over several reaches is not.
     let mut squares = [0.0f64; HALVINGS as usize];
     let mut scale = f64::MIN_POSITIVE;
     for pull_number in 0..REACHES {
         let place = (f64::from(pull_number) * SPREAD).fract();
-        let reach = reach * (1.0 + place / f64::from(COARSEST));
+        // The onset moves over one of the coarsest steps.
+        let reach = reach * (1.0 + place * reach / (rig.onset * f64::from(COARSEST)));
         let mut energies = Vec::new();
         for halving in 0..=HALVINGS {
             let n = COARSEST << halving;
@@ -323,7 +324,7 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     }
     let order = (first / last).log2() / f64::from(HALVINGS - 1);
     let text = format!(
-        "order in the step of the energy of a pull, mean of {REACHES} pulls, last relative change {last:.1e}; at least 0.7"
+        "order in the step of the energy of a pull, from the root mean square of {REACHES} pulls, last relative change {last:.1e}; at least 0.7"
     );
     Ok(Line::judged("convergence", order >= 0.7, order, text))
 }

@@ -46,12 +46,11 @@ struct BondEnd<S: Space> {
     work: [f64; 3],
     /// Work that its impulse did (J).
     given: f64,
-    /// Part of it dissipated by damping and by the time scheme (J).
-    lost: f64,
+    /// Part of it dissipated by damping and by the time scheme (J); `None` where it follows from the stored energy, see
+    /// [`crate::solve::Elastic::lost`].
+    lost: Option<f64>,
     /// Dissipated by friction against sliding and against rotation (J).
     friction: [f64; 2],
-    /// Whether a part in tension only is not linear over the step, so that what is lost follows from the stored energy.
-    turned: bool,
     /// Length of the change of the opening (m).
     slide: f64,
     /// Energy of the undamaged bond per area (J/m^2).
@@ -146,10 +145,8 @@ impl<S: Space> Opening<'_, S> {
             rotation: after.rotation,
             work: [opens, shears, 0.0],
             given: opens + shears,
-            lost: contact_step.lost.unwrap_or(0.0),
+            lost: contact_step.lost,
             friction: [slips, 0.0],
-            // What a bond loses that is not linear over the step follows from its stored energy.
-            turned: contact_step.lost.is_none(),
             slide: step.info.h * un.hypot(ut.norm()),
             intact: 0.0,
             damage: 0.0,
@@ -159,7 +156,7 @@ impl<S: Space> Opening<'_, S> {
             end.work[2] = (moment.moment - moment.friction).dot(&moment_step.spin);
             end.friction[1] = moment.friction.dot(&moment_step.spin);
             end.given += end.work[2];
-            end.lost += moment_step.lost;
+            end.lost = end.lost.map(|lost| lost + moment_step.lost);
         }
         end
     }
@@ -450,12 +447,8 @@ fn store_bonds<S: Space>(
             let ratio = share(bond.step_damage) / share(bond.damage);
             (bond.energy * ratio, intact * share(bond.step_damage))
         };
-        // Where the energy is defined by the law, any imbalance appears in the residual.
-        let viscous = if end.turned {
-            -end.given - (stop - start)
-        } else {
-            end.lost
-        };
+        // Where the loss is known by itself, a wrong energy of the law appears in the residual.
+        let viscous = end.lost.unwrap_or(-end.given - (stop - start));
         let kept = if damage >= 1.0 {
             0.0
         } else {

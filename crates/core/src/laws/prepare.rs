@@ -473,6 +473,7 @@ impl Batch {
             b_n: h * area * (h * theta * theta * kn + theta * dn),
             b_t: h * area * (h * theta * theta * kt + theta * dt),
             tension_only: law.tension_only(),
+            damped: dn > 0.0,
             // Damping, and the dissipation of the theta-scheme beyond the change of k x^2/2.
             loss_n: h * area * (dn + h * (theta - 0.5) * kn),
             loss_t: h * area * (dt + h * (theta - 0.5) * kt),

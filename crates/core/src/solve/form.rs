@@ -73,6 +73,8 @@ pub struct Elastic<S: Space> {
     pub b_t: f64,
     /// Whether the normal part acts in tension only.
     pub tension_only: bool,
+    /// Whether the normal part has damping.
+    pub damped: bool,
     /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t |u_t,th|^2
     /// (kg).
     pub loss_n: f64,
@@ -89,6 +91,7 @@ impl<S: Space> Elastic<S> {
             b_n: 0.0,
             b_t: 0.0,
             tension_only: false,
+            damped: false,
             loss_n: 0.0,
             loss_t: 0.0,
         }
@@ -106,13 +109,19 @@ impl<S: Space> Elastic<S> {
         h: f64,
     ) -> Option<f64> {
         let (un, ut) = (normal.dot(average), S::tangential(normal, average));
-        let pulls = self.a_n + self.b_n * normal.dot(after) > 0.0;
-        let normal_part = match (opening > 0.0, opening + h * un > 0.0) {
-            _ if !self.tension_only => self.loss_n * un * un,
+        let pulls = !self.tension_only || self.a_n + self.b_n * normal.dot(after) > 0.0;
+        let opens = [opening > 0.0, opening + h * un > 0.0];
+        let normal_part = if self.tension_only && opens[0] != opens[1] {
+            return None;
+        } else if self.tension_only && self.damped && !opens[0] {
             // It stores nothing in compression, so that all the work of its damping is lost.
-            (false, false) => (solution.unilateral_n - normal.dot(&solution.impulse)) * un,
-            (true, true) if pulls => self.loss_n * un * un,
-            _ => return None,
+            (solution.unilateral_n - normal.dot(&solution.impulse)) * un
+        } else if pulls {
+            self.loss_n * un * un
+        } else if self.damped {
+            return None;
+        } else {
+            0.0
         };
         Some(normal_part + self.loss_t * ut.dot(&ut))
     }
