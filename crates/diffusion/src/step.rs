@@ -1,0 +1,224 @@
+//! One step of heat conduction, implicit in time.
+
+use crate::half_space::Eliminated;
+use crate::solve::System;
+use crate::{DiffusionError, Edge, Graph, Node, Store};
+
+/// The heat of a step (J; J/m in 2D): `sources` + `surroundings` = `stored` + `fixed` + `residual`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Put in by sources, also into nodes of fixed temperature.
+    pub sources: f64,
+    /// Taken in from surroundings.
+    pub surroundings: f64,
+    /// Stored in nodes.
+    pub stored: f64,
+    /// Gone into nodes of fixed temperature.
+    pub fixed: f64,
+    /// What does not add up: rounding, of temperatures T by T 1e-16, so that through a conductance G to a node of fixed temperature G h T 1e-16 may
+    /// flow unseen.
+    pub residual: f64,
+}
+
+/// Advances the temperatures of all nodes by a step (s), with heat `sources` (W) of each node that are constant over it; returns the heat of the
+/// step.
+///
+/// The scheme is (C/h) (T' - T) = -L (T + theta (T' - T)) + Q. With theta = 1 it is of first order, and no temperature leaves the
+/// range of the others without sources, whatever the step; with theta = 1/2 it is of second order, and oscillates for steps beyond the
+/// thermal times of contacts.
+///
+/// # Errors
+/// A conductance, capacity or source that may not occur, a theta outside of 1/2 to 1, a system that cannot be solved. Temperatures are then as before.
+pub fn step(
+    nodes: &mut [Node],
+    graph: &Graph,
+    sources: &[f64],
+    h: f64,
+    theta: f64,
+) -> Result<Balance, DiffusionError> {
+    check(nodes, graph, sources, h, theta)?;
+    let w = theta * h;
+    // Unknowns are the nodes whose temperature is not fixed.
+    let mut unknown = vec![u32::MAX; nodes.len()];
+    let mut list: Vec<usize> = Vec::new();
+    for (k, node) in nodes.iter().enumerate() {
+        if node.store != Store::Fixed {
+            unknown[k] = list.len() as u32;
+            list.push(k);
+        }
+    }
+    let (mut own, mut right) = (vec![0.0; list.len()], vec![0.0; list.len()]);
+    let mut below: Vec<Option<Eliminated>> = vec![None; list.len()];
+    for (u, &k) in list.iter().enumerate() {
+        let node = &nodes[k];
+        match &node.store {
+            Store::Fixed => {}
+            Store::Lumped(capacity) => own[u] += capacity / w,
+            Store::HalfSpace(space) => {
+                let eliminated = space.eliminate(w);
+                own[u] += eliminated.diagonal;
+                right[u] += eliminated.right;
+                below[u] = Some(eliminated);
+            }
+        }
+        own[u] += node.surroundings;
+        right[u] += sources[k] + node.surroundings * (node.ambient - node.temperature);
+    }
+    let mut inner: Vec<Edge> = Vec::with_capacity(graph.edges.len());
+    for e in &graph.edges {
+        let [a, b] = e.nodes.map(|n| n as usize);
+        let flow = e.conductance * (nodes[b].temperature - nodes[a].temperature);
+        let [ua, ub] = [unknown[a], unknown[b]];
+        for (u, flow) in [(ua, flow), (ub, -flow)] {
+            if u != u32::MAX {
+                right[u as usize] += flow;
+            }
+        }
+        match (ua == u32::MAX, ub == u32::MAX) {
+            (false, false) if ua != ub => inner.push(Edge {
+                nodes: [ua, ub],
+                conductance: e.conductance,
+            }),
+            (false, true) => own[ua as usize] += e.conductance,
+            (true, false) => own[ub as usize] += e.conductance,
+            _ => {}
+        }
+    }
+    let change = System {
+        own: &own,
+        edges: &inner,
+        right: &right,
+    }
+    .solve()?;
+    Ok(advance(
+        nodes,
+        graph,
+        sources,
+        &Solved {
+            unknown: &unknown,
+            list: &list,
+            change: &change,
+            below: &below,
+        },
+        h,
+        theta,
+    ))
+}
+
+/// The solution of a step: changes of the unknowns at theta of the step.
+struct Solved<'a> {
+    unknown: &'a [u32],
+    list: &'a [usize],
+    change: &'a [f64],
+    below: &'a [Option<Eliminated>],
+}
+
+fn advance(
+    nodes: &mut [Node],
+    graph: &Graph,
+    sources: &[f64],
+    solved: &Solved<'_>,
+    h: f64,
+    theta: f64,
+) -> Balance {
+    let change_of = |k: usize| match solved.unknown[k] {
+        u32::MAX => 0.0,
+        u => solved.change[u as usize],
+    };
+    let mut balance = Balance::default();
+    for (k, node) in nodes.iter().enumerate() {
+        balance.sources += h * sources[k];
+        let fixed = node.store == Store::Fixed;
+        if fixed {
+            balance.fixed += h * sources[k];
+        } else {
+            let reached = node.temperature + change_of(k);
+            balance.surroundings += h * node.surroundings * (node.ambient - reached);
+        }
+    }
+    for e in &graph.edges {
+        let [a, b] = e.nodes.map(|n| n as usize);
+        let reached = |k: usize| nodes[k].temperature + change_of(k);
+        let flow = h * e.conductance * (reached(b) - reached(a));
+        for (k, flow) in [(a, flow), (b, -flow)] {
+            if nodes[k].store == Store::Fixed {
+                balance.fixed += flow;
+            }
+        }
+    }
+    for (u, &k) in solved.list.iter().enumerate() {
+        let node = &mut nodes[k];
+        let change = solved.change[u];
+        match &mut node.store {
+            Store::Fixed => {}
+            Store::Lumped(capacity) => balance.stored += *capacity * (change / theta),
+            Store::HalfSpace(space) => {
+                let before = space.heat(0.0);
+                if let Some(eliminated) = &solved.below[u] {
+                    space.advance(eliminated, change, theta);
+                }
+                balance.stored += space.heat(0.0) - before;
+            }
+        }
+        node.temperature += change / theta;
+        if let Store::HalfSpace(space) = &node.store {
+            node.temperature = space.temperature[0];
+        }
+    }
+    balance.residual = balance.sources + balance.surroundings - balance.stored - balance.fixed;
+    balance
+}
+
+fn check(
+    nodes: &[Node],
+    graph: &Graph,
+    sources: &[f64],
+    h: f64,
+    theta: f64,
+) -> Result<(), DiffusionError> {
+    graph.check()?;
+    let refuse = |what, node, value, expected| {
+        Err(DiffusionError::Number {
+            what,
+            node,
+            value,
+            expected,
+        })
+    };
+    if !(h > 0.0 && h.is_finite()) {
+        return refuse("the time step", 0, h, "a number above zero");
+    }
+    if !(0.5..=1.0).contains(&theta) {
+        return refuse("theta", 0, theta, "1/2 to 1");
+    }
+    for (k, (node, source)) in nodes.iter().zip(sources).enumerate() {
+        if !source.is_finite() {
+            return refuse("the heat source", k, *source, "a finite number");
+        }
+        if !node.temperature.is_finite() {
+            return refuse("the temperature", k, node.temperature, "a finite number");
+        }
+        if !(node.surroundings >= 0.0 && node.surroundings.is_finite()) {
+            return refuse(
+                "the conductance to surroundings",
+                k,
+                node.surroundings,
+                "a finite number, not negative",
+            );
+        }
+        let capacity = match &node.store {
+            Store::Fixed => continue,
+            Store::Lumped(capacity) => *capacity,
+            Store::HalfSpace(space) => space.area,
+        };
+        if !(capacity > 0.0 && capacity.is_finite()) {
+            return refuse(
+                "the heat capacity or the area",
+                k,
+                capacity,
+                "a number above zero",
+            );
+        }
+    }
+    Ok(())
+}
