@@ -16,6 +16,7 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod error;
+pub mod flash;
 pub mod graph;
 pub mod half_space;
 pub mod node;
@@ -24,6 +25,7 @@ pub mod steady;
 pub mod step;
 
 pub use error::DiffusionError;
+pub use flash::Conductor;
 pub use graph::{Edge, Graph};
 pub use half_space::{Grid, HalfSpace};
 pub use node::{Node, Store};
