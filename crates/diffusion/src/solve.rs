@@ -79,7 +79,7 @@ impl System<'_> {
         for _ in 0..MOST {
             self.product(&p, &mut ap);
             let curvature = dot(&p, &ap);
-            if !(curvature > 0.0) {
+            if curvature <= 0.0 || curvature.is_nan() {
                 return None;
             }
             let length = rz / curvature;
