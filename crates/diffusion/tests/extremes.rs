@@ -109,7 +109,8 @@ fn sources_are_stored() {
 #[test]
 fn wrong_numbers_are_refused_and_change_nothing() {
     let (nodes, graph) = scene(3);
-    let refused = |change: &dyn Fn(&mut Vec<Node>, &mut Graph, &mut Vec<f64>)| {
+    type Change<'a> = &'a dyn Fn(&mut [Node], &mut Graph, &mut [f64]);
+    let refused = |change: Change<'_>| {
         let (mut nodes, mut graph, mut sources) = (nodes.clone(), graph.clone(), vec![0.0; 203]);
         change(&mut nodes, &mut graph, &mut sources);
         let before = nodes.clone();
