@@ -12,6 +12,20 @@
 //!
 //! or with potentials V (V), conductances (S) and currents I (A) the same without the left side. In two dimensions all of C, G and Q
 //! are per metre of depth.
+//!
+//! ```
+//! use fretwork_diffusion::{Edge, Graph, Node, Store, step};
+//!
+//! // A grain of 1 J/K at 400 K on a wall of 300 K, joined by 0.1 W/K, with 2 W of frictional heat: it tends to 320 K.
+//! let mut nodes = [Node::new(400.0, Store::Lumped(1.0)), Node::new(300.0, Store::Fixed)];
+//! let graph = Graph { nodes: 2, edges: vec![Edge { nodes: [0, 1], conductance: 0.1 }] };
+//! for _ in 0..300 {
+//!     let balance = step(&mut nodes, &graph, &[2.0, 0.0], 1.0, 1.0)?;
+//!     assert!(balance.residual.abs() < 1e-10);
+//! }
+//! assert!((nodes[0].temperature - 320.0).abs() < 1e-9);
+//! # Ok::<(), fretwork_diffusion::DiffusionError>(())
+//! ```
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
