@@ -380,6 +380,7 @@ mod tests {
                 b_n: x(0.0, 1.0),
                 b_t: x(0.0, 1.0),
                 tension_only: case % 3 == 0,
+                damped: false,
                 loss_n: 0.0,
                 loss_t: 0.0,
             };

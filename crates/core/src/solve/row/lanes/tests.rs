@@ -76,6 +76,7 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
         b_n: 0.5 + 0.5 * wave(34, pair),
         b_t: 0.5 + 0.4 * wave(35, pair),
         tension_only: pair.is_multiple_of(2),
+        damped: false,
         loss_n: 0.0,
         loss_t: 0.0,
     };
