@@ -50,13 +50,9 @@ mod tests {
     fn phases_bound_the_number_of_steps() {
         let steps = |phases: &str| {
             let text = format!(
-                r#"(name: "a", dimension: 2, time: (step: 0.1, end: 10.0), materials: {{}}, interfaces: [], phases: [PHASES])"#
+                r#"(name: "a", dimension: 2, time: (step: 0.1, end: 10.0), materials: {{}}, interfaces: [], phases: [{phases}])"#
             );
-            most_steps(
-                &Source::from_text("case", &text.replace("PHASES", phases))
-                    .parse()
-                    .unwrap(),
-            )
+            most_steps(&Source::from_text("case", &text).parse().unwrap())
         };
         assert_eq!(steps(""), 100);
         assert_eq!(
