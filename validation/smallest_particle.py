@@ -40,17 +40,15 @@ WAVE = math.sqrt(MODULUS / DENSITY)
 
 def pairs_near(x, y, width, height, reach):
     """Pairs closer than `reach` in a cell that is periodic both ways."""
+    def near(i, j):
+        dx, dy = x[i] - x[j], y[i] - y[j]
+        dx -= width * round(dx / width)
+        dy -= height * round(dy / height)
+        return dx * dx + dy * dy < reach * reach
+
     nx, ny = max(1, int(width / reach)), max(1, int(height / reach))
     if nx < 3 or ny < 3:
-        found = []
-        for i in range(len(x)):
-            for j in range(i):
-                dx, dy = x[i] - x[j], y[i] - y[j]
-                dx -= width * round(dx / width)
-                dy -= height * round(dy / height)
-                if dx * dx + dy * dy < reach * reach:
-                    found.append((i, j))
-        return found
+        return [(i, j) for i in range(len(x)) for j in range(i) if near(i, j)]
     cells = {}
     for i in range(len(x)):
         key = (int(x[i] / width * nx) % nx, int(y[i] / height * ny) % ny)
@@ -61,12 +59,7 @@ def pairs_near(x, y, width, height, reach):
             other = cells.get(((cx + ox) % nx, (cy + oy) % ny), ())
             for i in own:
                 for j in other:
-                    if (ox, oy) == (0, 0) and j >= i:
-                        continue
-                    dx, dy = x[i] - x[j], y[i] - y[j]
-                    dx -= width * round(dx / width)
-                    dy -= height * round(dy / height)
-                    if dx * dx + dy * dy < reach * reach:
+                    if ((ox, oy) != (0, 0) or j < i) and near(i, j):
                         found.append((i, j))
     return found
 

@@ -4,34 +4,21 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+/// What a crate of mathematics, numbers in and numbers out, does without.
+const BESIDE_NUMBERS: [&str; 7] = [
+    "rust-hdf5",
+    "clap",
+    "ron",
+    "ariadne",
+    "csv",
+    "plotters",
+    "libloading",
+];
+
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
 const LAYERS: [(&str, &[&str], &[&str]); 10] = [
-    (
-        "diffusion",
-        &[],
-        &[
-            "rust-hdf5",
-            "clap",
-            "ron",
-            "ariadne",
-            "csv",
-            "plotters",
-            "libloading",
-        ],
-    ),
-    (
-        "study",
-        &[],
-        &[
-            "rust-hdf5",
-            "clap",
-            "ron",
-            "ariadne",
-            "csv",
-            "plotters",
-            "libloading",
-        ],
-    ),
+    ("diffusion", &[], &BESIDE_NUMBERS),
+    ("study", &[], &BESIDE_NUMBERS),
     (
         "core",
         &[],
