@@ -1,7 +1,7 @@
 /* fretwork.h - the C interface between Fretwork and its law plugins, version 1.1.
  *
  * A plugin is a shared library named libfretwork_KIND_NAME.so (KIND one of contact, cohesion, damage,
- * wear; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
+ * wear, transport; NAME with '-' written '_') which exports one function, fretwork_plugin(), returning a static
  * table. The rules:
  *  - the host owns all memory; nothing is allocated on one side and freed on the other; what the table
  *    points to must live as long as the program;
@@ -19,7 +19,8 @@
  *    then of the cohesion law; with implicit coupling again after every solve of the step;
  *  - after the step is solved: energy, then prepare of the cohesion at the new openings with D = 0, which
  *    gives energy_intact, intact_* and intact_moment_*; commit of the cohesion; commit of the damage law;
- *    commit of the contact law if it has internal variables; commit of the wear law. With implicit
+ *    commit of the contact law if it has internal variables; commit of the wear law; commit of the
+ *    transport law, whose conductances the heat of this step flows through. With implicit
  *    coupling energy, prepare and the two commits are also called for trials, whose results the host
  *    discards: a law must not depend on this.
  * A cohesion law with FW_FLAG_OPENING is called for intact bonds; without it, for every contact.
@@ -53,6 +54,8 @@ extern "C" {
 #define FW_KIND_DAMAGE 3
 /* Kind of plugin: removed volume from slip, force and energy. */
 #define FW_KIND_WEAR 4
+/* Kind of plugin: thermal and electrical conductance of a contact. Since 1.1. */
+#define FW_KIND_TRANSPORT 5
 /* Status: success. */
 #define FW_OK 0
 /* Status: the call failed, the message gives the reason; the run stops with exit code 1. */
@@ -85,6 +88,9 @@ extern "C" {
 #define FW_FLAG_FORMS (UINT64_C(1) << 7)
 /* Flag (contact): the contact is a unilateral spring; prepare fills the out_contact_* columns. Since 1.1. */
 #define FW_FLAG_COMPLIANT (UINT64_C(1) << 8)
+/* Flag: the law reads temperatures, so the case must compute heat; the columns are then not null. Transport laws have them
+ * without the flag. Since 1.1. */
+#define FW_FLAG_TEMPERATURE (UINT64_C(1) << 9)
 
 /* Describes one parameter or one internal variable. Frozen within a major version. */
 typedef struct fw_field {
@@ -186,6 +192,14 @@ typedef struct fw_batch {
     double *out_contact_unloading_t; /* Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored energy; 0 where it is out_contact_stiffness_t. */
     double *out_contact_damping_n; /* Contact: normal damping (N s/m). */
     double *out_contact_damping_t; /* Contact: tangential damping (N s/m). */
+    /* Since version 1.1; null where the case computes no heat. */
+    const double *temperature; /* Temperature of the contact (K) at the start of the step: that at which two half-spaces of the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e, plus the flash temperature where the case asks for it. */
+    const double *temperature_candidate; /* Temperature of the candidate there (K). */
+    const double *temperature_antagonist; /* Temperature of the antagonist there (K). */
+    const double *conductivity; /* Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)). */
+    const double *resistivity; /* Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); null where no current flows. */
+    double *out_conductance; /* Transport: thermal conductance (W/K; W/(m K) in 2D), not negative. */
+    double *out_electric_conductance; /* Transport: electrical conductance (S; S/m in 2D), not negative. */
 } fw_batch;
 
 /* Checks parameters in addition to their ranges (relations between them). May be null. */
@@ -218,7 +232,7 @@ typedef struct fw_plugin {
     fw_call initialise; /* Fills state_next of new contacts. Null: the schema's initial values. */
     fw_call prepare; /* Contact and cohesion: fills the local form at the start of the step. */
     fw_call solve_local; /* Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local form. */
-    fw_call commit; /* At the end of the step: new internal variables; damage: out_damage; wear: out_volume. */
+    fw_call commit; /* At the end of the step: new internal variables; damage: out_damage; wear: out_volume; transport: out_conductance, out_electric_conductance. */
     fw_call energy; /* Cohesion: out_energy at the given opening and damage. */
     fw_fracture fracture_energy; /* Cohesion and damage: the fracture energy that the law declares, checked by certify. May be null. */
 } fw_plugin;

@@ -29,6 +29,8 @@ pub const KIND_COHESION: i32 = 2;
 pub const KIND_DAMAGE: i32 = 3;
 /// Kind of plugin: removed volume from slip, force and energy.
 pub const KIND_WEAR: i32 = 4;
+/// Kind of plugin: thermal and electrical conductance of a contact. Since version 1.1.
+pub const KIND_TRANSPORT: i32 = 5;
 
 /// Status: success.
 pub const STATUS_OK: i32 = 0;
@@ -62,6 +64,9 @@ pub const FLAG_FORMS: u64 = 1 << 7;
 pub const FLAG_CONSTANT: u64 = 1 << 4;
 /// Flag (contact): the contact is a unilateral spring; `prepare` fills the `out_contact_*` columns. Since version 1.1.
 pub const FLAG_COMPLIANT: u64 = 1 << 8;
+/// Flag: the law reads temperatures, so the case must compute heat; the columns are then not null. Transport laws have them without the
+/// flag. Since version 1.1.
+pub const FLAG_TEMPERATURE: u64 = 1 << 9;
 
 /// Describes one parameter or one internal variable. Frozen within a major version.
 #[repr(C)]
@@ -257,6 +262,21 @@ pub struct FwBatch {
     pub out_contact_damping_n: *mut f64,
     /// Contact: tangential damping (N s/m).
     pub out_contact_damping_t: *mut f64,
+    // Since version 1.1; null where the case computes no heat.
+    /// Temperature of the contact (K) at the start of the step: that at which two half-spaces of the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e, plus the flash temperature where the case asks for it.
+    pub temperature: *const f64,
+    /// Temperature of the candidate there (K).
+    pub temperature_candidate: *const f64,
+    /// Temperature of the antagonist there (K).
+    pub temperature_antagonist: *const f64,
+    /// Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)).
+    pub conductivity: *const f64,
+    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); null where no current flows.
+    pub resistivity: *const f64,
+    /// Transport: thermal conductance (W/K; W/(m K) in 2D), not negative.
+    pub out_conductance: *mut f64,
+    /// Transport: electrical conductance (S; S/m in 2D), not negative.
+    pub out_electric_conductance: *mut f64,
 }
 
 /// Checks parameters in addition to their ranges (relations between them). May be null.
@@ -312,7 +332,8 @@ pub struct FwPlugin {
     pub prepare: FwCall,
     /// Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local form.
     pub solve_local: FwCall,
-    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`.
+    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`; transport:
+    /// `out_conductance`, `out_electric_conductance`.
     pub commit: FwCall,
     /// Cohesion: `out_energy` at the given opening and damage.
     pub energy: FwCall,

@@ -96,7 +96,14 @@ fn rust_layout() -> Vec<(String, u64)> {
         out_contact_stiffness_t,
         out_contact_unloading_t,
         out_contact_damping_n,
-        out_contact_damping_t
+        out_contact_damping_t,
+        temperature,
+        temperature_candidate,
+        temperature_antagonist,
+        conductivity,
+        resistivity,
+        out_conductance,
+        out_electric_conductance
     );
     layout!(
         out,
@@ -132,6 +139,7 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_KIND_COHESION", KIND_COHESION as u64),
         ("FW_KIND_DAMAGE", KIND_DAMAGE as u64),
         ("FW_KIND_WEAR", KIND_WEAR as u64),
+        ("FW_KIND_TRANSPORT", KIND_TRANSPORT as u64),
         ("FW_OK", STATUS_OK as u64),
         ("FW_ERROR", STATUS_ERROR as u64),
         ("FW_BAD_PARAMETER", STATUS_BAD_PARAMETER as u64),
@@ -146,6 +154,7 @@ fn rust_layout() -> Vec<(String, u64)> {
         ("FW_FLAG_BREAKS", FLAG_BREAKS),
         ("FW_FLAG_FORMS", FLAG_FORMS),
         ("FW_FLAG_COMPLIANT", FLAG_COMPLIANT),
+        ("FW_FLAG_TEMPERATURE", FLAG_TEMPERATURE),
     ] {
         out.push((name.to_owned(), value));
     }

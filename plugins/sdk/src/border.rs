@@ -1,11 +1,12 @@
 //! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law is here.
 
-use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, WearLaw};
+use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
 use core::cell::{Cell, OnceCell};
 use core::ffi::c_char;
 use core::mem::{MaybeUninit, offset_of};
 use fretwork_abi::{
-    FLAG_COMPLIANT, FwBatch, FwMessage, STATUS_BAD_PARAMETER, STATUS_ERROR, STATUS_OK, STATUS_PANIC,
+    FLAG_COMPLIANT, FLAG_TEMPERATURE, FwBatch, FwMessage, STATUS_BAD_PARAMETER, STATUS_ERROR,
+    STATUS_OK, STATUS_PANIC,
 };
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -122,6 +123,13 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             effective_mass: at(b.effective_mass, k),
             spring_t: [at(b.spring_t1, k), at(b.spring_t2, k)],
             spring_before_t: [at(b.spring_before_t1, k), at(b.spring_before_t2, k)],
+            temperature: at(b.temperature, k),
+            temperatures: [
+                at(b.temperature_candidate, k),
+                at(b.temperature_antagonist, k),
+            ],
+            conductivity: at(b.conductivity, k),
+            resistivity: at(b.resistivity, k),
             h: b.h,
             theta: b.theta,
             time: b.time,
@@ -175,6 +183,15 @@ fn over<L: Law, const COMMIT: bool>(
             tell(message, -1, "the batch has no parameters");
             return STATUS_ERROR;
         };
+        if L::FLAGS & FLAG_TEMPERATURE != 0 && batch.n > 0 && batch.temperature.is_null() {
+            tell(
+                message,
+                -1,
+                "this law reads temperatures, which this program does not give: compute heat in the case, with a program of version \
+                 1.1 of the plugin interface or later",
+            );
+            return STATUS_ERROR;
+        }
         let law = L::read(values);
         let variables = L::VARIABLES.len();
         let mut state = [0.0; MOST_VARIABLES];
@@ -437,5 +454,26 @@ pub unsafe extern "C" fn wear_commit<L: WearLaw>(
         // SAFETY: k < n.
         let (slip, work) = unsafe { (at(b.slip, k), at(b.friction_work, k)) };
         give!(b, k, out_volume = law.volume(site, slip, work, state, next))
+    })
+}
+
+/// `commit` of a transport law.
+///
+/// # Safety
+/// As required by the ABI: a valid batch and message.
+pub unsafe extern "C" fn transport_commit<L: TransportLaw>(
+    batch: *const FwBatch,
+    message: *mut FwMessage,
+) -> i32 {
+    over::<L, true>(batch, message, |law, b, k, site, state, next| {
+        // SAFETY: k < n.
+        let (slip, work) = unsafe { (at(b.slip, k), at(b.friction_work, k)) };
+        let conductance = law.conductance(site, slip, work, state, next);
+        give!(
+            b,
+            k,
+            out_conductance = conductance.thermal,
+            out_electric_conductance = conductance.electric,
+        )
     })
 }

@@ -1,7 +1,7 @@
 //! Write a Fretwork interface law in safe Rust.
 //!
 //! A law is a struct of parameters (see [`parameters!`]) and one of the traits [`ContactLaw`],
-//! [`CohesionLaw`], [`DamageLaw`], [`WearLaw`], written for a single contact. The macro [`export!`]
+//! [`CohesionLaw`], [`DamageLaw`], [`WearLaw`], [`TransportLaw`], written for a single contact. The macro [`export!`]
 //! exports it as a plugin: batches, columns, panics and messages are handled here.
 //!
 //! ```
@@ -34,6 +34,6 @@ mod traits;
 
 pub use fretwork_abi as abi;
 pub use traits::{
-    CohesionLaw, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site, Spring, Traction,
-    Variable, WearLaw, bounded, damping_ratio,
+    CohesionLaw, Conductance, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site,
+    Spring, Traction, TransportLaw, Variable, WearLaw, bounded, damping_ratio,
 };

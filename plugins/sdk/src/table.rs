@@ -85,7 +85,7 @@ macro_rules! parameters {
 }
 
 /// Exports a law as the plugin of this library: `export!(contact Coulomb);`, `export!(cohesion Mac);`,
-/// `export!(damage Mac);`, `export!(wear Archard);`.
+/// `export!(damage Mac);`, `export!(wear Archard);`, `export!(transport Constriction);`.
 #[macro_export]
 macro_rules! export {
     ($kind:ident $law:ty) => {
@@ -123,6 +123,10 @@ macro_rules! plugin_table {
     (wear $law:ty) => {
         $crate::plugin_table!(@table $law, KIND_WEAR, 0.0,
             prepare: None, commit: Some($crate::border::wear_commit::<$law>), energy: None);
+    };
+    (transport $law:ty) => {
+        $crate::plugin_table!(@table $law, KIND_TRANSPORT, 0.0,
+            prepare: None, commit: Some($crate::border::transport_commit::<$law>), energy: None);
     };
     (@table $law:ty, $kind:ident, $degradation:expr, prepare: $prepare:expr, commit: $commit:expr, energy: $energy:expr) => {
         use $crate::{Law as _, Parameters as _};

@@ -93,6 +93,14 @@ pub struct Site {
     pub spring_t: [f64; 2],
     /// The same at the start of the step, in commit (N; N/m in 2D).
     pub spring_before_t: [f64; 2],
+    /// Temperature of the contact (K) at the start of the step, where the case computes heat; 0 elsewhere.
+    pub temperature: f64,
+    /// Temperatures of candidate and antagonist there (K).
+    pub temperatures: [f64; 2],
+    /// Thermal conductivity of the pair, 2 k1 k2/(k1 + k2) (W/(m K)); as `temperature`.
+    pub conductivity: f64,
+    /// Electrical resistivity of the pair, (rho1 + rho2)/2 (ohm m); 0 where no current flows.
+    pub resistivity: f64,
     /// Time step (s).
     pub h: f64,
     /// Theta of the time scheme.
@@ -116,6 +124,16 @@ impl Site {
         self.opening[0].max(0.0)
     }
 
+    /// Compressive force (N; N/m in 2D), zero in tension.
+    #[inline]
+    pub fn force(&self) -> f64 {
+        if self.h > 0.0 {
+            (self.impulse[0] / self.h).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
     /// Compressive pressure over the area (Pa), zero in tension.
     #[inline]
     pub fn pressure(&self) -> f64 {
@@ -126,6 +144,15 @@ impl Site {
             0.0
         }
     }
+}
+
+/// Output of a transport law (per metre of depth in 2D).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Conductance {
+    /// Thermal (W/K).
+    pub thermal: f64,
+    /// Electrical (S).
+    pub electric: f64,
 }
 
 /// Output of a contact law.
@@ -399,4 +426,18 @@ pub trait WearLaw: Law {
         state: &[f64],
         next: &mut [f64],
     ) -> f64;
+}
+
+/// Transport of heat and charge through a contact.
+pub trait TransportLaw: Law {
+    /// Conductances over the step, from the state at its end, the slip (m) and the friction work (J) over it. They are not negative,
+    /// and the same where candidate and antagonist are exchanged.
+    fn conductance(
+        &self,
+        site: &Site,
+        slip: f64,
+        friction_work: f64,
+        state: &[f64],
+        next: &mut [f64],
+    ) -> Conductance;
 }

@@ -11,6 +11,7 @@ mod rig;
 mod spring;
 mod static_memory;
 mod surface;
+mod transport;
 
 pub use apart::{CERTIFY_APART, certify_apart, certify_asked};
 

@@ -181,6 +181,7 @@ impl Rig {
                     rotation: turn,
                     gap: at[0],
                     pressure: if at[0] <= 0.0 { PRESSURE } else { 0.0 },
+                    ..Motion::default()
                 }
             })
             .collect()

@@ -1,7 +1,7 @@
 //! Checks of laws without opening: contact, attraction, wear.
 
 use super::rig::{PRESSURE, Rig};
-use super::{Check, Line};
+use super::{Check, Line, transport};
 use crate::laws::LawError;
 use crate::laws::bench::{Answer, Motion};
 use crate::laws::kind::CheckSet;
@@ -13,10 +13,10 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
         ("objectivity", objectivity),
         ("convergence", convergence),
     ];
-    if set == CheckSet::Removal {
-        &ALL
-    } else {
-        &ALL[..2]
+    match set {
+        CheckSet::Removal => &ALL,
+        CheckSet::Transport => &transport::CHECKS,
+        CheckSet::Contact | CheckSet::Bond => &ALL[..2],
     }
 }
 
@@ -54,7 +54,7 @@ fn signs(rig: &mut Rig) -> Result<Line, LawError> {
 }
 
 /// Checks that rotating the tangential axes changes nothing.
-fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
+pub fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
     let motions = rig.walk(7, 200, 0.1);
     let planar = rig.dimension() == 2;
     let moved: Vec<Motion> = motions
@@ -79,6 +79,7 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
             .chain(a.strength)
             .chain(a.restitution)
             .chain(a.rolling)
+            .chain(a.conductance)
             .collect::<Vec<f64>>()
     };
     let worst = plain

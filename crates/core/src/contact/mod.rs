@@ -6,6 +6,7 @@ pub mod memory;
 pub mod network;
 pub mod spring;
 pub mod step_size;
+pub mod thermal;
 
 pub use events::{Break, ContactDissipation, Life, Loss};
 pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
@@ -13,3 +14,4 @@ pub use memory::{Bond, BondState, Memory, Slides};
 pub use network::{Contact, Key, Network};
 pub use spring::Spring;
 pub use step_size::StepSizeDiagnostics;
+pub use thermal::ContactHeat;

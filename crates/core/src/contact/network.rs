@@ -4,6 +4,7 @@ use super::events::{Break, ContactDissipation, Loss};
 use super::memory::{BondState, Memory};
 use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
+use super::thermal::ContactHeat;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{count, sum};
@@ -182,6 +183,9 @@ pub struct Network<S: Space> {
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
+    /// Temperatures and conductances of the contacts in the last step; `None` where no heat is computed.
+    #[serde(skip)]
+    pub thermal: Option<ContactHeat>,
     /// Factor on wear and damage in a step: the number of cycles that the current cycle represents, see
     /// [`crate::wear::jump`]; 1 without jumps.
     pub cycle_multiplier: f64,
@@ -285,6 +289,7 @@ impl<S: Space> Network<S> {
             bonds_formed: Vec::new(),
             dissipation: None,
             losses: None,
+            thermal: None,
             cycle_multiplier: 1.0,
             worn: BTreeMap::new(),
             of_grains: BTreeSet::new(),

@@ -31,8 +31,8 @@ pub struct State {
     pub variables: Vec<f64>,
 }
 
-/// Prescribed motion over a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Prescribed motion over a step, and the temperatures of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Opening at its end (m).
     pub opening: [f64; 3],
@@ -42,6 +42,26 @@ pub struct Motion {
     pub gap: f64,
     /// Compressive pressure over the area (Pa).
     pub pressure: f64,
+    /// Temperatures of candidate and antagonist (K), of equal effusivities.
+    pub temperatures: [f64; 2],
+}
+
+/// Temperature of bodies for which none is given (K): 20 degrees Celsius.
+pub const ROOM: f64 = 293.15;
+/// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair on the bench: steel.
+pub const STEEL: [f64; 2] = [50.0, 2e-7];
+
+impl Default for Motion {
+    /// At rest, closed, without a load, at room temperature.
+    fn default() -> Self {
+        Self {
+            opening: [0.0; 3],
+            rotation: [0.0; 3],
+            gap: 0.0,
+            pressure: 0.0,
+            temperatures: [ROOM; 2],
+        }
+    }
 }
 
 /// Outputs of the laws at the end of a step.
@@ -67,6 +87,8 @@ pub struct Answer {
     pub rolling: [f64; 2],
     /// Volume removed over the step (m^3).
     pub worn: f64,
+    /// Thermal (W/K) and electrical (S) conductance.
+    pub conductance: [f64; 2],
 }
 
 /// A testing machine for contacts under one interface law.
@@ -189,7 +211,17 @@ impl Bench {
         c.n = states.len();
         let rotates = self.law.rotates();
         let compliant = self.law.compliant();
+        let heated = self.law.reads_temperatures();
         for (state, motion) in states.iter().zip(motions) {
+            if heated {
+                let [first, second] = motion.temperatures;
+                let all = [0.5 * (first + second), first, second];
+                for (column, t) in c.temperature.iter_mut().zip(all) {
+                    column.push(t);
+                }
+                c.conductivity.push(STEEL[0]);
+                c.resistivity.push(STEEL[1]);
+            }
             if compliant {
                 c.overlap.push((-motion.gap).max(0.0));
                 c.effective_mass.push(0.0);
@@ -334,6 +366,13 @@ impl Bench {
             if loaded.plugin.kind == Kind::WEAR {
                 for (answer, volume) in answers.iter_mut().zip(&self.batch.columns.out.volume) {
                     answer.worn = *volume;
+                }
+            }
+            if loaded.plugin.kind == Kind::TRANSPORT {
+                let out = &self.batch.columns.out;
+                let columns = out.conductance.iter().zip(&out.electric_conductance);
+                for (answer, (thermal, electric)) in answers.iter_mut().zip(columns) {
+                    answer.conductance = [*thermal, *electric];
                 }
             }
             self.keep(states);

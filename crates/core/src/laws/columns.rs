@@ -3,6 +3,7 @@
 use super::interface::Loaded;
 use super::kind::Kind;
 use super::library::Call;
+use crate::contact::ContactHeat;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
 
@@ -65,6 +66,12 @@ pub struct Columns {
     pub spring: [Vec<f64>; 2],
     /// The same at the start of the step, for commit.
     pub spring_before: [Vec<f64>; 2],
+    /// Temperatures of contact, candidate and antagonist (K); empty where no heat is computed.
+    pub temperature: [Vec<f64>; 3],
+    /// Thermal conductivity of the pair (W/(m K)); as `temperature`.
+    pub conductivity: Vec<f64>,
+    /// Electrical resistivity of the pair (ohm m); empty where no current flows.
+    pub resistivity: Vec<f64>,
     /// Internal variables at the start of the step.
     pub state: Vec<Vec<f64>>,
     /// Internal variables at the end of the step.
@@ -125,11 +132,13 @@ pub struct Outputs {
     pub contact_unloading_t: Vec<f64>,
     pub contact_damping_n: Vec<f64>,
     pub contact_damping_t: Vec<f64>,
+    pub conductance: Vec<f64>,
+    pub electric_conductance: Vec<f64>,
 }
 
 impl Outputs {
     /// The columns of every call, and those of compliant contacts.
-    fn groups(&mut self) -> ([&mut Vec<f64>; 22], [&mut Vec<f64>; 8]) {
+    fn groups(&mut self) -> ([&mut Vec<f64>; 22], [&mut Vec<f64>; 8], [&mut Vec<f64>; 2]) {
         let [tn, t1, t2] = &mut self.traction;
         let [mn, m1, m2] = &mut self.moment;
         let [force_n, f1, f2] = &mut self.contact_force;
@@ -167,13 +176,14 @@ impl Outputs {
             f1,
             f2,
         ];
-        (all, springs)
+        let transport = [&mut self.conductance, &mut self.electric_conductance];
+        (all, springs, transport)
     }
 
     /// Iterates over all columns.
     fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let (all, springs) = self.groups();
-        all.into_iter().chain(springs)
+        let (all, springs, transport) = self.groups();
+        all.into_iter().chain(springs).chain(transport)
     }
 }
 
@@ -195,6 +205,10 @@ pub(super) struct Contents {
     pub compliant: bool,
     /// Springs at the start of the step, beside those at its end.
     pub after: bool,
+    /// Temperatures and conductivities.
+    pub heat: bool,
+    /// Resistivities.
+    pub current: bool,
 }
 
 /// Turns columns into the pointers of a batch: null for columns that are not in use.
@@ -263,7 +277,11 @@ impl Columns {
             &mut self.intact_moment,
         ];
         let all = single.into_iter().chain(triples.into_iter().flatten());
-        all.chain(&mut self.spring).chain(&mut self.spring_before)
+        let heat = self.temperature.iter_mut();
+        let heat = heat.chain([&mut self.conductivity, &mut self.resistivity]);
+        all.chain(&mut self.spring)
+            .chain(&mut self.spring_before)
+            .chain(heat)
     }
 
     /// Clears the inputs.
@@ -303,6 +321,9 @@ impl Columns {
         for column in &mut self.spring_before {
             fit(column, count(contents.compliant && contents.after));
         }
+        let heat = self.temperature.iter_mut().chain([&mut self.conductivity]);
+        heat.for_each(|column| fit(column, count(contents.heat)));
+        fit(&mut self.resistivity, count(contents.current));
         let given = [
             &mut self.energy_intact,
             &mut self.slip,
@@ -310,6 +331,20 @@ impl Columns {
         ];
         let intact = self.intact.iter_mut().chain(&mut self.intact_moment);
         given.into_iter().chain(intact).for_each(Vec::clear);
+    }
+
+    /// Fills the columns of heat from those of the contacts, of which these are members.
+    pub(super) fn take_heat(&mut self, thermal: &ContactHeat, members: &[usize]) {
+        for (k, at) in members.iter().enumerate() {
+            for (column, value) in self.temperature.iter_mut().zip(thermal.temperature[*at]) {
+                column[k] = value;
+            }
+            let [conductivity, resistivity] = thermal.material[*at];
+            self.conductivity[k] = conductivity;
+            if thermal.current {
+                self.resistivity[k] = resistivity;
+            }
+        }
     }
 
     /// Sizes the columns of an internal variable, at the start and at the end of the step, and returns them.
@@ -336,10 +371,12 @@ impl Columns {
 
     /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`] follows.
     pub(super) fn fit_outputs(&mut self) {
-        let (all, springs) = self.out.groups();
+        let (all, springs, transport) = self.out.groups();
         all.into_iter().for_each(|column| fit(column, self.n));
         let n = self.overlap.len();
         springs.into_iter().for_each(|column| fit(column, n));
+        let n = self.temperature[0].len();
+        transport.into_iter().for_each(|column| fit(column, n));
     }
 
     /// Sets to zero what a call of a law writes.
@@ -349,9 +386,9 @@ impl Columns {
         }
     }
 
-    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one.
+    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one, and those of transport where heat is computed.
     pub fn size_outputs(&mut self) {
-        let (all, springs) = self.out.groups();
+        let (all, springs, transport) = self.out.groups();
         let zeros = |column: &mut Vec<f64>, n| {
             column.clear();
             column.resize(n, 0.0);
@@ -359,6 +396,8 @@ impl Columns {
         all.into_iter().for_each(|column| zeros(column, self.n));
         let n = self.overlap.len();
         springs.into_iter().for_each(|column| zeros(column, n));
+        let n = self.temperature[0].len();
+        transport.into_iter().for_each(|column| zeros(column, n));
     }
 
     /// Runs `call` with the batch of these columns.
@@ -479,6 +518,13 @@ impl Columns {
             out_contact_unloading_t: pointers.output(&mut out.contact_unloading_t),
             out_contact_damping_n: pointers.output(&mut out.contact_damping_n),
             out_contact_damping_t: pointers.output(&mut out.contact_damping_t),
+            temperature: pointers.input(&self.temperature[0]),
+            temperature_candidate: pointers.input(&self.temperature[1]),
+            temperature_antagonist: pointers.input(&self.temperature[2]),
+            conductivity: pointers.input(&self.conductivity),
+            resistivity: pointers.input(&self.resistivity),
+            out_conductance: pointers.output(&mut out.conductance),
+            out_electric_conductance: pointers.output(&mut out.electric_conductance),
         }
     }
 }

@@ -63,8 +63,10 @@ impl LawEvaluator {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
+        // Without heat nothing asks for conductances.
+        let idle = |l: &&Loaded| l.plugin.kind == Kind::TRANSPORT && network.thermal.is_none();
         let slots: Vec<&Loaded> = slots
-            .filter(|l| sees_slip(l) || l.variables() > 0)
+            .filter(|l| (sees_slip(l) || l.variables() > 0) && !idle(l))
             .collect();
         let all = |l: &&Loaded| l.plugin.kind.spec().domain == Domain::All;
         let (of_all, of_near): (Vec<_>, Vec<_>) = slots.into_iter().partition(all);

@@ -194,6 +194,8 @@ impl Batch {
             rotates: law.rotates(),
             compliant: law.compliant(),
             after,
+            heat: network.thermal.is_some(),
+            current: network.thermal.as_ref().is_some_and(|t| t.current),
         };
         let n = members.len();
         let memory = &network.memory[index];
@@ -282,6 +284,9 @@ impl Batch {
                     }
                 }
             }
+        }
+        if let Some(thermal) = &network.thermal {
+            columns.take_heat(thermal, members);
         }
         for loaded in laws {
             for v in loaded.first_variable..loaded.first_variable + loaded.variables() {

@@ -255,7 +255,7 @@ fn inputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *const f64)> {
         impulse_n impulse_t1 impulse_t2 damage energy_intact intact_n intact_t1 intact_t2 slip friction_work pressed
         rotation_n rotation_t1 rotation_t2 intact_moment_n intact_moment_t1 intact_moment_t2
         overlap effective_mass spring_t1 spring_t2
-        spring_before_t1 spring_before_t2)
+        spring_before_t1 spring_before_t2 temperature temperature_candidate temperature_antagonist conductivity resistivity)
 }
 
 fn outputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *mut f64)> {
@@ -263,5 +263,6 @@ fn outputs(batch: &mut FwBatch) -> Vec<(&'static str, &mut *mut f64)> {
         out_spinning out_traction_n out_traction_t1 out_traction_t2 out_stiffness_n out_stiffness_t out_damping_n
         out_damping_t out_energy out_damage out_volume out_moment_n out_moment_t1 out_moment_t2 out_stiffness_twist
         out_stiffness_bend out_contact_force_n out_contact_force_t1 out_contact_force_t2 out_contact_stiffness_n
-        out_contact_stiffness_t out_contact_unloading_t out_contact_damping_n out_contact_damping_t)
+        out_contact_stiffness_t out_contact_unloading_t out_contact_damping_n out_contact_damping_t
+        out_conductance out_electric_conductance)
 }

@@ -5,7 +5,7 @@ use super::kind::{Domain, Kind};
 use super::library::Plugin;
 use fretwork_abi::{
     FLAG_BREAKS, FLAG_COMPLIANT, FLAG_CONSTANT, FLAG_FORMS, FLAG_MOMENT, FLAG_OPENING,
-    FLAG_TENSION_ONLY,
+    FLAG_TEMPERATURE, FLAG_TENSION_ONLY,
 };
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -314,6 +314,17 @@ impl Interface {
     /// Returns whether the normal stiffness acts in tension only.
     pub fn tension_only(&self) -> bool {
         self.cohesion_flags & FLAG_TENSION_ONLY != 0
+    }
+
+    /// Returns whether a law reads temperatures, or says what heat flows.
+    pub fn reads_temperatures(&self) -> bool {
+        self.loaded()
+            .any(|l| l.plugin.kind == Kind::TRANSPORT || l.has(FLAG_TEMPERATURE))
+    }
+
+    /// What carries heat and current.
+    pub fn transport(&self) -> Option<&Loaded> {
+        self.law(Kind::TRANSPORT)
     }
 
     /// Returns whether contacts are springs.

@@ -39,7 +39,7 @@ fn known_codes() -> String {
     let more = Kind::all()
         .into_iter()
         .filter(|k| !Kind::BUILT_IN.contains(k));
-    more.fold("1 to 4".to_owned(), |codes, kind| {
+    more.fold(format!("1 to {}", Kind::TRANSPORT.code()), |codes, kind| {
         format!("{codes}, or {}", kind.code())
     })
 }

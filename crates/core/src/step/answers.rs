@@ -74,7 +74,7 @@ fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
 
 /// The velocity of the candidate of a contact relative to its antagonist, at the current velocities of rigid bodies.
 #[inline]
-fn relative_velocity<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> S::Vector {
+pub(super) fn relative_velocity<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> S::Vector {
     let [i, j] = contact.bodies.map(|b| b as usize);
     bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
         - bodies.velocity[j]

@@ -1,6 +1,7 @@
 //! Errors of a time step.
 
 use super::process::ProcessError;
+use crate::heat::DiffusionError;
 use crate::laws::LawError;
 use crate::wear::WornThrough;
 
@@ -59,6 +60,16 @@ pub enum StepError {
         step: u64,
         /// Name of the first system.
         system: String,
+    },
+    /// Heat or current cannot be computed.
+    #[error("step {step} at t = {time:.6e} s: heat: {source}")]
+    Heat {
+        /// Number of the step.
+        step: u64,
+        /// Time at its start (s).
+        time: f64,
+        /// Why.
+        source: DiffusionError,
     },
     /// A velocity is not finite.
     #[error(

@@ -13,6 +13,8 @@
 //!       │                                        ▼
 //!       │                         laws: commit (damage, broken, wear, dissipation)
 //!       │                                        ▼
+//!       │                         heat and current, where the case has them
+//!       │                                        ▼
 //!       │                         energy ledger
 //!       │                                        ▼
 //!       │                         advance bodies, processes after the move
@@ -28,6 +30,7 @@ pub mod coupling;
 mod error;
 pub mod fields;
 mod finite;
+mod heat;
 mod imposed;
 mod mortar;
 pub mod motion;

@@ -31,6 +31,7 @@ impl<S: Space> Simulation<S> {
         let (start, free) = self.detect_contacts(&info, &mut report)?;
         self.solve(&start, &free, &info, &mut report)?;
         self.commit_laws(&info, &mut report)?;
+        self.conduct()?;
         self.book(&start, &report.totals);
         self.move_to_end();
         self.end_step(&mut report)?;
@@ -65,7 +66,7 @@ impl<S: Space> Simulation<S> {
         let network = &mut self.state.network;
         network.bond_breaks.clear();
         network.bonds_formed.clear();
-        if self.options.record_dissipation {
+        if self.options.record_dissipation || self.heat.is_some() {
             network.dissipation.get_or_insert_default();
         }
         if !self.state.scars.is_empty() {
@@ -110,8 +111,9 @@ impl<S: Space> Simulation<S> {
         Ok((start, free))
     }
 
-    /// Gives new contacts their memory and forms the bonds that are due.
+    /// Gives contacts their temperatures and new ones their memory, and forms the bonds that are due.
     pub(super) fn initialise_contacts(&mut self, info: &StepInfo) -> Result<(), StepError> {
+        self.gather_temperatures();
         let remembered = self.workspace.evaluator.initialise_contacts(
             &self.laws,
             &mut self.state.law_history,

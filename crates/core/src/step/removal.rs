@@ -11,6 +11,7 @@ impl<S: Space> Simulation<S> {
         self.state.energy.carried += energy;
         self.state.energy.kinetic -= energy;
         self.state.bodies.remove_body(body);
+        self.insulate(body);
         self.state.network.forget_neighbours();
     }
 }

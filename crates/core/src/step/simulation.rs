@@ -10,6 +10,7 @@ use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
+use crate::heat::Heat;
 use crate::laws::{ContactStep, Interface};
 use crate::solve::{self, ContactForm};
 
@@ -26,6 +27,8 @@ pub struct Simulation<S: Space> {
     pub phases: Vec<Phase<S>>,
     /// How it is computed; no step changes it.
     pub options: Options,
+    /// Heat and current; `None` where none is computed. See [`Simulation::set_heat`].
+    pub(super) heat: Option<Heat>,
     /// What steps change; a checkpoint holds all of it.
     pub state: State<S>,
     /// What grains and contacts carry for output, by name.
@@ -58,6 +61,7 @@ impl<S: Steps> Simulation<S> {
             table,
             phases: Vec::new(),
             options: Options::default(),
+            heat: None,
             state: State::at_rest(bodies, network),
             fields: S::fields(),
             processes: Vec::new(),
@@ -74,6 +78,11 @@ impl<S: Space> Simulation<S> {
         + size_of::<ContactForm<S>>()
         + size_of::<ContactStep<S>>()
         + 2 * size_of::<S::Vector>();
+
+    /// Heat and current, as the case gives them.
+    pub fn heat(&self) -> Option<&Heat> {
+        self.heat.as_ref()
+    }
 
     /// The options of the solver, with the tolerance that the current phase has set, if any.
     pub fn solver_in_force(&self) -> solve::Options {

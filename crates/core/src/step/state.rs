@@ -11,6 +11,7 @@ use crate::bodies::{Bodies, Systems};
 use crate::contact::Network;
 use crate::energy::Energy;
 use crate::geometry::space::{Space, VectorLike};
+use crate::heat::HeatState;
 use crate::laws::{Interface, LawHistory};
 use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
@@ -68,6 +69,8 @@ pub struct State<S: Space> {
     pub scars: Vec<Scar<S>>,
     /// The first surface that was worn through, if any.
     pub worn_through: Option<WornThrough>,
+    /// Temperatures and the account of heat; `None` where none is computed.
+    pub heat: Option<HeatState>,
     /// What the automatic choice of the solver has learned.
     pub(super) auto_state: AutoState,
 }
@@ -96,6 +99,7 @@ impl<S: Space> State<S> {
             projection_work: 0.0,
             scars: Vec::new(),
             worn_through: None,
+            heat: None,
             auto_state: AutoState::default(),
             bodies,
         }
@@ -114,6 +118,8 @@ impl<S: Space> State<S> {
             && self.received.len() == built.received.len()
             && self.started.len() == built.started.len()
             && self.scars.len() == built.scars.len()
+            && self.heat.as_ref().map(|h| h.nodes.len())
+                == built.heat.as_ref().map(|h| h.nodes.len())
             && self.network.memory.len() == built.network.memory.len()
             && (self.network).fits_interfaces(scene.laws.iter().map(Interface::variables))
             && (self.control).fits(&scene.phases, &scene.laws, self.bodies.driven.len())

@@ -11,6 +11,7 @@ module fretwork
   integer(c_int32_t), parameter :: FW_KIND_COHESION = 2
   integer(c_int32_t), parameter :: FW_KIND_DAMAGE = 3
   integer(c_int32_t), parameter :: FW_KIND_WEAR = 4
+  integer(c_int32_t), parameter :: FW_KIND_TRANSPORT = 5
   integer(c_int32_t), parameter :: FW_OK = 0
   integer(c_int32_t), parameter :: FW_ERROR = 1
   integer(c_int32_t), parameter :: FW_BAD_PARAMETER = 2
@@ -25,6 +26,7 @@ module fretwork
   integer(c_int64_t), parameter :: FW_FLAG_BREAKS = shiftl(1_c_int64_t, 6)
   integer(c_int64_t), parameter :: FW_FLAG_FORMS = shiftl(1_c_int64_t, 7)
   integer(c_int64_t), parameter :: FW_FLAG_COMPLIANT = shiftl(1_c_int64_t, 8)
+  integer(c_int64_t), parameter :: FW_FLAG_TEMPERATURE = shiftl(1_c_int64_t, 9)
 
   type, bind(c) :: fw_field
     type(c_ptr) :: name = c_null_ptr
@@ -119,6 +121,14 @@ module fretwork
     type(c_ptr) :: out_contact_unloading_t = c_null_ptr
     type(c_ptr) :: out_contact_damping_n = c_null_ptr
     type(c_ptr) :: out_contact_damping_t = c_null_ptr
+    ! Since version 1.1; null where the case computes no heat.
+    type(c_ptr) :: temperature = c_null_ptr
+    type(c_ptr) :: temperature_candidate = c_null_ptr
+    type(c_ptr) :: temperature_antagonist = c_null_ptr
+    type(c_ptr) :: conductivity = c_null_ptr
+    type(c_ptr) :: resistivity = c_null_ptr
+    type(c_ptr) :: out_conductance = c_null_ptr
+    type(c_ptr) :: out_electric_conductance = c_null_ptr
   end type fw_batch
 
   type, bind(c) :: fw_plugin

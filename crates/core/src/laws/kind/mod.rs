@@ -9,6 +9,7 @@
 pub mod cohesion;
 pub mod contact;
 pub mod damage;
+pub mod transport;
 pub mod wear;
 
 use super::columns::Outputs;
@@ -147,6 +148,8 @@ pub enum CheckSet {
     Bond,
     /// As [`CheckSet::Contact`], and that the volume removed does not depend on the number of steps.
     Removal,
+    /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap, damage and temperature.
+    Transport,
 }
 
 /// What `fretwork law new` writes, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and `@VERSION@` are filled in.
@@ -207,8 +210,17 @@ impl Kind {
     /// What is removed.
     pub const WEAR: Self = Self(&wear::SPEC);
 
-    /// The kinds of the plugin interface 1.0, in the order of evaluation.
-    pub const BUILT_IN: [Self; 4] = [Self::CONTACT, Self::COHESION, Self::DAMAGE, Self::WEAR];
+    /// Thermal and electrical conductance.
+    pub const TRANSPORT: Self = Self(&transport::SPEC);
+
+    /// The kinds of the plugin interface, in the order of evaluation.
+    pub const BUILT_IN: [Self; 5] = [
+        Self::CONTACT,
+        Self::COHESION,
+        Self::DAMAGE,
+        Self::WEAR,
+        Self::TRANSPORT,
+    ];
 
     /// Adds a kind, for the life of the program: from here on its word is one of the case's slots, and plugins may have
     /// its code. A kind that is registered already is returned as it is.
@@ -221,12 +233,12 @@ impl Kind {
         if spec.word.is_empty() || !spec.word.chars().all(|c| c.is_ascii_lowercase()) {
             return refuse(format!("the kind `{}` must be named by a-z", spec.word));
         }
-        if spec.code <= Self::WEAR.code() {
+        if spec.code <= Self::TRANSPORT.code() {
             return refuse(format!(
                 "the kind `{}` cannot have the code {}: codes up to {} are those of the kinds of the plugin interface",
                 spec.word,
                 spec.code,
-                Self::WEAR.code()
+                Self::TRANSPORT.code()
             ));
         }
         if !matches!(spec.domain, Domain::All | Domain::Near) {

@@ -184,11 +184,17 @@ impl<S: Space> Simulation<S> {
                 .insert((law, at), value);
         }
         for place in changes.open {
-            self.state.bodies.remove(place);
+            self.take_away(place);
         }
         self.state.control.tolerance = changes.tolerance.or(self.state.control.tolerance);
         // The sets of fixed and present bodies may have changed.
         self.state.network.forget_neighbours();
+    }
+
+    /// Removes a driven body for good.
+    fn take_away(&mut self, place: usize) {
+        self.state.bodies.remove(place);
+        self.insulate(self.state.bodies.driven[place].body as usize);
     }
 
     fn loads(&mut self) {
@@ -201,7 +207,7 @@ impl<S: Space> Simulation<S> {
         self.state.control.gates = later;
         let due: Vec<(usize, f64)> = due;
         for (place, _) in &due {
-            self.state.bodies.remove(*place);
+            self.take_away(*place);
             self.state.network.forget_neighbours();
         }
         if let Some(drive) = &self.state.control.gravity_drive {

@@ -1,0 +1,77 @@
+//! An electric circuit through the contacts of a scene: a supply between two first bodies.
+
+use serde::{Deserialize, Serialize};
+
+/// What drives the current.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Supply {
+    /// A voltage (V).
+    Voltage(f64),
+    /// A current (A; A/m in 2D), at most so that the voltage stays below a limit (V), as laboratories measure contact resistance: where the
+    /// contact is lost the voltage is the limit.
+    Current {
+        /// Current (A; A/m in 2D).
+        current: f64,
+        /// Largest voltage (V).
+        limit: f64,
+    },
+}
+
+/// A supply between two bodies. Bodies conduct far better than contacts: each has one potential.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circuit {
+    /// Body that the current enters.
+    pub from: u32,
+    /// Body that it leaves, of potential 0.
+    pub to: u32,
+    /// What drives it.
+    pub supply: Supply,
+}
+
+impl Circuit {
+    /// Voltage (V) where the conductance between the bodies is `conductance` (S).
+    pub fn voltage(&self, conductance: f64) -> f64 {
+        match self.supply {
+            Supply::Voltage(voltage) => voltage,
+            Supply::Current { current, limit } if conductance > 0.0 => {
+                (current / conductance).clamp(-limit, limit)
+            }
+            Supply::Current { current, limit } => limit * current.signum(),
+        }
+    }
+}
+
+/// The circuit in the last step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CircuitState {
+    /// Voltage between the bodies (V).
+    pub voltage: f64,
+    /// Current (A; A/m in 2D).
+    pub current: f64,
+    /// Conductance between the bodies (S; S/m in 2D); 0 where no path joins them. The resistance is its inverse.
+    pub conductance: f64,
+    /// Potential of each body (V); 0 where no path leads to it.
+    pub potential: Vec<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_supply_of_current_is_bounded_by_its_voltage() {
+        let circuit = |supply| Circuit {
+            from: 0,
+            to: 1,
+            supply,
+        };
+        let supply = circuit(Supply::Current {
+            current: -0.1,
+            limit: 5.0,
+        });
+        assert_eq!(supply.voltage(0.5), -0.2);
+        assert_eq!(supply.voltage(1e-3), -5.0);
+        assert_eq!(supply.voltage(0.0), -5.0);
+        assert_eq!(circuit(Supply::Voltage(2.0)).voltage(0.0), 2.0);
+    }
+}

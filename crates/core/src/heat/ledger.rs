@@ -1,0 +1,103 @@
+//! The account of heat.
+
+use fretwork_diffusion::Balance;
+use serde::{Deserialize, Serialize};
+
+/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings = stored + fixed + pending + residual.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct HeatLedger {
+    /// Put in by mechanical dissipation: the shares that the case gives of the entries of [`crate::energy::Energy`].
+    pub dissipated: f64,
+    /// Put in by electric current.
+    pub joule: f64,
+    /// Put in by the heat flows that the case imposes on bodies.
+    pub imposed: f64,
+    /// Taken in from surroundings.
+    pub surroundings: f64,
+    /// Stored in grains and first bodies.
+    pub stored: f64,
+    /// Gone into bodies of fixed temperature, and at contacts of two insulated bodies.
+    pub fixed: f64,
+    /// Put in, but not yet part of a step of the heat, where one spans several of the mechanics.
+    pub pending: f64,
+    /// What does not add up.
+    pub residual: f64,
+    /// Largest heat put in, stored or passed on so far.
+    pub scale: f64,
+}
+
+impl HeatLedger {
+    /// Books the flows of a step of the heat.
+    pub(crate) fn book(&mut self, balance: &Balance) {
+        self.surroundings += balance.surroundings;
+        self.stored += balance.stored;
+        self.fixed += balance.fixed;
+        self.pending = 0.0;
+    }
+
+    /// Adds up.
+    pub(crate) fn close(&mut self) {
+        let put_in = self.dissipated + self.joule + self.imposed + self.surroundings;
+        let found = self.stored + self.fixed + self.pending;
+        self.residual = put_in - found;
+        let seen = [
+            self.dissipated,
+            self.joule,
+            self.imposed,
+            self.surroundings,
+            self.stored,
+            self.fixed,
+        ];
+        self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
+    }
+
+    /// The residual over the largest heat so far; 0 where none flowed.
+    pub fn relative_residual(&self) -> f64 {
+        if self.scale > 0.0 {
+            self.residual.abs() / self.scale
+        } else {
+            0.0
+        }
+    }
+
+    /// Every entry: name, description, value (J; J/m in 2D).
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 8] {
+        let Self {
+            dissipated,
+            joule,
+            imposed,
+            surroundings,
+            stored,
+            fixed,
+            pending,
+            residual,
+            scale: _,
+        } = *self;
+        [
+            (
+                "dissipated",
+                "heat that mechanical dissipation put in",
+                dissipated,
+            ),
+            ("joule", "heat that electric current put in", joule),
+            ("imposed", "heat imposed on bodies", imposed),
+            (
+                "surroundings",
+                "heat taken in from surroundings, negative where they cool",
+                surroundings,
+            ),
+            ("stored", "heat stored in grains and first bodies", stored),
+            ("fixed", "heat gone into bodies of fixed temperature", fixed),
+            (
+                "pending",
+                "heat put in since the last step of the heat",
+                pending,
+            ),
+            (
+                "residual",
+                "what does not add up: the first four entries less stored, fixed and pending",
+                residual,
+            ),
+        ]
+    }
+}

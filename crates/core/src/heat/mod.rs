@@ -1,0 +1,27 @@
+//! Heat and electric current of a scene: what a case gives of them, and what steps change.
+//!
+//! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a half-space below each. Contacts join them by the
+//! conductances that transport laws give, and put in the heat that the energy ledger books as dissipated at that contact in that step:
+//!
+//! ```text
+//! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i
+//! ```
+//!
+//! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of depth; `fretwork-diffusion` solves it,
+//! implicitly in time. Electric potentials follow from the electrical conductances of the same contacts, and Joule's heat of each contact is
+//! added to its sources. Laws are given the temperatures at the start of the step.
+
+pub mod circuit;
+pub mod ledger;
+pub mod material;
+pub mod model;
+pub mod pieces;
+pub mod state;
+
+pub use circuit::{Circuit, CircuitState, Supply};
+pub use fretwork_diffusion::{Conductor, DiffusionError, Grid, HalfSpace, Node, Store};
+pub use ledger::HeatLedger;
+pub use material::ThermalMaterial;
+pub use model::{BodyNodes, Heat, Partition, Shares};
+pub use pieces::{PieceAxis, Pieces};
+pub use state::HeatState;

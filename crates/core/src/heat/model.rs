@@ -1,0 +1,161 @@
+//! What a case gives of heat; no step changes it.
+
+use super::circuit::Circuit;
+use super::material::ThermalMaterial;
+use super::pieces::Pieces;
+use crate::contact::ContactDissipation;
+use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
+
+/// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays elsewhere (new surfaces, sound, plastic work that
+/// is stored).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Shares {
+    /// Of friction.
+    pub friction: f64,
+    /// Of impacts.
+    pub impact: f64,
+    /// Of the damping of bonds and compliant contacts.
+    pub viscous: f64,
+    /// Of the work against cohesion without an opening.
+    pub adhesion: f64,
+    /// Of the energy that damage releases: its plastic part. That of bonds torn out of reach stays elsewhere.
+    pub fracture: f64,
+}
+
+impl Default for Shares {
+    /// All of it, but for fracture, which makes surfaces.
+    fn default() -> Self {
+        Self {
+            friction: 1.0,
+            impact: 1.0,
+            viscous: 1.0,
+            adhesion: 1.0,
+            fracture: 0.0,
+        }
+    }
+}
+
+impl Shares {
+    /// Heat of the energies dissipated at a contact (J).
+    #[inline]
+    pub fn heat(&self, dissipated: &ContactDissipation) -> f64 {
+        self.friction * dissipated.friction
+            + self.impact * dissipated.impact
+            + self.viscous * dissipated.viscous
+            + self.adhesion * dissipated.adhesion
+            + self.fracture * dissipated.fracture
+    }
+}
+
+/// How the heat of a contact is split between its two sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Partition {
+    /// In proportion to the effusivities e = sqrt(k rho c), so that two half-spaces keep one surface temperature.
+    #[default]
+    Effusivity,
+    /// Half to each.
+    Half,
+}
+
+/// The nodes of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BodyNodes {
+    /// None: no heat enters it.
+    Insulated,
+    /// One.
+    One(u32),
+    /// One for each piece of its surface, from a first one on.
+    Pieces(u32, Pieces),
+}
+
+impl BodyNodes {
+    /// The nodes.
+    pub fn range(&self) -> std::ops::Range<usize> {
+        match self {
+            Self::Insulated => 0..0,
+            Self::One(node) => *node as usize..*node as usize + 1,
+            Self::Pieces(first, pieces) => *first as usize..(*first + pieces.count()) as usize,
+        }
+    }
+
+    /// The node at a place in the axes of the body (m).
+    #[inline]
+    pub fn at<S: Space>(&self, place: impl FnOnce() -> S::Vector) -> Option<u32> {
+        match self {
+            Self::Insulated => None,
+            Self::One(node) => Some(*node),
+            Self::Pieces(first, pieces) => Some(first + pieces.piece::<S>(&place())),
+        }
+    }
+}
+
+/// Heat of a scene, as a case gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heat {
+    /// Properties of the materials, by index.
+    pub materials: Vec<ThermalMaterial>,
+    /// Material of each body.
+    pub material: Vec<u16>,
+    /// Nodes of each body.
+    pub nodes: Vec<BodyNodes>,
+    /// Heat flows imposed on nodes (W; W/m in 2D).
+    pub imposed: Vec<(u32, f64)>,
+    /// What becomes heat.
+    pub shares: Shares,
+    /// How it is split.
+    pub partition: Partition,
+    /// Theta of the heat's time scheme, 1/2 to 1.
+    pub theta: f64,
+    /// Thermal time over mechanical time: a step of h lets heat flow for `clock` h, while what friction puts in stays the same.
+    pub clock: f64,
+    /// Steps of the mechanics per step of the heat.
+    pub every: u64,
+    /// Hardness (Pa) that gives the area on which sliding contacts are warmer than their bodies; none for no flash temperatures.
+    pub flash: Option<f64>,
+    /// The electric circuit.
+    pub circuit: Option<Circuit>,
+}
+
+impl Heat {
+    /// Properties of the material of a body.
+    #[inline]
+    pub fn material_of(&self, body: u32) -> &ThermalMaterial {
+        &self.materials[usize::from(self.material[body as usize])]
+    }
+
+    /// Share of the heat of a contact that its first body takes.
+    #[inline]
+    pub fn share(&self, bodies: [u32; 2]) -> f64 {
+        match self.partition {
+            Partition::Half => 0.5,
+            Partition::Effusivity => {
+                let [a, b] = bodies.map(|b| self.material_of(b).conductor());
+                a.share(&b)
+            }
+        }
+    }
+
+    /// Rise of temperature (K) of the spots where two bodies really touch above that of the bodies, under a force (N; N/m in 2D) at a
+    /// sliding speed `v` (m/s) with a friction power (W; W/m in 2D). The real area is force over hardness; in 3D it is one circle, in 2D one
+    /// band, and moves at half of the speed over each of the bodies. The two rises that all of the heat would give in either body
+    /// alone add up as resistances in parallel (H. Blok, Proc. Inst. Mech. Eng. 2 (1937) 222-235).
+    pub fn flash_rise<S: Space>(&self, bodies: [u32; 2], force: f64, v: f64, power: f64) -> f64 {
+        let Some(hardness) = self.flash else {
+            return 0.0;
+        };
+        if !(force > 0.0 && v > 0.0 && power > 0.0) {
+            return 0.0;
+        }
+        let area = force / hardness;
+        let rises = bodies.map(|b| {
+            let body = self.material_of(b).conductor();
+            match S::D {
+                2 => body.band(power / area, 0.5 * area, 0.5 * v),
+                _ => body.circle(power / area, (area / std::f64::consts::PI).sqrt(), 0.5 * v),
+            }
+        });
+        1.0 / rises.map(|rise| 1.0 / rise).iter().sum::<f64>()
+    }
+}

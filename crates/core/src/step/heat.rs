@@ -1,0 +1,280 @@
+//! The stepper's part of heat and current: temperatures for the laws at the start of a step, and the heat of the step at its end.
+
+use super::answers::relative_velocity;
+use super::{Simulation, StepError};
+use crate::contact::{Contact, ContactHeat};
+use crate::geometry::space::{Space, VectorLike};
+use crate::heat::{CircuitState, DiffusionError, Heat, HeatState};
+use fretwork_diffusion::{Edge, Graph, steady, step};
+
+/// Nodes of the two bodies of a contact.
+type Sides = [Option<u32>; 2];
+
+impl<S: Space> Simulation<S> {
+    /// Computes heat, and current where there is a circuit, from here on.
+    pub fn set_heat(&mut self, heat: Heat, state: HeatState) {
+        self.heat = Some(heat);
+        self.state.heat = Some(state);
+    }
+
+    /// Temperature of a body (K): the mean over the nodes of its surface; `None` where it has none or no heat is computed.
+    pub fn temperature(&self, body: usize) -> Option<f64> {
+        let (heat, state) = (self.heat.as_ref()?, self.state.heat.as_ref()?);
+        let nodes = &state.nodes[heat.nodes.get(body)?.range()];
+        let sum: f64 = nodes.iter().map(|n| n.temperature).sum();
+        (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
+    }
+
+    /// Keeps a body that was taken away from its surroundings: its heat leaves with it.
+    pub(super) fn insulate(&mut self, body: usize) {
+        if let (Some(heat), Some(state)) = (&self.heat, &mut self.state.heat) {
+            for node in &mut state.nodes[heat.nodes[body].range()] {
+                node.surroundings = 0.0;
+            }
+        }
+    }
+
+    /// Nodes of the bodies of a contact.
+    fn thermal_sides(&self, heat: &Heat, contact: &Contact<S>) -> Sides {
+        [0, 1].map(|side| {
+            let body = contact.bodies[side] as usize;
+            heat.nodes[body]
+                .at::<S>(|| S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]))
+        })
+    }
+
+    /// Gives the laws the temperatures of the contacts, as at the start of the step.
+    pub(super) fn gather_temperatures(&mut self) {
+        let (Some(heat), Some(state)) = (&self.heat, &self.state.heat) else {
+            return;
+        };
+        let contacts = &self.state.network.contacts;
+        let mut thermal = self.state.network.thermal.take().unwrap_or_default();
+        thermal.current = heat.circuit.is_some();
+        thermal.temperature.clear();
+        thermal.material.clear();
+        thermal.conductance.clear();
+        thermal.conductance.resize(contacts.len(), [0.0; 2]);
+        let h = self.options.scheme.h;
+        for contact in contacts {
+            let [a, b] = contact.bodies.map(|body| heat.material_of(body));
+            let material = [a.pair_conductivity(b), a.pair_resistivity(b)];
+            let sides = self.thermal_sides(heat, contact);
+            let of = |side: Option<u32>| side.map(|n| state.nodes[n as usize].temperature);
+            // An insulated body has the temperature of what it touches.
+            let [first, second] = match sides.map(of) {
+                [Some(a), Some(b)] => [a, b],
+                [Some(t), None] | [None, Some(t)] => [t, t],
+                [None, None] => [0.0; 2],
+            };
+            let mut mean = a.meeting_temperature(first, b, second);
+            if heat.flash.is_some() {
+                mean += self.flash_rise(heat, contact, h);
+            }
+            thermal.temperature.push([mean, first, second]);
+            thermal.material.push(material);
+        }
+        self.state.network.thermal = Some(thermal);
+    }
+
+    /// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the start of this one.
+    fn flash_rise(&self, heat: &Heat, contact: &Contact<S>, h: f64) -> f64 {
+        let force = contact.impulse * (1.0 / h);
+        let velocity = relative_velocity(&self.state.bodies, contact);
+        let sliding = S::tangential(&contact.normal, &velocity);
+        let friction = S::tangential(&contact.normal, &force);
+        let power = -friction.dot(&sliding);
+        let normal = contact.normal.dot(&force);
+        heat.flash_rise::<S>(contact.bodies, normal, sliding.norm(), power)
+    }
+
+    /// Puts in the heat of the solved step, and has it flow.
+    pub(super) fn conduct(&mut self) -> Result<(), StepError> {
+        let Some(heat) = self.heat.take() else {
+            return Ok(());
+        };
+        let done = self.conduct_by(&heat);
+        self.heat = Some(heat);
+        done.map_err(|source| StepError::Heat {
+            step: self.state.steps + 1,
+            time: self.state.time,
+            source,
+        })
+    }
+
+    fn conduct_by(&mut self, heat: &Heat) -> Result<(), DiffusionError> {
+        let (Some(mut state), Some(mut thermal)) =
+            (self.state.heat.take(), self.state.network.thermal.take())
+        else {
+            return Ok(());
+        };
+        let done = self.heat_of_step(heat, &mut state, &mut thermal);
+        self.state.heat = Some(state);
+        self.state.network.thermal = Some(thermal);
+        done
+    }
+
+    fn heat_of_step(
+        &self,
+        heat: &Heat,
+        state: &mut HeatState,
+        thermal: &mut ContactHeat,
+    ) -> Result<(), DiffusionError> {
+        let contacts = &self.state.network.contacts;
+        let span = heat.clock * self.options.scheme.h;
+        thermal.source.clear();
+        thermal.source.resize(contacts.len(), 0.0);
+        if let Some(dissipation) = &self.state.network.dissipation {
+            for (source, dissipated) in thermal.source.iter_mut().zip(dissipation) {
+                *source = heat.shares.heat(dissipated);
+            }
+        }
+        state.ledger.dissipated += thermal.source.iter().sum::<f64>();
+        self.flow_of_current(heat, state, thermal, span)?;
+        let sides: Vec<Sides> = contacts
+            .iter()
+            .map(|contact| self.thermal_sides(heat, contact))
+            .collect();
+        let driven = self.nodes_of_driven(heat, state.nodes.len());
+        for ((contact, sides), source) in contacts.iter().zip(&sides).zip(&thermal.source) {
+            if *source == 0.0 {
+                continue;
+            }
+            let share = match sides {
+                [Some(_), None] => 1.0,
+                [None, Some(_)] => 0.0,
+                _ => heat.share(contact.bodies),
+            };
+            state.ledger.pending += source;
+            for (side, part) in sides.iter().zip([share, 1.0 - share]) {
+                let Some(node) = side.map(|n| n as usize) else {
+                    continue;
+                };
+                state.pending[node] += part * source;
+                if driven[node] != u32::MAX {
+                    state.received[driven[node] as usize] += part * source;
+                }
+            }
+            if *sides == [None, None] {
+                state.ledger.pending -= source;
+                state.ledger.fixed += source;
+            }
+        }
+        for (node, flow) in &heat.imposed {
+            state.pending[*node as usize] += flow * span;
+            state.ledger.imposed += flow * span;
+            state.ledger.pending += flow * span;
+        }
+        state.pending_time += span;
+        state.pending_steps += 1;
+        if state.pending_steps >= heat.every {
+            self.conduct_pending(heat, state, thermal, &sides, &driven)?;
+        }
+        state.ledger.close();
+        Ok(())
+    }
+
+    /// The step of the heat.
+    fn conduct_pending(
+        &self,
+        heat: &Heat,
+        state: &mut HeatState,
+        thermal: &ContactHeat,
+        sides: &[Sides],
+        driven: &[u32],
+    ) -> Result<(), DiffusionError> {
+        let span = state.pending_time;
+        let mut graph = Graph {
+            nodes: state.nodes.len(),
+            edges: Vec::with_capacity(sides.len()),
+        };
+        for (sides, [conductance, _]) in sides.iter().zip(&thermal.conductance) {
+            if let ([Some(a), Some(b)], true) = (sides, *conductance > 0.0) {
+                graph.edges.push(Edge {
+                    nodes: [*a, *b],
+                    conductance: *conductance,
+                });
+            }
+        }
+        let before: Vec<f64> = state.nodes.iter().map(|n| n.temperature).collect();
+        let sources: Vec<f64> = state.pending.iter().map(|q| q / span).collect();
+        let balance = step(&mut state.nodes, &graph, &sources, span, heat.theta)?;
+        let reached = |k: usize| before[k] + heat.theta * (state.nodes[k].temperature - before[k]);
+        for edge in &graph.edges {
+            let [a, b] = edge.nodes.map(|n| n as usize);
+            if driven[a] == u32::MAX && driven[b] == u32::MAX {
+                continue;
+            }
+            let flow = span * edge.conductance * (reached(b) - reached(a));
+            for (node, flow) in [(a, flow), (b, -flow)] {
+                if driven[node] != u32::MAX {
+                    state.received[driven[node] as usize] += flow;
+                }
+            }
+        }
+        state.ledger.book(&balance);
+        state.pending.fill(0.0);
+        (state.pending_time, state.pending_steps) = (0.0, 0);
+        Ok(())
+    }
+
+    /// For each node the place of its driven body, `u32::MAX` where it is of a grain.
+    fn nodes_of_driven(&self, heat: &Heat, nodes: usize) -> Vec<u32> {
+        let mut of = vec![u32::MAX; nodes];
+        for (driven, place) in self.state.bodies.driven.iter().zip(0..) {
+            of[heat.nodes[driven.body as usize].range()].fill(place);
+        }
+        of
+    }
+
+    /// Finds the potentials of the circuit, and adds Joule's heat of each contact to its sources.
+    fn flow_of_current(
+        &self,
+        heat: &Heat,
+        state: &mut HeatState,
+        thermal: &mut ContactHeat,
+        span: f64,
+    ) -> Result<(), DiffusionError> {
+        let Some(circuit) = &heat.circuit else {
+            return Ok(());
+        };
+        let contacts = &self.state.network.contacts;
+        let conducting = contacts.iter().zip(&thermal.conductance);
+        let conducting: Vec<(usize, Edge)> = conducting
+            .enumerate()
+            .filter(|(_, (_, conductance))| conductance[1] > 0.0)
+            .map(|(k, (contact, conductance))| {
+                let edge = Edge {
+                    nodes: contact.bodies,
+                    conductance: conductance[1],
+                };
+                (k, edge)
+            })
+            .collect();
+        let graph = Graph {
+            nodes: self.state.bodies.len(),
+            edges: conducting.iter().map(|(_, edge)| *edge).collect(),
+        };
+        let mut fixed = vec![None; graph.nodes];
+        fixed[circuit.from as usize] = Some(1.0);
+        fixed[circuit.to as usize] = Some(0.0);
+        // The potentials are linear in the voltage: those of 1 V give the conductance.
+        let unit = steady(&graph, &fixed, &vec![0.0; graph.nodes])?;
+        let conductance = unit.given[circuit.from as usize].max(0.0);
+        let voltage = circuit.voltage(conductance);
+        state.circuit = CircuitState {
+            voltage,
+            current: voltage * conductance,
+            conductance,
+            potential: unit.potential.iter().map(|v| v * voltage).collect(),
+        };
+        let mut joule = 0.0;
+        for ((k, edge), current) in conducting.iter().zip(&unit.current) {
+            let source = (voltage * current).powi(2) / edge.conductance * span;
+            thermal.source[*k] += source;
+            joule += source;
+        }
+        state.ledger.joule += joule;
+        Ok(())
+    }
+}
