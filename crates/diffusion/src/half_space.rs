@@ -1,6 +1,7 @@
 //! A half-space below a piece of surface: heat flows along its depth only, on a grid that is graded with depth.
 
 use crate::DiffusionError;
+use crate::node::add;
 use serde::{Deserialize, Serialize};
 
 /// Capacities and conductances of the points of a grid over depth, per area of surface.
@@ -90,6 +91,8 @@ pub struct HalfSpace {
     pub area: f64,
     /// Temperature of each point (K), that of the surface first.
     pub temperature: Vec<f64>,
+    /// What rounding took from each so far (K).
+    lost: Vec<f64>,
 }
 
 /// What the depth adds to the equation of the surface, and how the temperatures of the depth follow from it.
@@ -108,6 +111,7 @@ impl HalfSpace {
     pub fn new(grid: Grid, area: f64, temperature: f64) -> Self {
         Self {
             temperature: vec![temperature; grid.points()],
+            lost: vec![0.0; grid.points()],
             grid,
             area,
         }
@@ -150,15 +154,22 @@ impl HalfSpace {
         }
     }
 
-    /// Changes the temperatures, given the change of the surface at theta of the step (K).
-    pub(crate) fn advance(&mut self, eliminated: &Eliminated, surface: f64, theta: f64) {
+    /// Changes the temperatures, given the change of the surface at theta of the step (K); gives the heat that is stored by that (J).
+    pub(crate) fn advance(&mut self, eliminated: &Eliminated, surface: f64, theta: f64) -> f64 {
         let mut change = surface;
-        self.temperature[0] += change / theta;
+        let mut stored = 0.0;
+        let mut take = |k: usize, change: f64| {
+            let (t, lost) = (&mut self.temperature[k], &mut self.lost[k]);
+            add(t, lost, change / theta);
+            stored += self.area * self.grid.capacity[k] * (change / theta);
+        };
+        take(0, change);
         for k in 1..self.grid.points() {
             let g = self.area * self.grid.conductance[k - 1];
             let (pivot, right) = eliminated.points[k];
             change = (right + g * change) / pivot;
-            self.temperature[k] += change / theta;
+            take(k, change);
         }
+        stored
     }
 }

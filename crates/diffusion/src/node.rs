@@ -25,6 +25,8 @@ pub struct Node {
     pub surroundings: f64,
     /// Temperature of the surroundings (K).
     pub ambient: f64,
+    /// What rounding took from the temperature so far (K), so that many small changes add up.
+    pub(crate) lost: f64,
 }
 
 impl Node {
@@ -35,7 +37,13 @@ impl Node {
             store,
             surroundings: 0.0,
             ambient: temperature,
+            lost: 0.0,
         }
+    }
+
+    /// Adds a change of temperature (K).
+    pub(crate) fn change(&mut self, by: f64) {
+        add(&mut self.temperature, &mut self.lost, by);
     }
 
     /// Heat stored since a reference temperature (J); 0 where the temperature is fixed.
@@ -46,4 +54,12 @@ impl Node {
             Store::HalfSpace(space) => space.heat(reference),
         }
     }
+}
+
+/// Adds to a sum whose rounding is kept (W. Kahan, Commun. ACM 8 (1965) 40).
+pub(crate) fn add(sum: &mut f64, lost: &mut f64, by: f64) {
+    let by = by + *lost;
+    let new = *sum + by;
+    *lost = by - (new - *sum);
+    *sum = new;
 }

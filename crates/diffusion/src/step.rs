@@ -153,14 +153,12 @@ fn advance(
             Store::Fixed => {}
             Store::Lumped(capacity) => balance.stored += *capacity * (change / theta),
             Store::HalfSpace(space) => {
-                let before = space.heat(0.0);
                 if let Some(eliminated) = &solved.below[u] {
-                    space.advance(eliminated, change, theta);
+                    balance.stored += space.advance(eliminated, change, theta);
                 }
-                balance.stored += space.heat(0.0) - before;
             }
         }
-        node.temperature += change / theta;
+        node.change(change / theta);
         if let Store::HalfSpace(space) = &node.store {
             node.temperature = space.temperature[0];
         }

@@ -20,6 +20,7 @@ pub mod fracture;
 pub mod fretting;
 pub mod friction;
 pub mod friction_test;
+pub mod heat;
 pub mod jump;
 pub mod layer;
 pub mod loops;

@@ -7,6 +7,7 @@ use super::deformable::Deformable;
 use super::fracture::Fracture;
 use super::friction::Cycles;
 use super::friction_test::FrictionTest;
+use super::heat::HeatObserver;
 use super::jump::CycleJumps;
 use super::measure::measures;
 use super::observer::Observers;
@@ -70,6 +71,9 @@ fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> 
     all.push(Box::new(DrivenBodies::of(s, drawn)));
     if !s.state.systems.is_empty() {
         all.push(Box::new(Deformable::of(case, s)));
+    }
+    if let Some(heat) = HeatObserver::of(s) {
+        all.push(Box::new(heat));
     }
     if case.jump.is_some() {
         all.push(Box::new(CycleJumps));

@@ -49,6 +49,7 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     super::measures::check(case)?;
     friction(case, dimension)?;
     super::jump::check(case)?;
+    super::heat::check(case)?;
     super::circuit::check(case)
 }
 

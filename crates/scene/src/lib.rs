@@ -15,6 +15,7 @@ pub mod check;
 pub mod circuit;
 mod deep;
 pub mod gmsh;
+mod heat;
 mod holders;
 pub mod inputs;
 pub mod interfaces;

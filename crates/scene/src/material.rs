@@ -119,7 +119,7 @@ pub struct Material {
 }
 
 /// Properties with a known unit.
-const PROPERTIES: [(&str, &str); 9] = [
+const PROPERTIES: [(&str, &str); 10] = [
     ("young", "Pa"),
     ("shear_modulus", "Pa"),
     ("bulk_modulus", "Pa"),
@@ -129,6 +129,7 @@ const PROPERTIES: [(&str, &str); 9] = [
     ("conductivity", "W/(m K)"),
     ("heat_capacity", "J/(kg K)"),
     ("expansion", "1/K"),
+    ("resistivity", "ohm m"),
 ];
 
 /// Whether a name is that of a property with a known unit.

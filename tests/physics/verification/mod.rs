@@ -12,6 +12,7 @@ mod laws;
 mod sinks;
 mod solvers;
 mod stages;
+mod thermal;
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::SearchPath;
@@ -100,5 +101,6 @@ fn closed_forms_are_met() {
     laws::all(&mut table);
     stages::all(&mut table);
     deformable::all(&mut table);
+    thermal::all(&mut table);
     assert!(table.failed.is_empty(), "\n{}", table.failed.join("\n"));
 }

@@ -22,13 +22,14 @@ pub struct HeatLedger {
     pub pending: f64,
     /// What does not add up.
     pub residual: f64,
-    /// Largest heat put in, stored or passed on so far.
+    /// Largest heat put in, stored, received by a first body, or passed through all contacts in one step, so far.
     pub scale: f64,
 }
 
 impl HeatLedger {
-    /// Books the flows of a step of the heat.
-    pub(crate) fn book(&mut self, balance: &Balance) {
+    /// Books the flows of a step of the heat, in which so much went through contacts (J).
+    pub(crate) fn book(&mut self, balance: &Balance, exchanged: f64) {
+        self.scale = self.scale.max(exchanged);
         self.surroundings += balance.surroundings;
         self.stored += balance.stored;
         self.fixed += balance.fixed;
@@ -36,7 +37,7 @@ impl HeatLedger {
     }
 
     /// Adds up.
-    pub(crate) fn close(&mut self) {
+    pub(crate) fn close(&mut self, received: &[f64]) {
         let put_in = self.dissipated + self.joule + self.imposed + self.surroundings;
         let found = self.stored + self.fixed + self.pending;
         self.residual = put_in - found;
@@ -48,7 +49,8 @@ impl HeatLedger {
             self.stored,
             self.fixed,
         ];
-        self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
+        let all = seen.iter().chain(received);
+        self.scale = all.fold(self.scale, |m, x| m.max(x.abs()));
     }
 
     /// The residual over the largest heat so far; 0 where none flowed.

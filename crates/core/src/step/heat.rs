@@ -1,6 +1,7 @@
 //! The stepper's part of heat and current: temperatures for the laws at the start of a step, and the heat of the step at its end.
 
 use super::answers::relative_velocity;
+use super::fields::{heat_of_contacts, heat_of_grains};
 use super::{Simulation, StepError};
 use crate::contact::{Contact, ContactHeat};
 use crate::geometry::space::{Space, VectorLike};
@@ -13,6 +14,10 @@ type Sides = [Option<u32>; 2];
 impl<S: Space> Simulation<S> {
     /// Computes heat, and current where there is a circuit, from here on.
     pub fn set_heat(&mut self, heat: Heat, state: HeatState) {
+        self.fields.grains.add(heat_of_grains());
+        for field in heat_of_contacts() {
+            self.fields.contacts.add(field);
+        }
         self.heat = Some(heat);
         self.state.heat = Some(state);
     }
@@ -170,7 +175,7 @@ impl<S: Space> Simulation<S> {
         if state.pending_steps >= heat.every {
             self.conduct_pending(heat, state, thermal, &sides, &driven)?;
         }
-        state.ledger.close();
+        state.ledger.close(&state.received);
         Ok(())
     }
 
@@ -200,19 +205,18 @@ impl<S: Space> Simulation<S> {
         let sources: Vec<f64> = state.pending.iter().map(|q| q / span).collect();
         let balance = step(&mut state.nodes, &graph, &sources, span, heat.theta)?;
         let reached = |k: usize| before[k] + heat.theta * (state.nodes[k].temperature - before[k]);
+        let mut exchanged = 0.0;
         for edge in &graph.edges {
             let [a, b] = edge.nodes.map(|n| n as usize);
-            if driven[a] == u32::MAX && driven[b] == u32::MAX {
-                continue;
-            }
             let flow = span * edge.conductance * (reached(b) - reached(a));
+            exchanged += flow.abs();
             for (node, flow) in [(a, flow), (b, -flow)] {
                 if driven[node] != u32::MAX {
                     state.received[driven[node] as usize] += flow;
                 }
             }
         }
-        state.ledger.book(&balance);
+        state.ledger.book(&balance, exchanged);
         state.pending.fill(0.0);
         (state.pending_time, state.pending_steps) = (0.0, 0);
         Ok(())

@@ -176,7 +176,14 @@ impl Loaded {
         for (k, density) in builder.densities.values() {
             densities[usize::from(*k)] = *density;
         }
-        let simulation = builder.finish(laws.interfaces, laws.table, systems)?;
+        let source = builder.source;
+        let mut simulation = builder.finish(laws.interfaces, laws.table, systems)?;
+        let unscaled: Vec<f64> = densities
+            .iter()
+            .map(|d| d / self.case.inertia_scaling)
+            .collect();
+        crate::heat::install(&self.case, &properties, &unscaled, &mut simulation)
+            .map_err(|f| source.locate(f))?;
         Ok(Built {
             simulation,
             materials: texts,

@@ -10,6 +10,7 @@ mod interface;
 mod shapes;
 
 use crate::build::{Built, Dimensional, Loaded};
+use crate::case::HeatSpec;
 use crate::case::{
     AccuracySpec, BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec,
 };
@@ -82,6 +83,7 @@ impl<S: Dimensional> CaseBuilder<S> {
                 pins: BTreeMap::new(),
                 bodies: Vec::new(),
                 grains: Vec::new(),
+                heat: None,
                 friction: None,
                 biaxial: None,
                 circuit: None,
@@ -108,6 +110,13 @@ impl<S: Dimensional> CaseBuilder<S> {
     #[must_use]
     pub fn accuracy(mut self, accuracy: AccuracySpec) -> Self {
         self.case.accuracy = Some(accuracy);
+        self
+    }
+
+    /// Computes heat, and electric current where it has a circuit.
+    #[must_use]
+    pub fn heat(mut self, heat: HeatSpec) -> Self {
+        self.case.heat = Some(heat);
         self
     }
 

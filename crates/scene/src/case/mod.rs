@@ -5,6 +5,7 @@ mod elastic;
 mod elastic_grain;
 mod grains;
 mod half_space;
+mod heat;
 mod interface;
 mod shapes;
 pub(crate) mod slots;
@@ -20,6 +21,9 @@ pub use elastic::{
 pub use elastic_grain::ElasticGrainSpec;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use half_space::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, HolderSpec};
+pub use heat::{
+    BodyHeatSpec, ConvectionSpec, DepthSpec, ElectricSpec, FaceSpec, HeatSpec, StoreSpec,
+};
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};
 pub use slots::BySlot;
@@ -103,6 +107,9 @@ pub struct Case {
     /// Grains that deform, by their material.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub elastic_grains: Vec<ElasticGrainSpec>,
+    /// Heat and electric current; none are computed without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat: Option<HeatSpec>,
     /// What is measured as a friction test.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<FrictionSpec>,

@@ -59,6 +59,9 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     if has("parameters") || has("jump") || has("accuracy") || has("uncertainty") {
         return "";
     }
+    if named.first().is_some_and(|n| n == "heat") {
+        return heat(last, named, dimension);
+    }
     // A variant that holds its value directly, `bonds: At(0.024)`, is itself last.
     match (last, dimension) {
         ("mass", 2) => return "kg/m",
@@ -97,6 +100,27 @@ pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
         return unit;
     }
     find(&ANYWHERE).unwrap_or_default()
+}
+
+/// Units of what a case says of heat.
+fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
+    let has = |name: &str| named.iter().any(|n| n == name);
+    match (last, dimension) {
+        ("initial" | "temperature" | "ambient", _) => "K",
+        ("coefficient", _) => "W/(m^2 K)",
+        ("area", 2) | ("depth" | "spacing" | "over", _) => "m",
+        ("area", _) => "m^2",
+        ("power", 2) => "W/m",
+        ("power", _) => "W",
+        ("capacity", 2) => "J/(K m)",
+        ("capacity", _) => "J/K",
+        ("flash", _) => "Pa",
+        ("Voltage" | "limit", _) => "V",
+        ("current", 2) => "A/m",
+        ("current", _) => "A",
+        _ if has("grains") => "K",
+        _ => "",
+    }
 }
 
 /// The unit of a function of time that drives a degree of freedom, or gravity.

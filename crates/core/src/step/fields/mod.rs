@@ -18,8 +18,11 @@
 
 mod contacts;
 mod grains;
+mod heat;
 
 pub use contacts::id_fields;
+pub(super) use heat::{heat_of_contacts, heat_of_grains};
+
 pub use grains::{GrainPart, ORIENTATION, orientation, removed};
 
 use crate::contact::Contact;

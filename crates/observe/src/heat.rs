@@ -1,0 +1,280 @@
+//! Temperatures, heat flows and the contact resistance of a run.
+
+use super::chart::{Axis, Chart, Series};
+use super::observer::{Observer, RunEnd};
+use super::output::Output;
+use super::picture::{Picture, Shows};
+use super::statistics::{Column, Table};
+use fretwork_core::code::{CodeError, decode, encode};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::heat::{Heat, HeatLedger, HeatState, Store};
+use fretwork_core::step::{Simulation, StepReport};
+use serde::{Deserialize, Serialize};
+
+/// What the observer carries from row to row.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct State {
+    /// Lowest temperature at the start (K).
+    lowest: f64,
+    /// Highest temperature so far (K).
+    highest: f64,
+    /// Heat that each first body had received at the last row (J; J/m in 2D), and its time (s).
+    received: Vec<f64>,
+    time: f64,
+    /// The row that was given last, and its time: asked for again, it is the same.
+    row: Option<(f64, Vec<f64>)>,
+}
+
+/// Observes the heat of a run, and its electric circuit where it has one.
+#[derive(Debug)]
+pub struct HeatObserver {
+    /// Names of the first bodies, in their order.
+    names: Vec<String>,
+    circuit: bool,
+    flat: bool,
+    state: State,
+}
+
+impl HeatObserver {
+    /// From the current state on; none where no heat is computed.
+    pub fn of<S: Space>(s: &Simulation<S>) -> Option<Self> {
+        let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
+        let temperatures = || state.nodes.iter().map(|n| n.temperature);
+        Some(Self {
+            names: s
+                .state
+                .bodies
+                .driven
+                .iter()
+                .map(|d| d.name.clone())
+                .collect(),
+            circuit: heat.circuit.is_some(),
+            flat: S::D == 2,
+            state: State {
+                lowest: temperatures().fold(f64::INFINITY, f64::min),
+                highest: temperatures().fold(0.0, f64::max),
+                received: state.received.clone(),
+                time: s.state.time,
+                row: None,
+            },
+        })
+    }
+
+    fn row<S: Space>(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
+            return vec![f64::NAN; Observer::<S>::columns(self).len()];
+        };
+        let [highest, mean] = of_grains(s, heat, state);
+        let mut row = vec![highest, mean];
+        let driven = &s.state.bodies.driven;
+        row.extend(
+            driven
+                .iter()
+                .map(|d| s.temperature(d.body as usize).unwrap_or(f64::NAN)),
+        );
+        let span = heat.clock * (s.state.time - self.state.time);
+        let flows = state.received.iter().zip(&self.state.received);
+        row.extend(flows.map(|(now, before)| match span > 0.0 {
+            true => (now - before) / span,
+            false => 0.0,
+        }));
+        row.extend(state.ledger.entries().map(|e| e.2));
+        if self.circuit {
+            let circuit = &state.circuit;
+            row.extend([1.0 / circuit.conductance, circuit.voltage, circuit.current]);
+        }
+        (self.state.received, self.state.time) = (state.received.clone(), s.state.time);
+        row
+    }
+}
+
+/// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat capacities (K).
+fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f64; 2] {
+    let removed = &s.state.bodies.removed;
+    let grain = s.state.bodies.grain_flags();
+    let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
+    for (body, nodes) in heat.nodes.iter().enumerate() {
+        if removed[body] {
+            continue;
+        }
+        for node in &state.nodes[nodes.range()] {
+            highest = highest.max(node.temperature);
+            if let (true, Store::Lumped(capacity)) = (grain[body], &node.store) {
+                sum += capacity * node.temperature;
+                capacities += capacity;
+            }
+        }
+    }
+    let mean = match capacities > 0.0 {
+        true => sum / capacities,
+        false => f64::NAN,
+    };
+    [highest, mean]
+}
+
+impl<S: Space> Observer<S> for HeatObserver {
+    fn name(&self) -> String {
+        "heat".to_owned()
+    }
+
+    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
+        if let Some(state) = &s.state.heat {
+            let nodes = state.nodes.iter().map(|n| n.temperature);
+            self.state.highest = nodes.fold(self.state.highest, f64::max);
+        }
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let [joule, watt, ohm, ampere] = match self.flat {
+            true => ["J/m", "W/m", "ohm m", "A/m"],
+            false => ["J", "W", "ohm", "A"],
+        };
+        let mut all = vec![
+            Column::new(
+                "temperature_max",
+                "K",
+                "highest temperature of grains and of the surfaces of first bodies",
+            ),
+            Column::new(
+                "temperature_mean",
+                "K",
+                "mean temperature of the grains, by their heat capacities",
+            ),
+        ];
+        let of_bodies = |prefix: &str, unit, doc| -> Vec<Column> {
+            let names = self.names.iter();
+            names
+                .map(|name| Column::new(format!("{prefix}_{name}"), unit, doc))
+                .collect()
+        };
+        all.extend(of_bodies(
+            "temperature",
+            "K",
+            "mean temperature of the surface of a first body; not a number of an insulated one",
+        ));
+        all.extend(of_bodies(
+            "heat_flow",
+            watt,
+            "heat flow into a first body through its contacts, mean since the row before",
+        ));
+        all.extend(ledger_columns(joule));
+        if self.circuit {
+            all.extend([
+                Column::new(
+                    "resistance",
+                    ohm,
+                    "electrical resistance between the bodies of the circuit; infinite where no contact joins them",
+                ),
+                Column::new("voltage", "V", "voltage between the bodies of the circuit"),
+                Column::new("current", ampere, "current of the circuit"),
+            ]);
+        }
+        all
+    }
+
+    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
+        if let Some((time, row)) = &self.state.row
+            && *time == s.state.time
+        {
+            return row.clone();
+        }
+        let row = self.row(s);
+        self.state.row = Some((s.state.time, row.clone()));
+        row
+    }
+
+    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+        let lowest = self.state.lowest;
+        let above = |body: u32| {
+            s.temperature(body as usize)
+                .map_or(f64::NAN, |t| t - lowest)
+        };
+        let balls = s.shapes.balls.iter().map(|b| above(b.body));
+        let pieces = s.shapes.pieces.iter().map(|p| above(p.body));
+        vec![Picture {
+            name: "temperature",
+            shows: Shows::Values {
+                values: balls.chain(pieces).collect(),
+                label: "temperature above the lowest at the start (K)",
+                top: (self.state.highest - lowest).max(1e-9),
+            },
+        }]
+    }
+
+    fn picture_names(&self) -> Vec<&'static str> {
+        vec!["temperature"]
+    }
+
+    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+        let last = |name: &str| table.column(name).last().copied().filter(|x| x.is_finite());
+        let mut out = vec![("temperature_max".to_owned(), self.state.highest)];
+        let mut add = |name: &str| out.extend(last(name).map(|x| (format!("{name}_end"), x)));
+        add("temperature_mean");
+        add("resistance");
+        out
+    }
+
+    fn units(&self) -> Vec<(String, &'static str)> {
+        let ohm = if self.flat { "ohm m" } else { "ohm" };
+        vec![
+            ("temperature_mean_end".to_owned(), "K"),
+            ("resistance_end".to_owned(), ohm),
+        ]
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let table = end.table;
+        let time = table.column("time");
+        let over_time = |name: &str| -> Vec<(f64, f64)> {
+            let values = table.column(name);
+            let pairs = time.iter().copied().zip(values);
+            pairs.filter(|(_, y)| y.is_finite()).collect()
+        };
+        let chart = |heading: &str, y: &str, unit: &str| {
+            let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(y, unit));
+            chart.subtitle = Some(end.title.to_owned());
+            chart
+        };
+        let mut temperatures = chart("Temperatures", "temperature", "K")
+            .with(Series::new("highest", over_time("temperature_max")))
+            .with(Series::new("mean of grains", over_time("temperature_mean")));
+        let mut flows = chart(
+            "Heat into first bodies",
+            "heat flow",
+            if self.flat { "W/m" } else { "W" },
+        );
+        for name in &self.names {
+            let of = |prefix: &str| over_time(&format!("{prefix}_{name}"));
+            temperatures = temperatures.with(Series::new(name.clone(), of("temperature")));
+            flows = flows.with(Series::new(name.clone(), of("heat_flow")));
+        }
+        let mut panels = vec![temperatures, flows];
+        if self.circuit {
+            let unit = if self.flat { "ohm m" } else { "ohm" };
+            let resistance = chart("Contact resistance", "resistance", unit);
+            panels.push(resistance.with(Series::new(String::new(), over_time("resistance"))));
+        }
+        vec![Output::charts("heat.png".into(), panels, 1)]
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        vec!["heat.png".to_owned()]
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.state)
+    }
+
+    fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
+        self.state = decode(from)?;
+        Ok(())
+    }
+}
+
+/// Columns of the account of heat, in this unit.
+fn ledger_columns(joule: &'static str) -> Vec<Column> {
+    let entries = HeatLedger::default().entries();
+    let column =
+        |(name, doc, _): (&str, &'static str, f64)| Column::new(format!("heat_{name}"), joule, doc);
+    entries.into_iter().map(column).collect()
+}

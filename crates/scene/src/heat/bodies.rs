@@ -1,0 +1,316 @@
+//! The thermal nodes of the bodies of a case.
+
+use crate::case::{BodyHeatSpec, Case, DepthSpec, HeatSpec, StoreSpec};
+use crate::source::ValidationError;
+use fretwork_core::geometry::convex::Core;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::heat::{
+    BodyNodes, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
+};
+use fretwork_core::step::Simulation;
+use std::f64::consts::PI;
+
+/// Growth of the spacing with depth, the first spacing over the distance that heat comes in a step, and the depth over that of the run.
+const GROWTH: f64 = 1.2;
+const FIRST: f64 = 0.3;
+const DEEP: f64 = 6.0;
+
+/// Nodes of all bodies.
+#[derive(Default)]
+pub(super) struct Nodes {
+    pub list: Vec<Node>,
+    pub of_bodies: Vec<BodyNodes>,
+    /// Node and heat flow (W; W/m in 2D).
+    pub imposed: Vec<(u32, f64)>,
+}
+
+/// What nodes of bodies are made from.
+struct Scene<'a, S: Space> {
+    case: &'a Case,
+    spec: &'a HeatSpec,
+    materials: &'a [ThermalMaterial],
+    material: &'a [u16],
+    simulation: &'a Simulation<S>,
+}
+
+impl Nodes {
+    /// Of the bodies of a case.
+    pub fn of<S: Space>(
+        case: &Case,
+        spec: &HeatSpec,
+        materials: &[ThermalMaterial],
+        material: &[u16],
+        simulation: &Simulation<S>,
+    ) -> Result<Self, ValidationError> {
+        let scene = Scene {
+            case,
+            spec,
+            materials,
+            material,
+            simulation,
+        };
+        let mut nodes = Self::default();
+        let bodies = &simulation.state.bodies;
+        let surface = scene.surface_of_grains();
+        for body in 0..bodies.len() {
+            let driven = bodies.driven.iter().find(|d| d.body as usize == body);
+            match driven {
+                None => nodes.grain(&scene, body, surface[body]),
+                Some(driven) => nodes.first_body(&scene, body, &driven.name)?,
+            }
+        }
+        Ok(nodes)
+    }
+
+    fn one(&mut self, node: Node) {
+        self.of_bodies.push(BodyNodes::One(self.list.len() as u32));
+        self.list.push(node);
+    }
+
+    fn grain<S: Space>(&mut self, scene: &Scene<'_, S>, body: usize, surface: f64) {
+        let name = scene.case.materials.keys();
+        let name = name.into_iter().nth(usize::from(scene.material[body]));
+        let given = name.and_then(|n| scene.spec.grains.get(n));
+        let temperature = given.copied().unwrap_or(scene.spec.initial);
+        let mut node = Node::new(temperature, Store::Lumped(scene.capacity(body)));
+        if let Some(convection) = scene.spec.convection {
+            node.surroundings = convection.coefficient * surface;
+            node.ambient = convection.ambient;
+        }
+        self.one(node);
+    }
+
+    fn first_body<S: Space>(
+        &mut self,
+        scene: &Scene<'_, S>,
+        body: usize,
+        name: &str,
+    ) -> Result<(), ValidationError> {
+        let fixed = BodyHeatSpec::default();
+        let spec = scene.spec.bodies.get(name).unwrap_or(&fixed);
+        let temperature = spec.temperature.unwrap_or(scene.spec.initial);
+        let first = self.list.len() as u32;
+        match &spec.store {
+            StoreSpec::Insulated => {
+                self.of_bodies.push(BodyNodes::Insulated);
+                return Ok(());
+            }
+            StoreSpec::Fixed => self.one(Node::new(temperature, Store::Fixed)),
+            StoreSpec::Lumped { capacity } => {
+                let capacity = match capacity {
+                    Some(capacity) => *capacity,
+                    None if scene.has_volume(body) => scene.capacity(body),
+                    None => {
+                        let message = format!(
+                            "`{name}` has surfaces only, so that its volume is not known; give its heat capacity, `Lumped(capacity: 1.0)` (J/K)"
+                        );
+                        return Err(ValidationError::new(
+                            format!("heat.bodies.{name}.store"),
+                            message,
+                        ));
+                    }
+                };
+                self.one(Node::new(temperature, Store::Lumped(capacity)));
+            }
+            StoreSpec::HalfSpace(depth) => {
+                let here = format!("heat.bodies.{name}.store");
+                let pieces = scene.pieces(&here, body, depth)?;
+                let grid = scene.grid(&here, body, depth)?;
+                for _ in 0..pieces.count() {
+                    let space = HalfSpace::new(grid.clone(), pieces.area(), temperature);
+                    let store = Store::HalfSpace(Box::new(space));
+                    self.list.push(Node::new(temperature, store));
+                }
+                self.of_bodies.push(BodyNodes::Pieces(first, pieces));
+            }
+        }
+        let count = (self.list.len() as u32 - first).max(1);
+        let share = 1.0 / f64::from(count);
+        for node in first..self.list.len() as u32 {
+            if let Some(face) = spec.convection {
+                let node = &mut self.list[node as usize];
+                node.surroundings = face.coefficient * face.area * share;
+                node.ambient = face.ambient;
+            }
+            if spec.power != 0.0 {
+                self.imposed.push((node, spec.power * share));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<S: Space> Scene<'_, S> {
+    fn material_of(&self, body: usize) -> &ThermalMaterial {
+        &self.materials[usize::from(self.material[body])]
+    }
+
+    /// Heat capacity of a body with a volume (J/K; J/(K m) in 2D), without inertia scaling.
+    fn capacity(&self, body: usize) -> f64 {
+        let mass = self.simulation.state.bodies.mass[body] / self.case.inertia_scaling;
+        mass * self.material_of(body).heat_capacity
+    }
+
+    fn has_volume(&self, body: usize) -> bool {
+        let shapes = &self.simulation.shapes;
+        let balls = shapes.balls.iter().map(|b| b.body);
+        let pieces = shapes.pieces.iter().map(|p| p.body);
+        balls.chain(pieces).any(|b| b as usize == body)
+    }
+
+    /// Surface of each grain (m^2; circumference in 2D, m): of others than balls that of the ball of the same volume.
+    fn surface_of_grains(&self) -> Vec<f64> {
+        let shapes = &self.simulation.shapes;
+        let mut surface = vec![0.0; self.simulation.state.bodies.len()];
+        let balls = shapes.balls.iter().map(|b| (b.body, b.radius));
+        let pieces = shapes.pieces.iter().map(|p| (p.body, p.size));
+        for (body, radius) in balls.chain(pieces) {
+            surface[body as usize] += match S::D {
+                2 => 2.0 * PI * radius,
+                _ => 4.0 * PI * radius * radius,
+            };
+        }
+        surface
+    }
+
+    /// The strips or rectangles of the surface of a body.
+    fn pieces(
+        &self,
+        here: &str,
+        body: usize,
+        depth: &DepthSpec,
+    ) -> Result<Pieces, ValidationError> {
+        let given = [depth.x, depth.y, depth.z];
+        let axes: Vec<usize> = (0..3).filter(|k| given[*k].is_some()).collect();
+        if axes.len() != S::D - 1 || axes.iter().any(|k| *k >= S::D) {
+            let message = format!(
+                "the surface is divided along {} of the case",
+                match S::D {
+                    2 => "one axis",
+                    _ => "two axes",
+                }
+            );
+            let example = match S::D {
+                2 => "`HalfSpace(x: 40)`",
+                _ => "`HalfSpace(x: 40, y: 10)`",
+            };
+            return Err(ValidationError::new(here, message).expected(example));
+        }
+        if !depth.over.is_empty() && depth.over.len() != axes.len() {
+            let message = format!(
+                "`over` has {} ranges for {} axes",
+                depth.over.len(),
+                axes.len()
+            );
+            return Err(ValidationError::new(here, message)
+                .expected("a range (low, high) for each axis along which the surface is divided"));
+        }
+        let mut out = Vec::new();
+        for (k, axis) in axes.into_iter().enumerate() {
+            let count = given[axis].unwrap_or(1);
+            if count == 0 {
+                let message = "the number of pieces must be at least 1";
+                return Err(ValidationError::new(here, message));
+            }
+            if let Some((low, high)) = depth.over.get(k).copied() {
+                if !(low < high && (high - low).is_finite()) {
+                    let message = format!("the range from {low} to {high} m is empty");
+                    return Err(ValidationError::new(here, message));
+                }
+                let length = high - low;
+                out.push(PieceAxis {
+                    axis,
+                    low,
+                    length,
+                    count,
+                    periodic: self.simulation.shapes.periodic.period[axis] == Some(length),
+                });
+                continue;
+            }
+            out.push(self.strips(here, body, axis, count)?);
+        }
+        Ok(Pieces { axes: out })
+    }
+
+    /// Strips along an axis over the period, or over the extent of the surfaces of the body.
+    fn strips(
+        &self,
+        here: &str,
+        body: usize,
+        axis: usize,
+        count: u32,
+    ) -> Result<PieceAxis, ValidationError> {
+        let s = self.simulation;
+        if let Some(length) = s.shapes.periodic.period[axis] {
+            return Ok(PieceAxis {
+                axis,
+                low: -0.5 * length,
+                length,
+                count,
+                periodic: true,
+            });
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut see = |x: f64| (low, high) = (low.min(x), high.max(x));
+        for surface in s.shapes.surfaces.iter().filter(|f| f.body as usize == body) {
+            if surface.shape.flat().is_some() {
+                let message = "a plane has no ends; say over which part of it the pieces are";
+                return Err(ValidationError::new(here, message).expected(
+                    "`over: [(-1e-3, 1e-3)]` (m), or a period of the case along the axis",
+                ));
+            }
+            for point in surface.shape.outline().into_iter().flatten() {
+                see(point.padded()[axis] + surface.offset.padded()[axis]);
+            }
+        }
+        for ball in s.shapes.balls.iter().filter(|b| b.body as usize == body) {
+            see(ball.offset.padded()[axis] - ball.radius);
+            see(ball.offset.padded()[axis] + ball.radius);
+        }
+        for piece in s.shapes.pieces.iter().filter(|p| p.body as usize == body) {
+            for corner in piece.core.boundary().corners {
+                see((piece.offset + corner).padded()[axis]);
+            }
+        }
+        if low < high && (high - low).is_finite() {
+            return Ok(PieceAxis {
+                axis,
+                low,
+                length: high - low,
+                count,
+                periodic: false,
+            });
+        }
+        let message = format!(
+            "the surface has no extent along {}; make the case periodic along it, or choose another axis",
+            ["x", "y", "z"][axis]
+        );
+        Err(ValidationError::new(here, message))
+    }
+
+    /// The grid over the depth.
+    fn grid(&self, here: &str, body: usize, depth: &DepthSpec) -> Result<Grid, ValidationError> {
+        let conductor = self.material_of(body).conductor();
+        let time = &self.case.time;
+        let reach = |t: f64| (conductor.diffusivity() * self.spec.clock * t).sqrt();
+        let step = time.step * self.spec.every as f64;
+        let spacing = depth.spacing.unwrap_or(FIRST * reach(step));
+        let total = depth.depth.unwrap_or(DEEP * reach(time.end)).max(spacing);
+        let growth = depth.growth.unwrap_or(GROWTH);
+        let points = (1.0 + (growth - 1.0) * total / spacing).ln() / growth.ln().max(1e-9);
+        if points.min(total / spacing) > 1e4 {
+            let message = format!(
+                "a grid from {spacing:e} m to a depth of {total:e} m has more than 10,000 points; give a larger `spacing` or `growth`"
+            );
+            return Err(ValidationError::new(here, message));
+        }
+        Grid::graded(
+            conductor.conductivity,
+            conductor.capacity,
+            spacing,
+            growth,
+            total,
+        )
+        .map_err(|e| ValidationError::new(here, e.to_string()))
+    }
+}

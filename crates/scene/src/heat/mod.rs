@@ -1,0 +1,112 @@
+//! Heat of a case: checks what it says, and gives it to the simulation.
+
+mod bodies;
+mod check;
+
+pub(crate) use check::check;
+
+use crate::case::{Case, HeatSpec};
+use crate::material::Sourced;
+use crate::source::ValidationError;
+use bodies::Nodes;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::heat::{Circuit, Heat, HeatState, ThermalMaterial};
+use fretwork_core::step::Simulation;
+use std::collections::BTreeMap;
+
+/// Properties of the materials of a case, in its order.
+pub(crate) type Properties = [BTreeMap<String, Sourced>];
+
+/// Has a simulation compute the heat of its case, where it has any. Densities are without inertia scaling (kg/m^3).
+pub(crate) fn install<S: Space>(
+    case: &Case,
+    properties: &Properties,
+    densities: &[f64],
+    s: &mut Simulation<S>,
+) -> Result<(), ValidationError> {
+    let Some(spec) = &case.heat else {
+        return check::refuse_laws_without_heat(case, s);
+    };
+    check::refuse_systems(s)?;
+    let materials = materials(case, spec, properties, densities)?;
+    let material = material_of_bodies(s);
+    let nodes = Nodes::of(case, spec, &materials, &material, s)?;
+    let circuit = spec.circuit.as_ref().map(|c| {
+        let named = |name: &str| s.body_named(name).unwrap_or_default() as u32;
+        Circuit {
+            from: named(&c.from),
+            to: named(&c.to),
+            supply: c.supply,
+        }
+    });
+    let heat = Heat {
+        materials,
+        material,
+        nodes: nodes.of_bodies,
+        imposed: nodes.imposed,
+        shares: spec.shares,
+        partition: spec.partition,
+        theta: spec.theta,
+        clock: spec.clock,
+        every: spec.every,
+        flash: spec.flash,
+        circuit,
+    };
+    let state = HeatState::new(nodes.list, s.state.bodies.driven.len());
+    s.set_heat(heat, state);
+    Ok(())
+}
+
+/// The material of each body: that of its shapes.
+fn material_of_bodies<S: Space>(s: &Simulation<S>) -> Vec<u16> {
+    let mut of = vec![0; s.state.bodies.len()];
+    let balls = s.shapes.balls.iter().map(|b| (b.body, b.material));
+    let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.material));
+    let surfaces = s.shapes.surfaces.iter().map(|f| (f.body, f.material));
+    for (body, material) in balls.chain(pieces).chain(surfaces) {
+        of[body as usize] = material;
+    }
+    of
+}
+
+/// Thermal properties of the materials.
+fn materials(
+    case: &Case,
+    spec: &HeatSpec,
+    properties: &Properties,
+    densities: &[f64],
+) -> Result<Vec<ThermalMaterial>, ValidationError> {
+    let names = case.materials.iter().zip(properties).zip(densities);
+    let of = |(((name, file), properties), density): (
+        ((&String, &String), &BTreeMap<String, Sourced>),
+        &f64,
+    )| {
+        let get = |property: &str, unit: &str, what: &str| {
+            let here = format!("materials.{name}");
+            let Some(found) = properties.get(property) else {
+                let message = format!(
+                    "heat needs the {what} of `{name}`, and the file `{file}.ron` has no property `{property}`"
+                );
+                return Err(ValidationError::new(here, message)
+                    .expected(format!("`{property}` among its properties, in {unit}")));
+            };
+            let value = found.in_unit(unit).map_err(|e| e.at(here.clone()))?;
+            if value > 0.0 && value.is_finite() {
+                return Ok(value);
+            }
+            let message = format!("`{property}` of `{file}.ron` must be above zero, got {value}");
+            Err(ValidationError::new(here, message))
+        };
+        let electric = spec.circuit.is_some() && check::carries_current(case, name);
+        Ok(ThermalMaterial {
+            conductivity: get("conductivity", "W/(m K)", "thermal conductivity")?,
+            heat_capacity: get("heat_capacity", "J/(kg K)", "heat capacity")?,
+            density: *density,
+            resistivity: match electric {
+                true => Some(get("resistivity", "ohm m", "electrical resistivity")?),
+                false => None,
+            },
+        })
+    };
+    names.map(of).collect()
+}
