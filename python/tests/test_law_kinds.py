@@ -58,20 +58,20 @@ def test_inputs_are_those_of_the_kind():
 
 
 def test_a_further_kind_is_an_entry(monkeypatch, tmp_path):
-    """Built, up to the linker: the header that is shipped has no fifth kind."""
+    """Built, up to the linker: the header that is shipped has no such kind."""
     pytest.importorskip("numba")
     from fretwork.law import build
 
-    new = Kind("transport", Function("flux", "commit", "the volume that moves (m^3)", "out_volume", moves=True), claims=("slip",))
-    monkeypatch.setitem(KINDS, "transport", new)
-    transport = definition.decorator("transport")
+    new = Kind("diffusion", Function("flux", "commit", "the volume that moves (m^3)", "out_volume", moves=True), claims=("slip",))
+    monkeypatch.setitem(KINDS, "diffusion", new)
+    diffusion = definition.decorator("diffusion")
 
-    @transport
+    @diffusion
     def my_flux(slip, area, share=law.Parameter(0.1, range=(0.0, 1.0), doc="share"), moved=law.Variable(0.0, "m^3", "moved")):
         """volume that moves with the slip"""
         return share * slip * area, moved + share * slip * area
 
     table, loops_object = build.compiled(my_flux)
-    assert ".kind = FW_KIND_TRANSPORT," in table and ".commit = call_commit," in table
+    assert ".kind = FW_KIND_DIFFUSION," in table and ".commit = call_commit," in table
     assert b"fretwork_commit_0" in loops_object
-    assert "slip" in law.inputs("transport") and "slip" in law.inputs("wear") and "slip" not in law.inputs("contact")
+    assert "slip" in law.inputs("diffusion") and "slip" in law.inputs("wear") and "slip" not in law.inputs("contact")

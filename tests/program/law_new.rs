@@ -51,7 +51,7 @@ fn line<'a>(said: &'a str, word: &str) -> &'a str {
 
 fn follow(language: &str) {
     let place = Place::new(language);
-    for kind in ["contact", "cohesion", "damage", "wear"] {
+    for kind in ["contact", "cohesion", "damage", "wear", "transport"] {
         let said = place.done(&format!(
             "fretwork law new my-{kind} --kind {kind} --lang {language}"
         ));

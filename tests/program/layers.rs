@@ -21,7 +21,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 10] = [
     ("study", &[], &BESIDE_NUMBERS),
     (
         "core",
-        &[],
+        &["diffusion"],
         &[
             "rust-hdf5",
             "clap",
@@ -163,7 +163,7 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 14] = [
+const MODULES: [&str; 15] = [
     "huge_pages",
     "threads",
     "code",
@@ -176,6 +176,7 @@ const MODULES: [&str; 14] = [
     "certify",
     "energy",
     "wear",
+    "heat",
     "step",
     "process",
 ];

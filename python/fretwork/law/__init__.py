@@ -22,19 +22,21 @@ from .definition import Law, decorator
 from .fields import Parameter, Variable
 from .formulas import SMALLER_STEP, bounded, damage_for, damping_ratio, release_rate
 from .kinds import KINDS
-from .results import Attraction, Friction, Spring, Traction
+from .results import Attraction, Conductance, Friction, Spring, Traction
 from .source import LawError
 
 contact = decorator("contact")
 cohesion = decorator("cohesion")
 damage = decorator("damage")
 wear = decorator("wear")
+transport = decorator("transport")
 
 __all__ = [
     "SMALLER_STEP",
     "Attraction",
     "Certificate",
     "Check",
+    "Conductance",
     "Curve",
     "Field",
     "Friction",

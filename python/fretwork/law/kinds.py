@@ -12,7 +12,7 @@ from typing import Any
 
 from . import header
 from .formulas import DERIVED
-from .results import Attraction, Friction, Spring, Traction
+from .results import Attraction, Conductance, Friction, Spring, Traction
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,9 @@ def _nothing() -> float:
 #: Flags that a law of any kind may have.
 COMMON_OPTIONS = {"only_2d": ("FW_FLAG_2D_ONLY", False), "only_3d": ("FW_FLAG_3D_ONLY", False)}
 
+#: A law that uses these columns needs a case that computes heat.
+_THERMAL = {name: "FW_FLAG_TEMPERATURE" for name in ("temperature", "conductivity", "resistivity")}
+
 _KINDS = (
     Kind(
         word="contact",
@@ -95,7 +98,7 @@ _KINDS = (
             Function("commit", "commit", "the new internal variables", moves=True),
         ),
         claims=("overlap", "effective_mass", "spring_"),
-        asks={name: "FW_FLAG_COMPLIANT" for name in ("overlap", "effective_mass", "spring_")},
+        asks={**_THERMAL, **{name: "FW_FLAG_COMPLIANT" for name in ("overlap", "effective_mass", "spring_")}},
         constant=True,
     ),
     Kind(
@@ -106,7 +109,7 @@ _KINDS = (
             Function("commit", "commit", "the new internal variables", moves=True),
             Function("damage", "commit", "the damage D", "out_damage", moves=True, flag="FW_FLAG_BREAKS"),
         ),
-        asks={"rotation_": "FW_FLAG_MOMENT", "out_moment_": "FW_FLAG_MOMENT"},
+        asks={**_THERMAL, "rotation_": "FW_FLAG_MOMENT", "out_moment_": "FW_FLAG_MOMENT"},
         options={"tension_only": ("FW_FLAG_TENSION_ONLY", True), "forms": ("FW_FLAG_FORMS", True)},
         degradation=1.0,
         fractures=True,
@@ -115,11 +118,20 @@ _KINDS = (
         word="damage",
         main=Function("damage", "commit", "the damage D at the end of the step", "out_damage", moves=True),
         claims=("intact_", "energy_intact", "degradation"),
+        asks=_THERMAL,
         fractures=True,
     ),
     Kind(
         word="wear",
         main=Function("volume", "commit", "the volume removed in the step (m^3)", "out_volume", moves=True),
+        claims=("slip", "friction_work"),
+        asks=_THERMAL,
+    ),
+    Kind(
+        word="transport",
+        main=Function(
+            "conductance", "commit", "the thermal conductance (W/K), or a Conductance", "out_conductance", (Conductance,), moves=True
+        ),
         claims=("slip", "friction_work"),
     ),
 )

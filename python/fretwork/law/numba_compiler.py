@@ -16,7 +16,7 @@ from typing import Any, cast
 from fretwork._errors import missing
 
 from . import source
-from .results import Attraction, Friction, Spring, Traction
+from .results import Attraction, Conductance, Friction, Spring, Traction
 from .source import LawError
 
 #: The version whose private interfaces are used here, as `pyfretwork[laws]` installs it.
@@ -25,7 +25,7 @@ NUMBA = "0.68.0"
 #: Processor that laws are compiled for: the base of the architecture, as for laws in Rust and C.
 PROCESSORS = {"x86_64": "x86-64", "AMD64": "x86-64"}
 
-_RESULTS = (Friction, Spring, Traction, Attraction)
+_RESULTS = (Friction, Spring, Traction, Attraction, Conductance)
 
 
 def imported(name: str) -> Any:

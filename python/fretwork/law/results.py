@@ -27,6 +27,15 @@ class Friction(NamedTuple):
     shear_cohesion: float = 0.0
 
 
+class Conductance(NamedTuple):
+    """Answer of a transport law (in 2D per metre of depth). A transport law may return the thermal conductance alone."""
+
+    #: thermal conductance (W/K), not negative
+    conductance: float
+    #: electrical conductance (S), not negative
+    electric_conductance: float = 0.0
+
+
 class Spring(NamedTuple):
     """Spring of a compliant contact at the overlap that the law is given (in 2D per metre of depth)."""
 

@@ -8,6 +8,7 @@ mod table;
 use super::super::number::positive;
 use super::super::output::{answer, answer_json, inform};
 use super::super::{Failure, PluginArgs};
+use crate::laws::bench::ROOM;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -17,6 +18,8 @@ pub const EXAMPLES: &str = "Examples:
   fretwork law drive mac --mode cyclic --to 5e-7 --cycles 10
   fretwork law drive mac --mode force --to 2e5
   fretwork law drive rate-and-state --mode slide --velocities 1e-6,1e-5 --to 1e-4
+  fretwork law drive holm --to 5e8
+  fretwork law drive thermal-friction --mode heat --to 1500
   fretwork law drive mac --path my_path.csv        (columns time,n,t1,t2 or time,n,t)
   fretwork law drive --case cases/wheel_rail_fretting.ron --interface third_body --mode II --png bond.png";
 
@@ -36,15 +39,16 @@ pub struct DriveArgs {
     /// A parameter: NAME=VALUE or KIND.NAME=VALUE; with --case a value of the case: KEY.PATH=VALUE
     #[arg(long = "set", value_name = "NAME=VALUE")]
     sets: Vec<String>,
-    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force (raised in 1 s), slide
-    #[arg(long, default_value = "I")]
-    mode: String,
+    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force (raised in 1 s), slide, press
+    /// (pressure raised in 1 s), heat (temperature raised in 1 s); press by default where a transport law is driven, otherwise I
+    #[arg(long)]
+    mode: Option<String>,
     /// Angle of the opening to the normal, degrees (mixed, cyclic, force)
     #[arg(long)]
     angle: Option<f64>,
-    /// Largest opening (m), traction (force, Pa) or sliding distance at each velocity (slide, m); by default
-    /// 20 % beyond the opening at which the bond breaks or the attraction ends (cyclic: beyond its peak;
-    /// force: 10 % beyond its strength; slide: 1e-5)
+    /// Largest opening (m), traction (force, Pa), sliding distance at each velocity (slide, m), pressure (press, Pa) or temperature
+    /// (heat, K); by default 20 % beyond the opening at which the bond breaks or the attraction ends (cyclic: beyond its peak;
+    /// force: 10 % beyond its strength; slide: 1e-5; press: 1e9; heat: 2000)
     #[arg(long)]
     to: Option<f64>,
     /// Reduced radius of the contact r1 r2/(r1 + r2) (m); by default 1e-5, with --case the median of the
@@ -63,9 +67,12 @@ pub struct DriveArgs {
     /// Velocities in sequence (slide, m/s)
     #[arg(long, value_delimiter = ',', value_parser = positive)]
     velocities: Vec<f64>,
-    /// Compressive pressure (Pa); by default 1e6 in slide, otherwise 0
+    /// Compressive pressure (Pa); by default 1e6 in slide and heat, otherwise 0
     #[arg(long)]
     pressure: Option<f64>,
+    /// Temperature of both bodies (K); with heat the lowest
+    #[arg(long, default_value_t = ROOM, value_parser = positive)]
+    temperature: f64,
     /// A path from a CSV file with the header time,n,t1,t2 (s, m)
     #[arg(long)]
     path: Option<PathBuf>,
@@ -119,11 +126,17 @@ fn check(args: &DriveArgs) -> Result<(), Failure> {
 pub fn drive(args: &DriveArgs) -> Result<(), Failure> {
     check(args)?;
     let (mut bench, title) = laws::bench(args)?;
-    let to = path::extent(args, &mut bench)?;
-    let rows = if args.mode == "force" && args.path.is_none() {
+    let transport = bench.law().transport().is_some() && !bench.law().opens();
+    let mode = match &args.mode {
+        Some(mode) => mode.as_str(),
+        None if transport => "press",
+        None => "I",
+    };
+    let to = path::extent(args, mode, &mut bench)?;
+    let rows = if mode == "force" && args.path.is_none() {
         table::by_force(&mut bench, args, to)?
     } else {
-        table::along(&mut bench, &path::path(args, to)?, args)?
+        table::along(&mut bench, &path::path(args, mode, to)?, mode)?
     };
     if let Some(file) = &args.csv {
         output::write_csv(file, &rows)?;
@@ -137,6 +150,10 @@ pub fn drive(args: &DriveArgs) -> Result<(), Failure> {
         if args.case.is_some() {
             inform(&title);
         }
-        answer(&output::text(&rows))
+        let thermal = bench.law().reads_temperatures();
+        answer(&match thermal {
+            true => output::thermal_text(&rows),
+            false => output::text(&rows),
+        })
     }
 }

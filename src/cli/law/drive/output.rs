@@ -22,6 +22,9 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     let carries = rows
         .iter()
         .any(|r| r.traction_n != 0.0 || r.traction_t1 != 0.0);
+    if let Some(chart) = thermal_chart(rows, &title) {
+        return chart.draw(file).map_err(fail);
+    }
     if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
         let chart = Chart::new(
             title,
@@ -67,6 +70,69 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     .with(Series::new("", points(&signed, &|r| r.damage)))
     .draw(&file.with_file_name(name))
     .map_err(fail)
+}
+
+/// Conductance, or friction, against what is raised: pressure or temperature.
+fn thermal_chart(rows: &[Row], title: &str) -> Option<Chart> {
+    let rows = rows.get(1..)?;
+    let (first, last) = (rows.first()?, rows.last()?);
+    let (x, axis): (fn(&Row) -> f64, _) = if first.temperature != last.temperature {
+        (|r| r.temperature, Axis::new("temperature T", "K"))
+    } else if first.pressure != last.pressure {
+        (|r| r.pressure, Axis::new("pressure p", "Pa"))
+    } else {
+        return None;
+    };
+    let points =
+        |y: fn(&Row) -> f64| -> Vec<(f64, f64)> { rows.iter().map(|r| (x(r), y(r))).collect() };
+    let has = |y: fn(&Row) -> f64| rows.iter().any(|r| y(r) > 0.0);
+    let (y, name): (fn(&Row) -> f64, _) = if has(|r| r.conductance) {
+        (|r| r.conductance, Axis::new("thermal conductance G", "W/K"))
+    } else if has(|r| r.electric_conductance) {
+        (
+            |r| r.electric_conductance,
+            Axis::new("electrical conductance g", "S"),
+        )
+    } else {
+        (|r| r.friction, Axis::new("friction coefficient µ", ""))
+    };
+    Some(Chart::new(title.to_owned(), axis, name).with(Series::new("", points(y))))
+}
+
+/// About twenty rows of laws that read temperatures or conduct.
+pub(super) fn thermal_text(rows: &[Row]) -> String {
+    let mut out = format!(
+        "{:>11} {:>12} {:>12} {:>11} {:>9} {:>8} {:>15} {:>12} {:>12}\n",
+        "time s",
+        "slip m",
+        "pressure Pa",
+        "temp. K",
+        "damage",
+        "mu",
+        "conductance W/K",
+        "electric S",
+        "worn m3"
+    );
+    let every = rows.len().div_ceil(20).max(1);
+    // The first row is the contact before anything was asked.
+    for (k, r) in rows.iter().enumerate().skip(1) {
+        if k % every != 0 && k + 1 != rows.len() {
+            continue;
+        }
+        out += &format!(
+            "{:>11.4e} {:>12.4e} {:>12.4e} {:>11.2} {:>9.6} {:>8.5} {:>15.6e} {:>12.6e} {:>12.4e}\n",
+            r.time,
+            r.opening_t1,
+            r.pressure,
+            r.temperature,
+            r.damage,
+            r.friction,
+            r.conductance,
+            r.electric_conductance,
+            r.worn
+        );
+    }
+    out
 }
 
 /// About twenty rows, and the totals of the path.

@@ -10,29 +10,36 @@ use std::path::Path;
 
 /// Opening, or sliding distance, for laws without a length scale (m).
 const USUAL: f64 = 1e-5;
+/// Pressure (Pa) and temperature (K) up to which contacts are pressed and heated by default.
+const MOST_PRESSURE: f64 = 1e9;
+const MOST_TEMPERATURE: f64 = 2000.0;
 
 /// Default extent of the path from the law's own scale: 1.2 times the opening at break (cyclic: 1.2 times the
 /// opening at the peak; force: 1.1 times the strength), or beyond the range of an attraction.
-pub(super) fn extent(args: &DriveArgs, bench: &mut Bench) -> Result<f64, Failure> {
+pub(super) fn extent(args: &DriveArgs, mode: &str, bench: &mut Bench) -> Result<f64, Failure> {
     if let Some(to) = args.to {
         return Ok(to);
     }
-    if args.mode == "slide" || args.path.is_some() {
-        return Ok(USUAL);
+    match mode {
+        "press" => return Ok(MOST_PRESSURE),
+        "heat" => return Ok(MOST_TEMPERATURE),
+        "slide" => return Ok(USUAL),
+        _ if args.path.is_some() => return Ok(USUAL),
+        _ => {}
     }
     let failed = |e: LawError| Failure::Failed(e.to_string());
     let Some(scale) = bench.scale(args.rate).map_err(failed)? else {
         let reach = attraction_reach(bench, args.rate).map_err(failed)?;
         return Ok(reach.map_or(USUAL, |r| 1.2 * r));
     };
-    let shear = match args.mode.as_str() {
+    let shear = match mode {
         "II" | "2" => true,
         "I" | "1" => false,
         // A mixed path uses the nearer pure mode.
         "mixed" => args.angle.unwrap_or(45.0) > 45.0,
         _ => args.angle.unwrap_or(0.0) > 45.0,
     };
-    Ok(of_mode(&args.mode, &scale, shear))
+    Ok(of_mode(mode, &scale, shear))
 }
 
 fn of_mode(mode: &str, scale: &BondScale, shear: bool) -> f64 {
@@ -51,8 +58,54 @@ fn of_mode(mode: &str, scale: &BondScale, shear: bool) -> f64 {
     }
 }
 
+/// A contact at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    /// Time (s).
+    pub time: f64,
+    /// Opening (m).
+    pub opening: [f64; 3],
+    /// Compressive pressure (Pa).
+    pub pressure: f64,
+    /// Temperature of both bodies (K).
+    pub temperature: f64,
+}
+
+/// The contact at the ends of the steps.
+pub(super) fn path(args: &DriveArgs, mode: &str, to: f64) -> Result<Vec<Point>, Failure> {
+    let slides = matches!(mode, "slide" | "heat");
+    let pressure = args.pressure.unwrap_or(if slides { 1e6 } else { 0.0 });
+    let raised = |k: u32| f64::from(k) / f64::from(args.steps);
+    let at_rest = |time, pressure, temperature| Point {
+        time,
+        opening: [0.0; 3],
+        pressure,
+        temperature,
+    };
+    let room = args.temperature;
+    match mode {
+        _ if args.path.is_some() => {}
+        "press" => {
+            let point = |k| at_rest(raised(k), to * raised(k), room);
+            return Ok((1..=args.steps).map(point).collect());
+        }
+        "heat" => {
+            let point = |k| at_rest(raised(k), pressure, room + (to - room) * raised(k));
+            return Ok((1..=args.steps).map(point).collect());
+        }
+        _ => {}
+    }
+    let point = |(time, opening)| Point {
+        time,
+        opening,
+        pressure,
+        temperature: room,
+    };
+    Ok(openings(args, mode, to)?.into_iter().map(point).collect())
+}
+
 /// Times (s) and openings (m) at the ends of the steps.
-pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Failure> {
+fn openings(args: &DriveArgs, mode: &str, to: f64) -> Result<Vec<(f64, [f64; 3])>, Failure> {
     if let Some(file) = &args.path {
         return read_path(file);
     }
@@ -70,7 +123,7 @@ pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Fa
         };
         (1..=n).map(point).collect()
     };
-    Ok(match args.mode.as_str() {
+    Ok(match mode {
         "I" | "1" => straight(0.0),
         "II" | "2" => straight(90.0),
         "mixed" => straight(args.angle.unwrap_or(45.0)),
@@ -112,7 +165,7 @@ pub(super) fn path(args: &DriveArgs, to: f64) -> Result<Vec<(f64, [f64; 3])>, Fa
         }
         other => {
             return usage(&format!(
-                "--mode {other}: expected I, II, mixed, cyclic, force or slide"
+                "--mode {other}: expected I, II, mixed, cyclic, force, slide, press or heat"
             ));
         }
     })

@@ -3,7 +3,8 @@
 use super::super::super::Failure;
 use super::super::super::output::report;
 use super::DriveArgs;
-use crate::laws::bench::{Answer, Bench, Motion};
+use super::path::Point;
+use crate::laws::bench::{Answer, Bench, Motion, ROOM};
 use serde::Serialize;
 
 /// A row of the table.
@@ -23,34 +24,36 @@ pub(super) struct Row {
     pub friction: f64,
     pub tension_strength: f64,
     pub worn: f64,
+    /// Of the contact (Pa, K).
+    pub pressure: f64,
+    pub temperature: f64,
+    /// Thermal (W/K) and electrical (S).
+    pub conductance: f64,
+    pub electric_conductance: f64,
 }
 
-pub(super) fn along(
-    bench: &mut Bench,
-    points: &[(f64, [f64; 3])],
-    args: &DriveArgs,
-) -> Result<Vec<Row>, Failure> {
+pub(super) fn along(bench: &mut Bench, points: &[Point], mode: &str) -> Result<Vec<Row>, Failure> {
     let mut state = [bench.fresh()];
     let mut rows = vec![Row::start(bench)];
     let failed = |e: crate::laws::LawError| Failure::Failed(e.to_string());
-    if !bench.law().opens() {
+    if !bench.law().opens() && !matches!(mode, "press" | "heat") {
         // Capillary bridges and necks form in contact, so the path begins in contact.
         let touch = Motion {
             pressure: 1e6,
             ..Motion::default()
         };
-        let h = points.first().map_or(1.0, |p| p.0);
+        let h = points.first().map_or(1.0, |p| p.time);
         let a = bench.step(&mut state, &[touch], h).map_err(failed)?[0];
         (rows[0].friction, rows[0].tension_strength) = (a.mu, a.strength[0]);
         state[0].time = 0.0;
     }
-    for (time, opening) in points {
+    for point in points {
+        let Point { time, opening, .. } = point;
         let motion = Motion {
             opening: *opening,
             gap: opening[0],
-            pressure: args
-                .pressure
-                .unwrap_or(if args.mode == "slide" { 1e6 } else { 0.0 }),
+            pressure: point.pressure,
+            temperatures: [point.temperature; 2],
             ..Motion::default()
         };
         let last = rows[rows.len() - 1];
@@ -63,7 +66,12 @@ pub(super) fn along(
         let answer = bench
             .step(&mut state, &[motion], h)
             .map_err(|e| Failure::Failed(e.to_string()))?;
-        rows.push(last.next(*time, opening, &answer[0]));
+        let row = last.next(*time, opening, &answer[0]);
+        rows.push(Row {
+            pressure: point.pressure,
+            temperature: point.temperature,
+            ..row
+        });
     }
     Ok(rows)
 }
@@ -148,6 +156,10 @@ impl Row {
             friction: 0.0,
             tension_strength: 0.0,
             worn: 0.0,
+            pressure: 0.0,
+            temperature: ROOM,
+            conductance: 0.0,
+            electric_conductance: 0.0,
         }
     }
 
@@ -171,6 +183,10 @@ impl Row {
             friction: a.mu,
             tension_strength: a.strength[0],
             worn: self.worn + a.worn,
+            pressure: self.pressure,
+            temperature: self.temperature,
+            conductance: a.conductance[0],
+            electric_conductance: a.conductance[1],
         }
     }
 

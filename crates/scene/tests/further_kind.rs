@@ -1,4 +1,4 @@
-//! A fifth kind of interface law, made here: one entry of the registry, and no other place knows of it. It watches contacts
+//! A further kind of interface law, made here: one entry of the registry, and no other place knows of it. It watches contacts
 //! and keeps the work of friction; scenes that have it give the bits of those that do not.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
@@ -263,5 +263,5 @@ fn a_word_or_code_has_one_kind() {
         let error = Kind::register(wrong).unwrap_err().to_string();
         assert!(error.contains("kind"), "{error}");
     }
-    assert_eq!(Kind::all().len(), 5);
+    assert_eq!(Kind::all().len(), 6);
 }
