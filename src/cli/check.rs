@@ -3,6 +3,7 @@
 mod bonds;
 mod deformable;
 mod features;
+mod heat;
 mod load;
 mod springs;
 
@@ -161,6 +162,9 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     let load = Load::of(case, built);
     groups(loaded, built, largest, &mut line);
     biaxial_groups(loaded, built, &mut line);
+    for (label, text) in heat::lines(case, built, &load) {
+        line(&label, text);
+    }
     for (label, text) in springs::lines(case, built, &load) {
         line(label, text);
     }

@@ -182,7 +182,7 @@ fn bad_names_and_kinds_are_refused() {
         ),
         (
             "fretwork law new x --kind damages --lang c",
-            "expected contact, cohesion, damage or wear",
+            "expected contact, cohesion, damage, wear or transport",
         ),
         (
             "fretwork law new taken --kind wear --lang c",

@@ -27,6 +27,8 @@ pub struct Node {
     pub ambient: f64,
     /// What rounding took from the temperature so far (K), so that many small changes add up.
     pub(crate) lost: f64,
+    /// Change of the temperature in the last step (K/s), from which the next one begins to look for its own.
+    pub(crate) rate: f64,
 }
 
 impl Node {
@@ -38,6 +40,7 @@ impl Node {
             surroundings: 0.0,
             ambient: temperature,
             lost: 0.0,
+            rate: 0.0,
         }
     }
 

@@ -90,12 +90,7 @@ pub fn steady(
             });
         }
     }
-    let solved = System {
-        own: &own,
-        edges: &inner,
-        right: &right,
-    }
-    .solve()?;
+    let solved = System::new(&own, &inner, &right).solve()?;
     for (&k, v) in list.iter().zip(solved) {
         potential[k] = v;
     }

@@ -84,12 +84,13 @@ pub fn step(
             _ => {}
         }
     }
-    let change = System {
-        own: &own,
-        edges: &inner,
-        right: &right,
-    }
-    .solve()?;
+    // As in the step before, until a better answer.
+    let guess = list.iter().map(|&k| w * nodes[k].rate).collect();
+    let [mut change, left] = System::new(&own, &inner, &right).complete(guess)?;
+    change
+        .iter_mut()
+        .zip(&left)
+        .for_each(|(x, left)| *x += left);
     Ok(advance(
         nodes,
         graph,
@@ -159,6 +160,7 @@ fn advance(
             }
         }
         node.change(change / theta);
+        node.rate = change / (theta * h);
         if let Store::HalfSpace(space) = &node.store {
             node.temperature = space.temperature[0];
         }

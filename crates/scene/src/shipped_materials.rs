@@ -1,7 +1,7 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 14] = [
+pub const FILES: [(&str, &str); 16] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
@@ -45,8 +45,16 @@ pub const FILES: [(&str, &str); 14] = [
         include_str!("../../../materials/verification_grain.ron"),
     ),
     (
+        "verification_oxide",
+        include_str!("../../../materials/verification_oxide.ron"),
+    ),
+    (
         "verification_rubber",
         include_str!("../../../materials/verification_rubber.ron"),
+    ),
+    (
+        "verification_steel",
+        include_str!("../../../materials/verification_steel.ron"),
     ),
     (
         "wheel_steel_er7",

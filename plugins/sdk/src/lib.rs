@@ -35,5 +35,5 @@ mod traits;
 pub use fretwork_abi as abi;
 pub use traits::{
     CohesionLaw, Conductance, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site,
-    Spring, Traction, TransportLaw, Variable, WearLaw, bounded, damping_ratio,
+    Spring, Traction, TransportLaw, Variable, WearLaw, bounded, damping_ratio, ramp,
 };

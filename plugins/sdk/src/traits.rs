@@ -193,6 +193,28 @@ pub struct Spring {
     pub damping_t: f64,
 }
 
+impl Spring {
+    /// A linear spring of stiffness k along the normal and `ratio` times k along the tangents, with a damping ratio ([`damping_ratio`]).
+    pub fn linear(site: &Site, stiffness: f64, ratio: f64, damping: f64) -> Self {
+        let k_t = (ratio * stiffness).min(f64::MAX);
+        Self {
+            force_n: (stiffness * site.overlap).min(f64::MAX),
+            stiffness_n: stiffness,
+            damping_n: 2.0 * damping * (stiffness * site.effective_mass).sqrt(),
+            force_t: site.spring_t,
+            stiffness_t: k_t,
+            unloading_t: k_t,
+            damping_t: 0.0,
+        }
+    }
+}
+
+/// A value that goes linearly from `low` to `high` while x goes from `from` to `to`, and stays so outside.
+pub fn ramp(x: f64, [from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
+    let share = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    (1.0 - share) * low + share * high
+}
+
 /// Damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound with this share of the approach velocity when the contact
 /// ends as soon as its force is zero, not when the overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to
 /// 22). The same ratio holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k the slope.

@@ -78,6 +78,7 @@ laws! {
     wear_broken_bonds "../../wear/broken_bonds/src/lib.rs"
     wear_dissipated_energy "../../wear/dissipated_energy/src/lib.rs"
     wear_t_gamma "../../wear/t_gamma/src/lib.rs"
+    contact_thermal_contact "../../contact/thermal_contact/src/lib.rs"
     contact_thermal_friction "../../contact/thermal_friction/src/lib.rs"
     damage_thermal_softening "../../damage/thermal_softening/src/lib.rs"
     wear_thermal_archard "../../wear/thermal_archard/src/lib.rs"

@@ -250,6 +250,10 @@ impl Features {
             )
         });
         self.say("cycle jump", jump);
+        self.say("heat", super::heat::stores(s));
+        let circuit = case.heat.as_ref().and_then(|h| h.circuit.as_ref());
+        let through = circuit.map(|c| format!("from {} to {}, {:?}", c.from, c.to, c.supply));
+        self.say("electric current", through);
         let body = case.friction.as_ref().map(|f| f.body.clone());
         self.say("friction test", body);
         let walls = case.biaxial.as_ref().map(|b| format!("{:?}", b.axial));

@@ -105,7 +105,7 @@ fn an_unknown_word_on_the_command_line() {
     );
     refusal(
         &trial.call(&["law", "show", "friction/mac"]),
-        &["contact, cohesion, damage or wear"],
+        &["contact, cohesion, damage, wear or transport"],
     );
 }
 

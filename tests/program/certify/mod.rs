@@ -123,7 +123,7 @@ fn any_damage_goes_with_any_cohesion_that_opens() {
             pairs += 1;
         }
     }
-    assert_eq!((pairs, refused), (7 * 10, 6 * 10));
+    assert_eq!((pairs, refused), (7 * 11, 6 * 11));
 }
 
 /// Compiles `law.c` with one promise broken against the header in `include`.

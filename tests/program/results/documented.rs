@@ -51,6 +51,7 @@ fn every_column_of_the_shipped_cases_is_documented() {
         "rotating_drum_3d",
         "silo",
         "biaxial",
+        "verification/thermal/network",
     ] {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));

@@ -162,6 +162,10 @@ fn no_field_is_documented_that_no_registry_has() {
             .into_iter()
             .chain([fretwork::fields::removed()]);
         more.for_each(|f| fields.grains.add(f));
+        fields.grains.add(fretwork::fields::heat_of_grains());
+        for field in fretwork::fields::heat_of_contacts() {
+            fields.contacts.add(field);
+        }
         [
             of_list(&fields.grains),
             of_list(&fields.contacts),

@@ -4,9 +4,18 @@ use super::common::Folder;
 use super::state::goes_on;
 use fretwork::laws::{Kind, SearchPath};
 use fretwork::scene::{Scene, load};
+use fretwork_abi::FLAG_TEMPERATURE;
 
 /// A row of balls drawn to and fro over another one, with loose ones on it; x is along the rows.
-fn case(dimension: usize, laws: &str) -> String {
+fn case(dimension: usize, laws: &str, heated: bool) -> String {
+    let (material, heat) = match heated {
+        false => ("verification_grain", ""),
+        true => (
+            "verification_steel",
+            "heat: (bodies: {\"above\": (store: Lumped(capacity: 1e3))}, flash: 1e9, every: 2, \
+             circuit: (from: \"above\", to: \"below\", supply: Voltage(1e-2))),",
+        ),
+    };
     let up = |x: f64, y: f64| match dimension {
         2 => format!("[{x:.2}, {y:.2}]"),
         _ => format!("[{x:.2}, 0.0, {y:.2}]"),
@@ -20,7 +29,7 @@ fn case(dimension: usize, laws: &str) -> String {
     format!(
         r#"(
     name: "a row over a row", dimension: {dimension}, seed: 3, time: (step: 2e-5, end: 1.0), gravity: {},
-    materials: {{"grain": "verification_grain"}},
+    materials: {{"grain": "{material}"}}, {heat}
     solver: (tolerance: 1e-8, norm: Velocity),
     detection: (alert: 2e-2, skin: 0.1),
     interfaces: [(name: "grain", between: ("grain", "grain"), {laws})],
@@ -41,6 +50,14 @@ fn case(dimension: usize, laws: &str) -> String {
 /// Goes on with a law in a dimension; whether the law is of it.
 fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
+    let plugin = SearchPath::new(&[]).find(kind, name);
+    let plugin = plugin.unwrap_or_else(|e| panic!("{e}"));
+    let heated = kind == Kind::TRANSPORT || plugin.flags & FLAG_TEMPERATURE != 0;
+    let conducts = if heated {
+        ", transport: \"oxide-film\""
+    } else {
+        ""
+    };
     let laws = match kind.word() {
         // The material has no moduli.
         "contact" if name == "hertz-mindlin" => {
@@ -49,15 +66,16 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
             let all = [young, poisson].concat().join(", ");
             format!("contact: \"{name}\", parameters: (contact: {{{all}}})")
         }
-        "contact" => format!("contact: \"{name}\""),
+        "contact" => format!("contact: \"{name}\"{conducts}"),
         "cohesion" => format!("contact: \"coulomb\", cohesion: \"{name}\""),
-        "damage" => format!("{bond}, damage: \"{name}\""),
-        _ => format!("{bond}, damage: \"linear-softening\", wear: \"{name}\""),
+        "damage" => format!("{bond}, damage: \"{name}\"{conducts}"),
+        "wear" => format!("{bond}, damage: \"linear-softening\", wear: \"{name}\"{conducts}"),
+        _ => format!("{bond}, damage: \"linear-softening\", transport: \"{name}\""),
     };
     let folder = Folder::new(&format!("law-{kind}-{name}-{dimension}"));
     std::fs::create_dir_all(&folder.0).unwrap();
     let file = folder.0.join("case.ron");
-    std::fs::write(&file, case(dimension, &laws)).unwrap();
+    std::fs::write(&file, case(dimension, &laws, heated)).unwrap();
     let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
     let built = || loaded.build(&SearchPath::new(&[]));
     match [built(), built()] {

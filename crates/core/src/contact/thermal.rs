@@ -9,8 +9,12 @@ pub struct ContactHeat {
     pub material: Vec<[f64; 2]>,
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
+    /// Nodes of candidate and antagonist; `u32::MAX` for an insulated one.
+    pub nodes: Vec<[u32; 2]>,
     /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
     pub source: Vec<f64>,
+    /// Whether heat or current flows in this step, so that conductances are asked for.
+    pub conducts: bool,
     /// Whether current flows, so that laws are given resistivities.
     pub current: bool,
 }

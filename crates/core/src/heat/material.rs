@@ -41,11 +41,4 @@ impl ThermalMaterial {
             _ => 0.0,
         }
     }
-
-    /// Temperature (K) at which two half-spaces of these temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e (H. S.
-    /// Carslaw, J. C. Jaeger, Conduction of Heat in Solids, 1959, 2.15).
-    pub fn meeting_temperature(&self, own: f64, other: &Self, theirs: f64) -> f64 {
-        let share = self.conductor().share(&other.conductor());
-        theirs + share * (own - theirs)
-    }
 }

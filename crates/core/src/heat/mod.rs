@@ -22,6 +22,6 @@ pub use circuit::{Circuit, CircuitState, Supply};
 pub use fretwork_diffusion::{Conductor, DiffusionError, Grid, HalfSpace, Node, Store};
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
-pub use model::{BodyNodes, Heat, Partition, Shares};
+pub use model::{BodyNodes, Heat, MaterialPair, Partition, Shares};
 pub use pieces::{PieceAxis, Pieces};
 pub use state::HeatState;

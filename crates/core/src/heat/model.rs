@@ -91,11 +91,22 @@ impl BodyNodes {
     }
 }
 
+/// What two materials have together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialPair {
+    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m).
+    pub material: [f64; 2],
+    /// Share of the first by effusivities, e1/(e1 + e2).
+    pub share: f64,
+}
+
 /// Heat of a scene, as a case gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
     /// Properties of the materials, by index.
     pub materials: Vec<ThermalMaterial>,
+    /// See [`Heat::pairs`].
+    pub pairs: Vec<MaterialPair>,
     /// Material of each body.
     pub material: Vec<u16>,
     /// Nodes of each body.
@@ -112,6 +123,8 @@ pub struct Heat {
     pub clock: f64,
     /// Steps of the mechanics per step of the heat.
     pub every: u64,
+    /// Time at which heat begins to flow and to be put in (s); temperatures stay until then.
+    pub start: f64,
     /// Hardness (Pa) that gives the area on which sliding contacts are warmer than their bodies; none for no flash temperatures.
     pub flash: Option<f64>,
     /// The electric circuit.
@@ -125,15 +138,30 @@ impl Heat {
         &self.materials[usize::from(self.material[body as usize])]
     }
 
+    /// All pairs of materials, by the index of the first and then of the second.
+    pub fn pairs(materials: &[ThermalMaterial]) -> Vec<MaterialPair> {
+        let of = |a: &ThermalMaterial, b: &ThermalMaterial| MaterialPair {
+            material: [a.pair_conductivity(b), a.pair_resistivity(b)],
+            share: a.conductor().share(&b.conductor()),
+        };
+        let all = materials.iter();
+        all.flat_map(|a| materials.iter().map(move |b| of(a, b)))
+            .collect()
+    }
+
+    /// What the materials of two bodies have together.
+    #[inline]
+    pub fn pair(&self, bodies: [u32; 2]) -> &MaterialPair {
+        let [a, b] = bodies.map(|b| usize::from(self.material[b as usize]));
+        &self.pairs[a * self.materials.len() + b]
+    }
+
     /// Share of the heat of a contact that its first body takes.
     #[inline]
     pub fn share(&self, bodies: [u32; 2]) -> f64 {
         match self.partition {
             Partition::Half => 0.5,
-            Partition::Effusivity => {
-                let [a, b] = bodies.map(|b| self.material_of(b).conductor());
-                a.share(&b)
-            }
+            Partition::Effusivity => self.pair(bodies).share,
         }
     }
 

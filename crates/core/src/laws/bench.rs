@@ -98,6 +98,8 @@ pub struct Bench {
     dimension: u32,
     area: f64,
     radius: f64,
+    /// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair.
+    material: [f64; 2],
     batch: Batch,
     said: Vec<f64>,
 }
@@ -111,9 +113,17 @@ impl Bench {
             dimension,
             area,
             radius,
+            material: STEEL,
             batch: Batch::default(),
             said: Vec::new(),
         }
+    }
+
+    /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm m); of steel by default.
+    #[must_use]
+    pub fn of_material(mut self, material: [f64; 2]) -> Self {
+        self.material = material;
+        self
     }
 
     /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
@@ -219,8 +229,8 @@ impl Bench {
                 for (column, t) in c.temperature.iter_mut().zip(all) {
                     column.push(t);
                 }
-                c.conductivity.push(STEEL[0]);
-                c.resistivity.push(STEEL[1]);
+                c.conductivity.push(self.material[0]);
+                c.resistivity.push(self.material[1]);
             }
             if compliant {
                 c.overlap.push((-motion.gap).max(0.0));

@@ -63,8 +63,12 @@ impl LawEvaluator {
         totals: &mut Totals,
     ) -> Result<(), LawError> {
         let slots = law.loaded().filter(|l| !law.acts_on_bonds(l));
-        // Without heat nothing asks for conductances.
-        let idle = |l: &&Loaded| l.plugin.kind == Kind::TRANSPORT && network.thermal.is_none();
+        // A law that remembers nothing is asked for conductances only where something flows.
+        let conducts = network.thermal.as_ref().map(|t| t.conducts);
+        let idle = |l: &&Loaded| {
+            let remembers = l.variables() > 0 && conducts.is_some();
+            l.plugin.kind == Kind::TRANSPORT && !remembers && conducts != Some(true)
+        };
         let slots: Vec<&Loaded> = slots
             .filter(|l| (sees_slip(l) || l.variables() > 0) && !idle(l))
             .collect();

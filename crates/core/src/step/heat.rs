@@ -6,10 +6,11 @@ use super::{Simulation, StepError};
 use crate::contact::{Contact, ContactHeat};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{CircuitState, DiffusionError, Heat, HeatState};
+use crate::laws::Interface;
 use fretwork_diffusion::{Edge, Graph, steady, step};
 
-/// Nodes of the two bodies of a contact.
-type Sides = [Option<u32>; 2];
+/// The node of an insulated body.
+const NONE: u32 = u32::MAX;
 
 impl<S: Space> Simulation<S> {
     /// Computes heat, and current where there is a circuit, from here on.
@@ -40,11 +41,11 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Nodes of the bodies of a contact.
-    fn thermal_sides(&self, heat: &Heat, contact: &Contact<S>) -> Sides {
+    fn thermal_nodes(&self, heat: &Heat, contact: &Contact<S>) -> [u32; 2] {
         [0, 1].map(|side| {
             let body = contact.bodies[side] as usize;
-            heat.nodes[body]
-                .at::<S>(|| S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]))
+            let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
+            heat.nodes[body].at::<S>(place).unwrap_or(NONE)
         })
     }
 
@@ -56,28 +57,32 @@ impl<S: Space> Simulation<S> {
         let contacts = &self.state.network.contacts;
         let mut thermal = self.state.network.thermal.take().unwrap_or_default();
         thermal.current = heat.circuit.is_some();
+        thermal.conducts = thermal.current || state.pending_steps + 1 >= heat.every;
         thermal.temperature.clear();
         thermal.material.clear();
+        thermal.nodes.clear();
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         let h = self.options.scheme.h;
+        let flashes = heat.flash.is_some() && self.laws.iter().any(Interface::feels_heat);
         for contact in contacts {
-            let [a, b] = contact.bodies.map(|body| heat.material_of(body));
-            let material = [a.pair_conductivity(b), a.pair_resistivity(b)];
-            let sides = self.thermal_sides(heat, contact);
-            let of = |side: Option<u32>| side.map(|n| state.nodes[n as usize].temperature);
+            let pair = heat.pair(contact.bodies);
+            let nodes = self.thermal_nodes(heat, contact);
+            let of = |node: u32| state.nodes.get(node as usize).map(|n| n.temperature);
             // An insulated body has the temperature of what it touches.
-            let [first, second] = match sides.map(of) {
+            let [first, second] = match nodes.map(of) {
                 [Some(a), Some(b)] => [a, b],
                 [Some(t), None] | [None, Some(t)] => [t, t],
                 [None, None] => [0.0; 2],
             };
-            let mut mean = a.meeting_temperature(first, b, second);
-            if heat.flash.is_some() {
+            // Two half-spaces of these temperatures meet at this one.
+            let mut mean = second + pair.share * (first - second);
+            if flashes {
                 mean += self.flash_rise(heat, contact, h);
             }
             thermal.temperature.push([mean, first, second]);
-            thermal.material.push(material);
+            thermal.material.push(pair.material);
+            thermal.nodes.push(nodes);
         }
         self.state.network.thermal = Some(thermal);
     }
@@ -129,6 +134,10 @@ impl<S: Space> Simulation<S> {
         let span = heat.clock * self.options.scheme.h;
         thermal.source.clear();
         thermal.source.resize(contacts.len(), 0.0);
+        // A step belongs to where its middle is.
+        if self.state.time + 0.5 * self.options.scheme.h < heat.start {
+            return Ok(());
+        }
         if let Some(dissipation) = &self.state.network.dissipation {
             for (source, dissipated) in thermal.source.iter_mut().zip(dissipation) {
                 *source = heat.shares.heat(dissipated);
@@ -136,33 +145,30 @@ impl<S: Space> Simulation<S> {
         }
         state.ledger.dissipated += thermal.source.iter().sum::<f64>();
         self.flow_of_current(heat, state, thermal, span)?;
-        let sides: Vec<Sides> = contacts
-            .iter()
-            .map(|contact| self.thermal_sides(heat, contact))
-            .collect();
         let driven = self.nodes_of_driven(heat, state.nodes.len());
-        for ((contact, sides), source) in contacts.iter().zip(&sides).zip(&thermal.source) {
+        for ((contact, nodes), source) in contacts.iter().zip(&thermal.nodes).zip(&thermal.source) {
             if *source == 0.0 {
                 continue;
             }
-            let share = match sides {
-                [Some(_), None] => 1.0,
-                [None, Some(_)] => 0.0,
+            let share = match nodes {
+                [NONE, NONE] => {
+                    state.ledger.fixed += source;
+                    continue;
+                }
+                [_, NONE] => 1.0,
+                [NONE, _] => 0.0,
                 _ => heat.share(contact.bodies),
             };
             state.ledger.pending += source;
-            for (side, part) in sides.iter().zip([share, 1.0 - share]) {
-                let Some(node) = side.map(|n| n as usize) else {
+            for (node, part) in nodes.iter().zip([share, 1.0 - share]) {
+                if *node == NONE {
                     continue;
-                };
+                }
+                let node = *node as usize;
                 state.pending[node] += part * source;
-                if driven[node] != u32::MAX {
+                if driven[node] != NONE {
                     state.received[driven[node] as usize] += part * source;
                 }
-            }
-            if *sides == [None, None] {
-                state.ledger.pending -= source;
-                state.ledger.fixed += source;
             }
         }
         for (node, flow) in &heat.imposed {
@@ -173,7 +179,7 @@ impl<S: Space> Simulation<S> {
         state.pending_time += span;
         state.pending_steps += 1;
         if state.pending_steps >= heat.every {
-            self.conduct_pending(heat, state, thermal, &sides, &driven)?;
+            self.conduct_pending(heat, state, thermal, &driven)?;
         }
         state.ledger.close(&state.received);
         Ok(())
@@ -185,18 +191,17 @@ impl<S: Space> Simulation<S> {
         heat: &Heat,
         state: &mut HeatState,
         thermal: &ContactHeat,
-        sides: &[Sides],
         driven: &[u32],
     ) -> Result<(), DiffusionError> {
         let span = state.pending_time;
         let mut graph = Graph {
             nodes: state.nodes.len(),
-            edges: Vec::with_capacity(sides.len()),
+            edges: Vec::with_capacity(thermal.nodes.len()),
         };
-        for (sides, [conductance, _]) in sides.iter().zip(&thermal.conductance) {
-            if let ([Some(a), Some(b)], true) = (sides, *conductance > 0.0) {
+        for (nodes, [conductance, _]) in thermal.nodes.iter().zip(&thermal.conductance) {
+            if *conductance > 0.0 && !nodes.contains(&NONE) {
                 graph.edges.push(Edge {
-                    nodes: [*a, *b],
+                    nodes: *nodes,
                     conductance: *conductance,
                 });
             }
@@ -211,7 +216,7 @@ impl<S: Space> Simulation<S> {
             let flow = span * edge.conductance * (reached(b) - reached(a));
             exchanged += flow.abs();
             for (node, flow) in [(a, flow), (b, -flow)] {
-                if driven[node] != u32::MAX {
+                if driven[node] != NONE {
                     state.received[driven[node] as usize] += flow;
                 }
             }
@@ -222,9 +227,9 @@ impl<S: Space> Simulation<S> {
         Ok(())
     }
 
-    /// For each node the place of its driven body, `u32::MAX` where it is of a grain.
+    /// For each node the place of its driven body, `NONE` where it is of a grain.
     fn nodes_of_driven(&self, heat: &Heat, nodes: usize) -> Vec<u32> {
-        let mut of = vec![u32::MAX; nodes];
+        let mut of = vec![NONE; nodes];
         for (driven, place) in self.state.bodies.driven.iter().zip(0..) {
             of[heat.nodes[driven.body as usize].range()].fill(place);
         }

@@ -28,6 +28,8 @@ pub struct HeatSpec {
     pub clock: f64,
     /// Steps of the mechanics per step of the heat.
     pub every: u64,
+    /// Time from which on heat flows and is put in (s); 0 by default. What dissipates before, as in a compaction, warms nothing.
+    pub start: f64,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
     /// Hardness (Pa) of the softer bodies, from which the flash temperature of sliding spots follows; without it contacts have the temperature of
@@ -51,6 +53,7 @@ impl Default for HeatSpec {
             partition: Partition::default(),
             clock: 1.0,
             every: 1,
+            start: 0.0,
             theta: 1.0,
             flash: None,
             circuit: None,

@@ -45,6 +45,10 @@ pub(crate) fn check(case: &Case) -> Result<(), ValidationError> {
         }
     }
     positive("heat.clock", heat.clock)?;
+    if !heat.start.is_finite() {
+        let message = format!("must be finite, got {}", heat.start);
+        return Err(ValidationError::new("heat.start", message));
+    }
     if heat.every == 0 {
         let message = "must be at least 1: steps of the mechanics per step of the heat";
         return Err(ValidationError::new("heat.every", message));

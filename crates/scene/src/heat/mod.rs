@@ -40,6 +40,7 @@ pub(crate) fn install<S: Space>(
         }
     });
     let heat = Heat {
+        pairs: Heat::pairs(&materials),
         materials,
         material,
         nodes: nodes.of_bodies,
@@ -49,6 +50,7 @@ pub(crate) fn install<S: Space>(
         theta: spec.theta,
         clock: spec.clock,
         every: spec.every,
+        start: spec.start,
         flash: spec.flash,
         circuit,
     };

@@ -114,6 +114,7 @@ fn heat(last: &str, named: &[String], dimension: u32) -> &'static str {
         ("power", _) => "W",
         ("capacity", 2) => "J/(K m)",
         ("capacity", _) => "J/K",
+        ("start", _) => "s",
         ("flash", _) => "Pa",
         ("Voltage" | "limit", _) => "V",
         ("current", 2) => "A/m",

@@ -30,20 +30,7 @@ impl ContactLaw for LinearContact {
     }
 
     fn spring(&self, site: &Site, _state: &[f64], damping: f64) -> Spring {
-        let k = self.stiffness;
-        let (k_t, d) = (
-            (self.ratio * k).min(f64::MAX),
-            2.0 * damping * (k * site.effective_mass).sqrt(),
-        );
-        Spring {
-            force_n: (k * site.overlap).min(f64::MAX),
-            stiffness_n: k,
-            damping_n: d,
-            force_t: site.spring_t,
-            stiffness_t: k_t,
-            unloading_t: k_t,
-            damping_t: 0.0,
-        }
+        Spring::linear(site, self.stiffness, self.ratio, damping)
     }
 
     fn damping(&self) -> f64 {

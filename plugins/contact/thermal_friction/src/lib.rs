@@ -1,6 +1,6 @@
 //! Friction that changes with the temperature of the contact between two temperatures.
 #![forbid(unsafe_code)]
-use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters};
+use fretwork_law::{ContactLaw, Friction, Law, Site, abi, export, parameters, ramp};
 
 parameters! {
     /// mu is cold up to `from` and hot from `to` on, and linear between them. It may fall or rise.
@@ -28,9 +28,9 @@ impl Law for ThermalFriction {
 
 impl ContactLaw for ThermalFriction {
     fn friction(&self, site: &Site, _state: &[f64]) -> Friction {
-        let share = ((site.temperature - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
+        let range = [self.from, self.to];
         Friction {
-            mu: (1.0 - share) * self.cold + share * self.hot,
+            mu: ramp(site.temperature, range, [self.cold, self.hot]),
             ..Friction::default()
         }
     }

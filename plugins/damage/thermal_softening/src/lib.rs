@@ -54,7 +54,9 @@ impl DamageLaw for ThermalSoftening {
             true => intact.degradation,
             false => 1.0,
         };
-        let damage = (1.0 - stiffness.powf(1.0 / power)).clamp(site.damage, 1.0);
+        let soft = 1.0 - stiffness.powf(1.0 / power);
+        // A damage that is not a number is not looked for here.
+        let damage = soft.max(site.damage).min(1.0);
         let carried = (1.0 - damage).powf(power);
         let [n, t1, t2] = intact.traction.map(|t| carried * t);
         let sheared = t1.hypot(t2);

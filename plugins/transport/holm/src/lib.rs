@@ -33,7 +33,11 @@ fn through(k: f64, a: f64, site: &Site) -> f64 {
         return 0.0;
     }
     match site.dimension {
-        2 => 0.5 * PI * k / (2.0 * site.radius / a).asinh(),
+        2 => {
+            // asinh x, in fewer operations than that of the library: x is well above 1e-3.
+            let x = 2.0 * site.radius / a;
+            0.5 * PI * k / (x + (x * x + 1.0).sqrt()).ln()
+        }
         _ => 2.0 * k * a,
     }
 }

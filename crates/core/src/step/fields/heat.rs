@@ -5,8 +5,8 @@ use crate::contact::{Contact, ContactHeat};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
 
-/// Temperature of the body of a grain.
-pub(in crate::step) fn heat_of_grains<S: Space>() -> Field<S, GrainPart<S>> {
+/// Temperature of the body of a grain, for simulations with heat.
+pub fn heat_of_grains<S: Space>() -> Field<S, GrainPart<S>> {
     Field::number(
         "temperature",
         "K",
@@ -29,8 +29,8 @@ fn of_contact<S: Space>(
     found.and_then(|(t, k)| get(t, k)).unwrap_or(f64::NAN)
 }
 
-/// Temperature, heat and conductances of contacts in the last step.
-pub(in crate::step) fn heat_of_contacts<S: Space>() -> [Field<S, Contact<S>>; 4] {
+/// Temperature, heat and conductances of contacts in the last step, for simulations with heat.
+pub fn heat_of_contacts<S: Space>() -> [Field<S, Contact<S>>; 4] {
     let [joule, thermal, electric] = match S::D {
         2 => ["J/m", "W/(m K)", "S/m"],
         _ => ["J", "W/K", "S"],

@@ -21,9 +21,8 @@ mod grains;
 mod heat;
 
 pub use contacts::id_fields;
-pub(super) use heat::{heat_of_contacts, heat_of_grains};
-
 pub use grains::{GrainPart, ORIENTATION, orientation, removed};
+pub use heat::{heat_of_contacts, heat_of_grains};
 
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};

@@ -1,0 +1,161 @@
+//! What `fretwork check` says of heat: its clock, and whether a grain has one temperature.
+
+use super::CheckLine;
+use super::load::Load;
+use crate::geometry::space::Space;
+use crate::heat::{Heat, Store};
+use crate::laws::Interface;
+use crate::laws::bench::{Bench, Motion};
+use crate::scene::bond_sites::BondSites;
+use crate::scene::build::Built;
+use crate::scene::case::Case;
+use crate::step::Simulation;
+
+/// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
+/// Transfer, 5.1).
+const UNIFORM: f64 = 0.1;
+
+/// The lines.
+pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckLine> {
+    let s = &built.simulation;
+    let mut out = Vec::new();
+    let Some(heat) = s.heat() else {
+        let idle = s.laws.iter().filter(|l| l.transport().is_some());
+        out.extend(idle.map(|law| {
+            let text = format!(
+                "the transport law of `{}` is not asked: the case computes no heat; `heat: ()` would",
+                law.name
+            );
+            ("NO HEAT".to_owned(), text)
+        }));
+        return out;
+    };
+    out.push(("heat clock".to_owned(), clock(case, heat)));
+    for (k, law) in s.laws.iter().enumerate() {
+        out.extend(conduction(case, built, heat, load, (k, law)));
+    }
+    out
+}
+
+/// What is done with heat, in words.
+pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
+    let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
+    let of = |d: &crate::bodies::Driven| {
+        let nodes = &state.nodes[heat.nodes[d.body as usize].range()];
+        let what = match nodes.first().map(|n| &n.store) {
+            None => "insulated".to_owned(),
+            Some(Store::Fixed) => format!("kept at {:.1} K", nodes[0].temperature),
+            Some(Store::Lumped(capacity)) => format!("{capacity:.3e} J/K"),
+            Some(Store::HalfSpace(space)) => {
+                let depth = space.grid.depth.last().copied().unwrap_or_default();
+                format!(
+                    "{} half-spaces of {} points to {depth:.2e} m",
+                    nodes.len(),
+                    space.grid.points()
+                )
+            }
+        };
+        format!("{} {what}", d.name)
+    };
+    let bodies: Vec<String> = s.state.bodies.driven.iter().map(of).collect();
+    let grains = s.state.bodies.grains().count();
+    Some(format!(
+        "{grains} grains of one temperature each; {}",
+        bodies.join(", ")
+    ))
+}
+
+fn clock(case: &Case, heat: &Heat) -> String {
+    let step = case.time.step * heat.clock * heat.every as f64;
+    let mut text = format!(
+        "each step of the heat is {step:.3e} s, theta {}",
+        heat.theta
+    );
+    if heat.every > 1 {
+        text += &format!(", every {} steps of the mechanics", heat.every);
+    }
+    if heat.clock != 1.0 {
+        text += &format!(
+            "; a second of mechanics lets heat flow for {:e} s, and puts in what its friction dissipates: heat flows per second are {:e} \
+             of those of the mechanics",
+            heat.clock,
+            1.0 / heat.clock
+        );
+    }
+    text
+}
+
+/// Conductance of the median contact of an interface under the load, its Biot number, and the time in which a grain takes the temperature of its
+/// neighbours.
+fn conduction<S: Space>(
+    case: &Case,
+    built: &Built<S>,
+    heat: &Heat,
+    load: &Load,
+    (place, law): (usize, &Interface),
+) -> Vec<CheckLine> {
+    let s = &built.simulation;
+    let (Some(_), Some((pressure, _))) = (law.transport(), load.pressure) else {
+        return Vec::new();
+    };
+    let spec = &case.interfaces[place];
+    let index = |name: &str| case.materials.keys().position(|m| m == name);
+    let (Some(a), Some(b)) = (index(&spec.between.0), index(&spec.between.1)) else {
+        return Vec::new();
+    };
+    let [a, b] = [&heat.materials[a], &heat.materials[b]];
+    let reduced = BondSites::of(s, place).map(|sites| sites.radius);
+    let Some(reduced) = reduced.or_else(|| median_radius(s).map(|r| 0.5 * r)) else {
+        return Vec::new();
+    };
+    // Of equal grains.
+    let diameter = 4.0 * reduced;
+    let conductivity = a.pair_conductivity(b);
+    let mut bench = Bench::new(law.clone(), S::D as u32, reduced)
+        .of_material([conductivity, a.pair_resistivity(b)]);
+    let force = pressure * diameter.powi(S::D as i32 - 1);
+    let motion = Motion {
+        pressure: force / bench.area(),
+        ..Motion::default()
+    };
+    let mut state = [bench.fresh()];
+    let Ok(answers) = bench.step(&mut state, &[motion], case.time.step) else {
+        return Vec::new();
+    };
+    let conductance = answers[0].conductance[0];
+    let (biot, unit, capacity) = match S::D {
+        2 => (
+            conductance / conductivity,
+            "W/(m K)",
+            std::f64::consts::FRAC_PI_4 * diameter * diameter,
+        ),
+        _ => (
+            conductance / (conductivity * diameter),
+            "W/K",
+            std::f64::consts::PI / 6.0 * diameter.powi(3),
+        ),
+    };
+    let time = a.conductor().capacity.min(b.conductor().capacity) * capacity / conductance;
+    let judged = match biot < UNIFORM {
+        true => format!("below {UNIFORM}: a grain has one temperature"),
+        false => format!(
+            "above {UNIFORM}: a grain is not of one temperature, and the conductance of a contact is too large by about this share"
+        ),
+    };
+    let text = format!(
+        "{}: {conductance:.3e} {unit} at a contact of grains of {diameter:.2e} m under {pressure:.2e} Pa, thermal time {time:.2e} s; Biot number \
+         {biot:.2e}, {judged}",
+        law.name
+    );
+    vec![("conduction".to_owned(), text)]
+}
+
+/// Median radius of the balls and pieces (m).
+fn median_radius<S: Space>(s: &Simulation<S>) -> Option<f64> {
+    let balls = s.shapes.balls.iter().map(|b| b.radius);
+    let mut radii: Vec<f64> = balls
+        .chain(s.shapes.pieces.iter().map(|p| p.size))
+        .collect();
+    radii.sort_unstable_by(f64::total_cmp);
+    radii.get(radii.len() / 2).copied()
+}
