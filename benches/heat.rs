@@ -76,7 +76,7 @@ fn boxes(grains: usize) {
     let sources = vec![
         "heat.circuit=None".to_owned(),
         "interfaces.0.transport=None".to_owned(),
-        "interfaces.0.parameters.transport=None".to_owned(),
+        "interfaces.0.parameters.transport={}".to_owned(),
     ];
     let current = Vec::new();
     compare(

@@ -7,7 +7,7 @@ use faer::sparse::{SparseColMat, Triplet};
 /// Share of the right-hand side to which residuals are reduced.
 const TOLERANCE: f64 = 1e-13;
 /// Accuracy of a solution that is [completed](System::complete), as a share of its largest value.
-const COMPLETED: f64 = 1e-7;
+const COMPLETED: f64 = 1e-6;
 /// Iterations of conjugate gradients after which the system is factorised.
 const MOST: usize = 150;
 

@@ -141,10 +141,10 @@ impl<S: Space> Observer<S> for HeatObserver {
                 "mean temperature of the grains, by their heat capacities",
             ),
         ];
-        let of_bodies = |prefix: &str, unit, doc| -> Vec<Column> {
+        let of_bodies = |quantity: &str, unit, doc| -> Vec<Column> {
             let names = self.names.iter();
             names
-                .map(|name| Column::new(format!("{prefix}_{name}"), unit, doc))
+                .map(|name| Column::new(format!("{name}_{quantity}"), unit, doc))
                 .collect()
         };
         all.extend(of_bodies(
@@ -244,7 +244,7 @@ impl<S: Space> Observer<S> for HeatObserver {
             if self.flat { "W/m" } else { "W" },
         );
         for name in &self.names {
-            let of = |prefix: &str| over_time(&format!("{prefix}_{name}"));
+            let of = |quantity: &str| over_time(&format!("{name}_{quantity}"));
             temperatures = temperatures.with(Series::new(name.clone(), of("temperature")));
             flows = flows.with(Series::new(name.clone(), of("heat_flow")));
         }

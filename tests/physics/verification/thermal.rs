@@ -24,6 +24,7 @@ pub fn all(table: &mut Table) {
     band(table);
     wheel_and_rail(table);
     run_away(table);
+    extremes(table);
 }
 
 fn heat<S: Space>(s: &Simulation<S>) -> &HeatState {
@@ -385,5 +386,78 @@ fn run_away(table: &mut Table) {
         grown,
         temperature(&s, "block") - 300.0,
         1e-3,
+    );
+}
+
+/// Conductances over 18 decades, steps far beyond the thermal time and far below it, absolute zero, grains that touch nothing.
+fn extremes(table: &mut Table) {
+    let case = "thermal/cubic";
+    for conductance in ["1e-9", "1e-3", "1e3", "1e9"] {
+        for clock in ["1e-9", "1e15"] {
+            let sets = [
+                "interfaces.0.transport=\"constant-conductance\"".to_owned(),
+                format!("interfaces.0.parameters.transport={{\"thermal\": {conductance}}}"),
+                format!("heat.clock={clock}"),
+            ];
+            let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+            let mut s = solid(case, &sets);
+            until(&mut s, 5e-3, |s| {
+                // What friction and damping put in is below a microkelvin.
+                let all = heat(s).nodes.iter().map(|n| n.temperature);
+                assert!(
+                    all.clone()
+                        .all(|t| (300.0 - 1e-6..=400.0 + 1e-6).contains(&t)),
+                    "{sets:?}"
+                );
+            });
+            let name = format!("{conductance} W/K, clock {clock}: account");
+            let off = heat(&s).ledger.relative_residual();
+            table.compare(case, &name, 0.0, off, 1e-10);
+        }
+    }
+    let case = "thermal/network";
+    let mut s = plane(case, &["heat.initial=0.0", "heat.circuit=None"]);
+    until(&mut s, 5e-3, |_| ());
+    let coldest = heat(&s)
+        .nodes
+        .iter()
+        .map(|n| n.temperature)
+        .fold(f64::INFINITY, f64::min);
+    table.compare(
+        case,
+        "from absolute zero: coldest (K)",
+        0.0,
+        coldest.min(0.0),
+        0.0,
+    );
+    // One grain in vacuum keeps its temperature to the last bit.
+    let case = "thermal/slide_to_stop";
+    let mut s = plane(
+        case,
+        &[
+            "bodies.block.position=[0.0, 5.0]",
+            "gravity=[0.0, 0.0]",
+            "heat.initial=777.7",
+        ],
+    );
+    until(&mut s, 0.1, |_| ());
+    table.compare(
+        case,
+        "a body in vacuum (K)",
+        777.7,
+        temperature(&s, "block"),
+        0.0,
+    );
+    // Heat that nothing feels changes no bit of the mechanics.
+    let (mut with, mut without) = (
+        plane("thermal/energy", &[]),
+        plane("thermal/energy", &["heat=None"]),
+    );
+    until(&mut with, 0.05, |_| ());
+    until(&mut without, 0.05, |_| ());
+    assert_eq!(with.positions(), without.positions());
+    assert_eq!(
+        with.energies().residual.to_bits(),
+        without.energies().residual.to_bits()
     );
 }

@@ -8,6 +8,7 @@ mod deformable_mesh;
 mod files;
 mod geometry;
 mod half_space;
+mod heat;
 mod hostile_laws;
 mod limits;
 mod magnitudes;

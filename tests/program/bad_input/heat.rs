@@ -1,0 +1,97 @@
+//! Heat of a case: what is missing, what does not fit.
+
+use super::trial::{PLANE, refused, with};
+
+/// The case in the plane, of a material that conducts, with something said of heat.
+fn heat(text: &str) -> String {
+    let case = with(
+        PLANE,
+        "\"grain\": \"stone\"",
+        "\"grain\": \"verification_steel\"",
+    );
+    let case = with(
+        &case,
+        "    bodies: [",
+        &format!("    heat: ({text}),\n    bodies: ["),
+    );
+    with(&case, "parameters_from: \"laws\",", "transport: \"holm\",")
+}
+
+#[test]
+fn a_material_that_says_nothing_of_heat() {
+    let case = with(PLANE, "    bodies: [", "    heat: (),\n    bodies: [");
+    refused(
+        &case,
+        &["thermal conductivity of `grain`", "`stone.ron`", "W/(m K)"],
+    );
+}
+
+#[test]
+fn a_law_that_reads_temperatures_without_any() {
+    let case = with(
+        PLANE,
+        "contact: \"coulomb\"",
+        "contact: ‸\"thermal-friction\"",
+    );
+    let case = with(&case, "parameters: (contact: {\"mu\": 0.3}),", "");
+    refused(
+        &case,
+        &["`thermal-friction` reads temperatures", "`heat: ()`"],
+    );
+}
+
+#[test]
+fn bodies_that_are_not_there_or_have_no_ends() {
+    refused(
+        &heat("bodies: {\"flor\": (store: Insulated)}"),
+        &["no first body `flor`", "did you mean `floor`?"],
+    );
+    refused(
+        &heat("bodies: {\"floor\": (store: Lumped())}"),
+        &["its volume is not known", "Lumped(capacity: 1.0)"],
+    );
+    refused(
+        &with(
+            &heat("bodies: {\"floor\": (store: HalfSpace(x: 4))}"),
+            "    periodic: (x: 0.4),\n",
+            "",
+        ),
+        &["a plane has no ends", "over: ["],
+    );
+    refused(
+        &heat("bodies: {\"floor\": (store: HalfSpace())}"),
+        &["divided along one axis", "HalfSpace(x: 40)"],
+    );
+    refused(
+        &heat("bodies: {\"floor\": (store: Insulated, power: 2.0)}"),
+        &["is insulated"],
+    );
+}
+
+#[test]
+fn numbers_that_cannot_be() {
+    refused(&heat("initial: ‸-3.0"), &["in kelvin and not below zero"]);
+    refused(&heat("shares: (friction: ‸1.5)"), &["from 0 to 1"]);
+    refused(&heat("every: ‸0"), &["must be at least 1"]);
+    refused(&heat("theta: ‸0.2"), &["between 0.5 and 1"]);
+    refused(&heat("clock: ‸0.0"), &["above zero"]);
+}
+
+#[test]
+fn a_circuit_that_is_none() {
+    let supply = "supply: Voltage(1.0)";
+    refused(
+        &heat(&format!(
+            "circuit: (from: \"floor\", to: ‸\"floor\", {supply})"
+        )),
+        &["enters and leaves the same body"],
+    );
+    let open = with(
+        &heat(&format!(
+            "circuit: (from: \"floor\", to: \"lid\", {supply})"
+        )),
+        "transport: \"holm\",",
+        "",
+    );
+    refused(&open, &["no current can flow"]);
+}
