@@ -11,9 +11,9 @@ use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::Instant;
 
-/// Steps of a turn, and turns.
+/// Steps of a turn, and turns of the headline case and of the packings.
 const STEPS: u32 = 10;
-const TURNS: usize = 31;
+const TURNS: [usize; 2] = [31, 9];
 
 fn main() {
     println!(
@@ -52,6 +52,7 @@ fn headline() {
         1000,
         [Vec::new(), sources, seldom, warm, current],
         &[],
+        TURNS[0],
     );
 }
 
@@ -85,11 +86,19 @@ fn boxes(grains: usize) {
         50,
         [plain, sources, seldom, heat, current],
         &common,
+        TURNS[1],
     );
 }
 
 /// Times steps of a scene without heat, with heat and with current, in turns, each from its own state after the first steps.
-fn compare(scene: &str, case: &str, first: u32, variants: [Vec<String>; 5], common: &[String]) {
+fn compare(
+    scene: &str,
+    case: &str,
+    first: u32,
+    variants: [Vec<String>; 5],
+    common: &[String],
+    turns: usize,
+) {
     let mut simulations: Vec<Simulation<Dim2>> = variants
         .iter()
         .map(|sets| {
@@ -104,7 +113,7 @@ fn compare(scene: &str, case: &str, first: u32, variants: [Vec<String>; 5], comm
             s
         })
         .collect();
-    let turns: Vec<Vec<f64>> = (0..TURNS)
+    let turns: Vec<Vec<f64>> = (0..turns)
         .map(|_| simulations.iter_mut().map(time).collect())
         .collect();
     // Of times that lie beside each other, so that what else the machine does changes both.

@@ -136,9 +136,12 @@ pub struct Outputs {
     pub electric_conductance: Vec<f64>,
 }
 
+/// Columns that have one size.
+type Group<'a, const N: usize> = [&'a mut Vec<f64>; N];
+
 impl Outputs {
-    /// The columns of every call, and those of compliant contacts.
-    fn groups(&mut self) -> ([&mut Vec<f64>; 22], [&mut Vec<f64>; 8], [&mut Vec<f64>; 2]) {
+    /// The columns of every call, those of compliant contacts, and those of transport.
+    fn groups(&mut self) -> (Group<'_, 22>, Group<'_, 8>, Group<'_, 2>) {
         let [tn, t1, t2] = &mut self.traction;
         let [mn, m1, m2] = &mut self.moment;
         let [force_n, f1, f2] = &mut self.contact_force;

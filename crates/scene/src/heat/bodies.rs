@@ -51,11 +51,10 @@ impl Nodes {
         };
         let mut nodes = Self::default();
         let bodies = &simulation.state.bodies;
-        let surface = scene.surface_of_grains();
-        for body in 0..bodies.len() {
+        for (body, surface) in scene.surface_of_grains().into_iter().enumerate() {
             let driven = bodies.driven.iter().find(|d| d.body as usize == body);
             match driven {
-                None => nodes.grain(&scene, body, surface[body]),
+                None => nodes.grain(&scene, body, surface),
                 Some(driven) => nodes.first_body(&scene, body, &driven.name)?,
             }
         }

@@ -78,11 +78,8 @@ fn materials(
     properties: &Properties,
     densities: &[f64],
 ) -> Result<Vec<ThermalMaterial>, ValidationError> {
-    let names = case.materials.iter().zip(properties).zip(densities);
-    let of = |(((name, file), properties), density): (
-        ((&String, &String), &BTreeMap<String, Sourced>),
-        &f64,
-    )| {
+    let all = case.materials.iter().zip(properties).zip(densities);
+    let each = all.map(|(((name, file), properties), density)| {
         let get = |property: &str, unit: &str, what: &str| {
             let here = format!("materials.{name}");
             let Some(found) = properties.get(property) else {
@@ -109,6 +106,6 @@ fn materials(
                 false => None,
             },
         })
-    };
-    names.map(of).collect()
+    });
+    each.collect()
 }
