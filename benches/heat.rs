@@ -35,7 +35,7 @@ fn headline() {
     let parameters = |k: usize| format!("interfaces.{k}.parameters.transport={{}}");
     let mut warm: Vec<String> = (0..3).flat_map(|k| [slots(k), parameters(k)]).collect();
     warm.push(
-        "heat=(bodies: {\"rail\": (store: HalfSpace(x: 40)), \"wheel\": (store: HalfSpace(x: 40))}, flash: 2.6e9)"
+        "heat=(bodies: {\"rail\": (store: HalfSpace(x: 40)), \"wheel\": (store: HalfSpace(x: 40))})"
             .to_owned(),
     );
     let sources = warm[6..].to_vec();

@@ -5,9 +5,10 @@ use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::{Column, Table};
+use fretwork_core::bodies::Driven;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
-use fretwork_core::heat::{Heat, HeatLedger, HeatState, Store};
+use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
 use fretwork_core::step::{Simulation, StepReport};
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +19,8 @@ struct State {
     lowest: f64,
     /// Highest temperature so far (K).
     highest: f64,
+    /// Residual of the account of heat over its scale.
+    off: f64,
     /// Heat that each first body had received at the last row (J; J/m in 2D), and its time (s).
     received: Vec<f64>,
     time: f64,
@@ -53,6 +56,7 @@ impl HeatObserver {
             state: State {
                 lowest: temperatures().fold(f64::INFINITY, f64::min),
                 highest: temperatures().fold(0.0, f64::max),
+                off: state.ledger.relative_residual(),
                 received: state.received.clone(),
                 time: s.state.time,
                 row: None,
@@ -81,7 +85,11 @@ impl HeatObserver {
         row.extend(state.ledger.entries().map(|e| e.2));
         if self.circuit {
             let circuit = &state.circuit;
-            row.extend([1.0 / circuit.conductance, circuit.voltage, circuit.current]);
+            row.extend(match s.state.time > heat.start {
+                true => [1.0 / circuit.conductance, circuit.voltage, circuit.current],
+                // Nothing is joined to the bodies yet.
+                false => [f64::NAN; 3],
+            });
         }
         (self.state.received, self.state.time) = (state.received.clone(), s.state.time);
         row
@@ -118,9 +126,10 @@ impl<S: Space> Observer<S> for HeatObserver {
     }
 
     fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        if let Some(state) = &s.state.heat {
-            let nodes = state.nodes.iter().map(|n| n.temperature);
-            self.state.highest = nodes.fold(self.state.highest, f64::max);
+        if let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) {
+            let [highest, _] = of_grains(s, heat, state);
+            self.state.highest = self.state.highest.max(highest);
+            self.state.off = state.ledger.relative_residual();
         }
     }
 
@@ -163,7 +172,7 @@ impl<S: Space> Observer<S> for HeatObserver {
                 Column::new(
                     "resistance",
                     ohm,
-                    "electrical resistance between the bodies of the circuit; infinite where no contact joins them",
+                    "electrical resistance between the bodies of the circuit; infinite where no contact joins them, not a number before the heat starts",
                 ),
                 Column::new("voltage", "V", "voltage between the bodies of the circuit"),
                 Column::new("current", ampere, "current of the circuit"),
@@ -207,10 +216,46 @@ impl<S: Space> Observer<S> for HeatObserver {
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
         let last = |name: &str| table.column(name).last().copied().filter(|x| x.is_finite());
-        let mut out = vec![("temperature_max".to_owned(), self.state.highest)];
+        let mut out = vec![
+            ("temperature_max".to_owned(), self.state.highest),
+            ("heat_residual_relative".to_owned(), self.state.off),
+        ];
         let mut add = |name: &str| out.extend(last(name).map(|x| (format!("{name}_end"), x)));
         add("temperature_mean");
         add("resistance");
+        out
+    }
+
+    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
+        let last = |name: &str| table.column(name).last().copied().filter(|x| x.is_finite());
+        let mut ends: Vec<String> = self
+            .names
+            .iter()
+            .filter_map(|name| Some((name, last(&format!("{name}_temperature"))?)))
+            .map(|(name, t)| format!("{name} {t:.1} K"))
+            .collect();
+        ends.extend(last("temperature_mean").map(|t| format!("grains {t:.1} K on average")));
+        let text = format!(
+            "{}; highest over the run {:.1} K",
+            ends.join(", "),
+            self.state.highest
+        );
+        let mut out = vec![("temperatures".to_owned(), text)];
+        if self.circuit {
+            let unit = if self.flat { "ohm m" } else { "ohm" };
+            let column = table.column("resistance");
+            let mut closed = column.iter().filter(|r| r.is_finite());
+            let text = match (closed.next(), last("resistance")) {
+                (Some(first), Some(end)) => {
+                    format!("{first:.3e} {unit} when first measured, {end:.3e} {unit} at the end")
+                }
+                (Some(first), None) => {
+                    format!("{first:.3e} {unit} when first measured, open at the end")
+                }
+                (None, _) => "never closed".to_owned(),
+            };
+            out.push(("contact resistance".to_owned(), text));
+        }
         out
     }
 
@@ -220,6 +265,33 @@ impl<S: Space> Observer<S> for HeatObserver {
             ("temperature_mean_end".to_owned(), "K"),
             ("resistance_end".to_owned(), ohm),
         ]
+    }
+
+    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let s = end.simulation;
+        let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
+            return Vec::new();
+        };
+        let surface = |(name, driven): (&String, &Driven)| {
+            let BodyNodes::Pieces(first, pieces) = &heat.nodes[driven.body as usize] else {
+                return None;
+            };
+            let axes = pieces.axes.iter();
+            let header: Vec<String> = axes
+                .map(|a| format!("{} [m]", ["x", "y", "z"][a.axis]))
+                .collect();
+            let mut text = format!("{},temperature [K]\n", header.join(","));
+            for piece in 0..pieces.count() {
+                let middle = pieces.middle(piece);
+                let places: Vec<String> = middle.iter().map(|x| format!("{x:e}")).collect();
+                let node = &state.nodes[(first + piece) as usize];
+                text += &format!("{},{:e}\n", places.join(","), node.temperature);
+            }
+            let file = format!("surface_temperature_{name}.csv");
+            Some(Output::Text { file, text })
+        };
+        let driven = &s.state.bodies.driven;
+        self.names.iter().zip(driven).filter_map(surface).collect()
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
@@ -258,7 +330,9 @@ impl<S: Space> Observer<S> for HeatObserver {
     }
 
     fn file_names(&self) -> Vec<String> {
-        vec!["heat.png".to_owned()]
+        let surfaces = self.names.iter();
+        let surfaces = surfaces.map(|name| format!("surface_temperature_{name}.csv"));
+        surfaces.chain(["heat.png".to_owned()]).collect()
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

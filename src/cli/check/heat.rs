@@ -6,13 +6,12 @@ use crate::geometry::space::Space;
 use crate::heat::{Heat, Store};
 use crate::laws::Interface;
 use crate::laws::bench::{Bench, Motion};
-use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Simulation;
 
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
-/// Transfer, 5.1).
+/// Transfer, chapter 5).
 const UNIFORM: f64 = 0.1;
 
 /// The lines.
@@ -31,6 +30,19 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
         return out;
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
+    let closed = s.laws.iter().filter(|l| l.transport().is_none());
+    let closed: Vec<&str> = closed.map(|l| l.name.as_str()).collect();
+    if !closed.is_empty() {
+        let text = format!(
+            "{} have no transport law: their contacts conduct nothing, and keep their heat in the two bodies",
+            closed.join(", ")
+        );
+        out.push(("no conduction".to_owned(), text));
+    }
+    if case.inertia_scaling != 1.0 {
+        let text = "heat capacities are not scaled with inertia; heat of impacts and damping is that of the scaled masses".to_owned();
+        out.push(("heat and inertia".to_owned(), text));
+    }
     for (k, law) in s.laws.iter().enumerate() {
         out.extend(conduction(case, built, heat, load, (k, law)));
     }
@@ -104,12 +116,22 @@ fn conduction<S: Space>(
         return Vec::new();
     };
     let [a, b] = [&heat.materials[a], &heat.materials[b]];
-    let reduced = BondSites::of(s, place).map(|sites| sites.radius);
-    let Some(reduced) = reduced.or_else(|| median_radius(s).map(|r| 0.5 * r)) else {
+    let Some(radius) = median_radius(s) else {
         return Vec::new();
     };
-    // Of equal grains.
-    let diameter = 4.0 * reduced;
+    let diameter = 2.0 * radius;
+    // Of equal grains; of one on a surface its radius.
+    let grains = |name: &String| {
+        s.shapes
+            .balls
+            .iter()
+            .map(|b| (b.body, b.material))
+            .chain(s.shapes.pieces.iter().map(|p| (p.body, p.material)))
+            .filter(|(body, _)| s.state.bodies.driven.iter().all(|d| d.body != *body))
+            .any(|(_, m)| Some(usize::from(m)) == index(name))
+    };
+    let both = grains(&spec.between.0) && grains(&spec.between.1);
+    let reduced = if both { 0.5 * radius } else { radius };
     let conductivity = a.pair_conductivity(b);
     let mut bench = Bench::new(law.clone(), S::D as u32, reduced)
         .of_material([conductivity, a.pair_resistivity(b)]);
@@ -123,6 +145,10 @@ fn conduction<S: Space>(
         return Vec::new();
     };
     let conductance = answers[0].conductance[0];
+    if conductance <= 0.0 {
+        let text = format!("{}: nothing under {pressure:.2e} Pa", law.name);
+        return vec![("conduction".to_owned(), text)];
+    }
     let (biot, unit, capacity) = match S::D {
         2 => (
             conductance / conductivity,
@@ -143,7 +169,7 @@ fn conduction<S: Space>(
         ),
     };
     let text = format!(
-        "{}: {conductance:.3e} {unit} at a contact of grains of {diameter:.2e} m under {pressure:.2e} Pa, thermal time {time:.2e} s; Biot number \
+        "{}: {conductance:.3e} {unit} at a new contact of a grain of {diameter:.2e} m under {pressure:.2e} Pa, thermal time {time:.2e} s; Biot number \
          {biot:.2e}, {judged}",
         law.name
     );

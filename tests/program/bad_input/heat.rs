@@ -20,6 +20,7 @@ fn heat(text: &str) -> String {
 #[test]
 fn a_material_that_says_nothing_of_heat() {
     let case = with(PLANE, "    bodies: [", "    heat: (),\n    bodies: [");
+    let case = with(&case, "\"grain\": \"stone\"", "\"grain\": ‸\"stone\"");
     refused(
         &case,
         &["thermal conductivity of `grain`", "`stone.ron`", "W/(m K)"],
@@ -43,28 +44,32 @@ fn a_law_that_reads_temperatures_without_any() {
 #[test]
 fn bodies_that_are_not_there_or_have_no_ends() {
     refused(
-        &heat("bodies: {\"flor\": (store: Insulated)}"),
+        &heat("bodies: {\"flor\": ‸(store: Insulated)}"),
         &["no first body `flor`", "did you mean `floor`?"],
     );
     refused(
-        &heat("bodies: {\"floor\": (store: Lumped())}"),
+        &heat("bodies: {\"floor\": (store: ‸Lumped())}"),
         &["its volume is not known", "Lumped(capacity: 1.0)"],
     );
     refused(
         &with(
-            &heat("bodies: {\"floor\": (store: HalfSpace(x: 4))}"),
+            &heat("bodies: {\"floor\": (store: ‸HalfSpace(x: 4))}"),
             "    periodic: (x: 0.4),\n",
             "",
         ),
         &["a plane has no ends", "over: ["],
     );
     refused(
-        &heat("bodies: {\"floor\": (store: HalfSpace())}"),
+        &heat("bodies: {\"floor\": (store: ‸HalfSpace())}"),
         &["divided along one axis", "HalfSpace(x: 40)"],
     );
     refused(
-        &heat("bodies: {\"floor\": (store: Insulated, power: 2.0)}"),
+        &heat("bodies: {\"floor\": ‸(store: Insulated, power: 2.0)}"),
         &["is insulated"],
+    );
+    refused(
+        &heat("bodies: {\"floor\": ‸(power: 2.0)}"),
+        &["keeps its temperature", "`store: Lumped()`"],
     );
 }
 
@@ -88,7 +93,7 @@ fn a_circuit_that_is_none() {
     );
     let open = with(
         &heat(&format!(
-            "circuit: (from: \"floor\", to: \"lid\", {supply})"
+            "circuit: ‸(from: \"floor\", to: \"lid\", {supply})"
         )),
         "transport: \"holm\",",
         "",

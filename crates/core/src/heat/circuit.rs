@@ -36,6 +36,7 @@ impl Circuit {
             Supply::Current { current, limit } if conductance > 0.0 => {
                 (current / conductance).clamp(-limit, limit)
             }
+            Supply::Current { current: 0.0, .. } => 0.0,
             Supply::Current { current, limit } => limit * current.signum(),
         }
     }

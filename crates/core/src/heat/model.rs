@@ -111,8 +111,10 @@ pub struct Heat {
     pub material: Vec<u16>,
     /// Nodes of each body.
     pub nodes: Vec<BodyNodes>,
-    /// Heat flows imposed on nodes (W; W/m in 2D).
-    pub imposed: Vec<(u32, f64)>,
+    /// Heat flows imposed on bodies: body, node and flow (W; W/m in 2D).
+    pub imposed: Vec<(u32, u32, f64)>,
+    /// Temperature of what has no node, where nothing that it touches has one (K).
+    pub initial: f64,
     /// What becomes heat.
     pub shares: Shares,
     /// How it is split.
@@ -177,13 +179,18 @@ impl Heat {
             return 0.0;
         }
         let area = force / hardness;
-        let rises = bodies.map(|b| {
-            let body = self.material_of(b).conductor();
-            match S::D {
+        // An insulated body takes no heat, so that it has no part in carrying it away.
+        let taking = bodies
+            .iter()
+            .filter(|b| self.nodes[**b as usize] != BodyNodes::Insulated);
+        let inverse = taking.map(|b| {
+            let body = self.material_of(*b).conductor();
+            let rise = match S::D {
                 2 => body.band(power / area, 0.5 * area, 0.5 * v),
                 _ => body.circle(power / area, (area / std::f64::consts::PI).sqrt(), 0.5 * v),
-            }
+            };
+            1.0 / rise
         });
-        1.0 / rises.map(|rise| 1.0 / rise).iter().sum::<f64>()
+        1.0 / inverse.sum::<f64>()
     }
 }

@@ -322,11 +322,6 @@ impl Interface {
             .any(|l| l.plugin.kind == Kind::TRANSPORT || l.has(FLAG_TEMPERATURE))
     }
 
-    /// Returns whether what a law answers depends on temperatures.
-    pub fn feels_heat(&self) -> bool {
-        self.loaded().any(|l| l.has(FLAG_TEMPERATURE))
-    }
-
     /// What carries heat and current.
     pub fn transport(&self) -> Option<&Loaded> {
         self.law(Kind::TRANSPORT)

@@ -3,10 +3,9 @@
 use super::answers::relative_velocity;
 use super::fields::{heat_of_contacts, heat_of_grains};
 use super::{Simulation, StepError};
-use crate::contact::{Contact, ContactHeat};
+use crate::contact::{Bond, Contact, ContactHeat};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{CircuitState, DiffusionError, Heat, HeatState};
-use crate::laws::Interface;
 use fretwork_diffusion::{Edge, Graph, steady, step};
 
 /// The node of an insulated body.
@@ -64,7 +63,6 @@ impl<S: Space> Simulation<S> {
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         let h = self.options.scheme.h;
-        let flashes = heat.flash.is_some() && self.laws.iter().any(Interface::feels_heat);
         for contact in contacts {
             let pair = heat.pair(contact.bodies);
             let nodes = self.thermal_nodes(heat, contact);
@@ -73,11 +71,11 @@ impl<S: Space> Simulation<S> {
             let [first, second] = match nodes.map(of) {
                 [Some(a), Some(b)] => [a, b],
                 [Some(t), None] | [None, Some(t)] => [t, t],
-                [None, None] => [0.0; 2],
+                [None, None] => [heat.initial; 2],
             };
             // Two half-spaces of these temperatures meet at this one.
             let mut mean = second + pair.share * (first - second);
-            if flashes {
+            if heat.flash.is_some() {
                 mean += self.flash_rise(heat, contact, h);
             }
             thermal.temperature.push([mean, first, second]);
@@ -87,15 +85,21 @@ impl<S: Space> Simulation<S> {
         self.state.network.thermal = Some(thermal);
     }
 
-    /// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the start of this one.
+    /// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the start of this one, both of thermal time; 0 where
+    /// it does not slide, or a bond holds it, whose force is not friction.
     fn flash_rise(&self, heat: &Heat, contact: &Contact<S>, h: f64) -> f64 {
+        let bonded = self.state.network.bond(contact).is_some_and(Bond::intact);
+        if !contact.slides || bonded {
+            return 0.0;
+        }
         let force = contact.impulse * (1.0 / h);
         let velocity = relative_velocity(&self.state.bodies, contact);
-        let sliding = S::tangential(&contact.normal, &velocity);
+        let sliding = S::tangential(&contact.normal, &velocity) * (1.0 / heat.clock);
         let friction = S::tangential(&contact.normal, &force);
         let power = -friction.dot(&sliding);
         let normal = contact.normal.dot(&force);
-        heat.flash_rise::<S>(contact.bodies, normal, sliding.norm(), power)
+        let rise = heat.flash_rise::<S>(contact.bodies, normal, sliding.norm(), power);
+        if rise.is_finite() { rise } else { 0.0 }
     }
 
     /// Puts in the heat of the solved step, and has it flow.
@@ -171,7 +175,10 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
-        for (node, flow) in &heat.imposed {
+        for (body, node, flow) in &heat.imposed {
+            if self.state.bodies.removed[*body as usize] {
+                continue;
+            }
             state.pending[*node as usize] += flow * span;
             state.ledger.imposed += flow * span;
             state.ledger.pending += flow * span;

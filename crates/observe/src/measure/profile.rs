@@ -1,6 +1,6 @@
-//! Time-averaged profiles of solid fraction, velocity and spin in the slices of a box.
+//! Time-averaged profiles of solid fraction, velocity, spin and, where heat is computed, temperature in the slices of a box.
 //!
-//! A grain counts in the slice of its centre; velocities are mass-weighted.
+//! A grain counts in the slice of its centre; velocities and temperatures are mass-weighted.
 
 use super::{Observer, RunEnd, grains};
 use crate::chart::{Axis, Chart, Series, Style};
@@ -21,6 +21,8 @@ pub struct Profile<S: Space> {
     turned: f64,
     start: f64,
     samples: u64,
+    /// Whether grains have temperatures.
+    heated: bool,
     slices: Vec<Slice<S>>,
 }
 
@@ -32,6 +34,8 @@ struct Slice<S: Space> {
     momentum: S::Vector,
     /// Sum of mass times spin: about z in 2D, its norm in 3D.
     spin: f64,
+    /// Sum of mass times temperature (kg K).
+    temperature: f64,
 }
 
 impl<S: Space> Profile<S> {
@@ -49,6 +53,7 @@ impl<S: Space> Profile<S> {
             volume: 0.0,
             momentum: S::Vector::zero(),
             spin: 0.0,
+            temperature: 0.0,
         };
         Self {
             name,
@@ -58,6 +63,7 @@ impl<S: Space> Profile<S> {
             turned,
             start,
             samples: 0,
+            heated: false,
             slices: vec![empty; bins],
         }
     }
@@ -85,6 +91,9 @@ impl<S: Space> Profile<S> {
             ];
             row.extend((0..S::D).map(|k| slice.momentum[k] / slice.mass));
             row.push(slice.spin / slice.mass);
+            if self.heated {
+                row.push(slice.temperature / slice.mass);
+            }
             row
         });
         rows.collect()
@@ -102,6 +111,9 @@ impl<S: Space> Profile<S> {
                 .map(|a| format!("velocity_{a} [m/s]")),
         );
         out.push("spin [rad/s]".to_owned());
+        if self.heated {
+            out.push("temperature [K]".to_owned());
+        }
         out
     }
 }
@@ -120,6 +132,7 @@ impl<S: Space> Observer<S> for Profile<S> {
             return Vec::new();
         }
         self.samples += 1;
+        self.heated = s.heat().is_some();
         let bins = self.slices.len() as f64;
         for g in grains(s) {
             let x = self.turned(&g.at);
@@ -138,16 +151,17 @@ impl<S: Space> Observer<S> for Profile<S> {
             slice.volume += S::ball_volume(g.radius);
             slice.momentum += velocity * mass;
             slice.spin += mass * if S::D == 2 { spin[0] } else { spin.norm() };
+            slice.temperature += mass * s.temperature(g.body).unwrap_or_default();
         }
         Vec::new()
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        code::encode(&(self.samples, &self.slices))
+        code::encode(&(self.samples, self.heated, &self.slices))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.samples, self.slices) = code::decode(from)?;
+        (self.samples, self.heated, self.slices) = code::decode(from)?;
         Ok(())
     }
 
@@ -179,10 +193,16 @@ impl<S: Space> Observer<S> for Profile<S> {
         let spin = chart("Rotation", "rad/s", "mean angular velocity ω").with_unless_zero(
             Series::new(String::new(), series(2 + S::D)).style(Style::LineMarkers),
         );
+        let mut panels = vec![velocity, solid, spin];
+        if self.heated {
+            let temperature = chart("Temperature", "K", "mean temperature T");
+            let of_grains = Series::new(String::new(), series(3 + S::D));
+            panels.push(temperature.with(of_grains.style(Style::LineMarkers)));
+        }
         let file = format!("{}.csv", self.name);
         vec![
             Output::Text { file, text },
-            Output::charts(format!("{}.png", self.name), [velocity, solid, spin], 2),
+            Output::charts(format!("{}.png", self.name), panels, 2),
         ]
     }
 }

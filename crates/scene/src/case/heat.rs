@@ -80,10 +80,10 @@ pub struct BodyHeatSpec {
     /// Its temperature at the start (K); that of the case without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub temperature: Option<f64>,
-    /// Heat that flows into it from outside (W; W/m in 2D), spread over its pieces.
+    /// Heat that flows into it from outside (W; W/m in 2D), at the surfaces of its pieces.
     #[serde(skip_serializing_if = "is_zero")]
     pub power: f64,
-    /// Convection at an outer face of it.
+    /// Convection at a face of it; of a half-space at the surfaces of its pieces, since nothing leaves at its depth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub convection: Option<FaceSpec>,
 }
@@ -92,7 +92,7 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
-/// Convection at a face.
+/// Convection at a face of a lumped body, or at the surface of a half-space.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaceSpec {

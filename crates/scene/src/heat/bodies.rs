@@ -20,8 +20,8 @@ const DEEP: f64 = 6.0;
 pub(super) struct Nodes {
     pub list: Vec<Node>,
     pub of_bodies: Vec<BodyNodes>,
-    /// Node and heat flow (W; W/m in 2D).
-    pub imposed: Vec<(u32, f64)>,
+    /// Body, node and heat flow (W; W/m in 2D).
+    pub imposed: Vec<(u32, u32, f64)>,
 }
 
 /// What nodes of bodies are made from.
@@ -98,7 +98,18 @@ impl Nodes {
             StoreSpec::Lumped { capacity } => {
                 let capacity = match capacity {
                     Some(capacity) => *capacity,
-                    None if scene.has_volume(body) => scene.capacity(body),
+                    None if scene.has_volume(body) && !scene.mass_is_given(name) => {
+                        scene.capacity(body)
+                    }
+                    None if scene.has_volume(body) => {
+                        let message = format!(
+                            "the mass of `{name}` is given, which need not be that of its material; give its heat capacity too, `Lumped(capacity: 1.0)` (J/K)"
+                        );
+                        return Err(ValidationError::new(
+                            format!("heat.bodies.{name}.store"),
+                            message,
+                        ));
+                    }
                     None => {
                         let message = format!(
                             "`{name}` has surfaces only, so that its volume is not known; give its heat capacity, `Lumped(capacity: 1.0)` (J/K)"
@@ -132,7 +143,7 @@ impl Nodes {
                 node.ambient = face.ambient;
             }
             if spec.power != 0.0 {
-                self.imposed.push((node, spec.power * share));
+                self.imposed.push((body as u32, node, spec.power * share));
             }
         }
         Ok(())
@@ -148,6 +159,11 @@ impl<S: Space> Scene<'_, S> {
     fn capacity(&self, body: usize) -> f64 {
         let mass = self.simulation.state.bodies.mass[body] / self.case.inertia_scaling;
         mass * self.material_of(body).heat_capacity
+    }
+
+    fn mass_is_given(&self, name: &str) -> bool {
+        let mut bodies = self.case.bodies.iter();
+        bodies.any(|b| b.name == name && b.mass.is_some())
     }
 
     fn has_volume(&self, body: usize) -> bool {
@@ -217,12 +233,21 @@ impl<S: Space> Scene<'_, S> {
                     return Err(ValidationError::new(here, message));
                 }
                 let length = high - low;
+                let period = self.simulation.shapes.periodic.period[axis];
+                if let Some(period) = period.filter(|p| (p - length).abs() > 1e-9 * length) {
+                    let message = format!(
+                        "the case is periodic along {} with {period} m, and the range is {length} m long",
+                        ["x", "y", "z"][axis]
+                    );
+                    return Err(ValidationError::new(here, message)
+                        .expected("a range as long as the period, or no `over`"));
+                }
                 out.push(PieceAxis {
                     axis,
                     low,
                     length,
                     count,
-                    periodic: self.simulation.shapes.periodic.period[axis] == Some(length),
+                    periodic: period.is_some(),
                 });
                 continue;
             }

@@ -31,6 +31,10 @@ pub(crate) fn check(case: &Case) -> Result<(), ValidationError> {
         temperature("heat.convection.ambient", convection.ambient)?;
     }
     bodies(case, heat)?;
+    if case.jump.is_some() {
+        let message = "a jump over cycles repeats wear and damage, not the heat of the cycles that it stands for; leave `jump` or `heat` out";
+        return Err(ValidationError::new("jump", message));
+    }
     let shares = heat.shares;
     for (name, share) in [
         ("friction", shares.friction),
@@ -81,11 +85,21 @@ fn bodies(case: &Case, heat: &HeatSpec) -> Result<(), ValidationError> {
             not_negative(&format!("{here}.convection.area"), face.area)?;
             temperature(&format!("{here}.convection.ambient"), face.ambient)?;
         }
-        if body.store == StoreSpec::Insulated && (body.power != 0.0 || body.convection.is_some()) {
+        let keeps = matches!(body.store, StoreSpec::Fixed | StoreSpec::Insulated);
+        if keeps && (body.power != 0.0 || body.convection.is_some()) {
+            let what = match body.store {
+                StoreSpec::Fixed => "keeps its temperature (`store: Fixed`, the default)",
+                _ => "is insulated",
+            };
             let message = format!(
-                "`{name}` is insulated, so that it takes neither power nor convection; take `store: Lumped()` to give it a temperature"
+                "`{name}` {what}, so that power and convection would change nothing; give it `store: Lumped()` or `HalfSpace(..)`"
             );
             return Err(ValidationError::new(here, message));
+        }
+        if body.store == StoreSpec::Insulated && body.temperature.is_some() {
+            let message =
+                format!("`{name}` is insulated, so that it has no temperature of its own");
+            return Err(ValidationError::new(format!("{here}.temperature"), message));
         }
         match &body.store {
             StoreSpec::Lumped {

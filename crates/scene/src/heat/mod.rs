@@ -30,6 +30,7 @@ pub(crate) fn install<S: Space>(
     check::refuse_systems(s)?;
     let materials = materials(case, spec, properties, densities)?;
     let material = material_of_bodies(s);
+    refuse_materials_without_grains(case, spec, &material, s)?;
     let nodes = Nodes::of(case, spec, &materials, &material, s)?;
     let circuit = spec.circuit.as_ref().map(|c| {
         let named = |name: &str| s.body_named(name).unwrap_or_default() as u32;
@@ -50,6 +51,7 @@ pub(crate) fn install<S: Space>(
         theta: spec.theta,
         clock: spec.clock,
         every: spec.every,
+        initial: spec.initial,
         start: spec.start,
         flash: spec.flash,
         circuit,
@@ -57,6 +59,29 @@ pub(crate) fn install<S: Space>(
     let state = HeatState::new(nodes.list, s.state.bodies.driven.len());
     s.set_heat(heat, state);
     Ok(())
+}
+
+/// Refuses temperatures of grains of materials that no grain has.
+fn refuse_materials_without_grains<S: Space>(
+    case: &Case,
+    spec: &HeatSpec,
+    material: &[u16],
+    s: &Simulation<S>,
+) -> Result<(), ValidationError> {
+    let known = |name: &String| {
+        let index = case.materials.keys().position(|m| m == name);
+        let mut grains = s.state.bodies.grains();
+        grains.any(|g| Some(usize::from(material[g])) == index)
+    };
+    match spec.grains.keys().find(|name| !known(name)) {
+        None => Ok(()),
+        Some(name) => {
+            let message = format!(
+                "no grain is of `{name}`; temperatures of first bodies stand in `heat.bodies`"
+            );
+            Err(ValidationError::new(format!("heat.grains.{name}"), message))
+        }
+    }
 }
 
 /// The material of each body: that of its shapes.

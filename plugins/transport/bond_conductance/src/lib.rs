@@ -15,7 +15,7 @@ parameters! {
 impl Law for BondConductance {
     const NAME: &'static str = "bond-conductance";
     const DOC: &'static str = "(1 - D) over the area of a bond, and in proportion to the force";
-    const REFERENCE: &'static str = "R. Fischer, M. Renouf, Arch. Mech.: conductance of cohesive contacts after J.-J. Moreau's and M. Renouf's thermal NSCD, ASME J. Tribol. 133 (2011) 022301";
+    const REFERENCE: &'static str = "of Fretwork: the simplest law in which an intact bond conducts over its area and a broken one by its force";
 }
 
 impl TransportLaw for BondConductance {

@@ -6,8 +6,8 @@ parameters! {
     /// V = K F s/H with K = d A exp(-Q/(R_g T))/(f^2 rho^2 xi^2 U), at most 1: the share of encounters of a spot of diameter d, each of d/U, in which
     /// the oxide reaches the thickness xi. U is the sliding speed, T the temperature of the contact, flash temperature included.
     pub struct Oxidation {
-        arrhenius: "kg^2/(m^4 s)" = 1e6, 0.0, 1e60, "A, Arrhenius' constant of parabolic oxidation";
-        activation: "J/mol" = 2.08e5, 0.0, 1e8, "Q, activation energy";
+        arrhenius: "kg^2/(m^4 s)" = 1e6, 0.0, 1e60, "A, Arrhenius' constant of parabolic oxidation: of steel in Lim and Ashby's wear maps";
+        activation: "J/mol" = 1.38e5, 0.0, 1e8, "Q, activation energy, as A";
         oxygen: "" = 0.2885, 1e-6, 1.0, "f, share of oxygen in the mass of the oxide: 0.2885 for Fe3O4 by Quinn";
         density: "kg/m^3" = 5.21e3, 1.0, 1e5, "rho of the oxide";
         thickness: "m" = 3e-6, 1e-12, 1.0, "xi, thickness at which the oxide comes off";
@@ -23,7 +23,7 @@ impl Law for Oxidation {
     const NAME: &'static str = "oxidation";
     const DOC: &'static str =
         "oxide that grows on spots by Arrhenius' law and comes off at a thickness";
-    const REFERENCE: &'static str = "T. F. J. Quinn, Tribol. Int. 16 (1983) 257-271 and 305-315";
+    const REFERENCE: &'static str = "T. F. J. Quinn, Tribol. Int. 16 (1983) 257-271 and 305-315; A and Q of S. C. Lim, M. F. Ashby, Acta Metall. 35 (1987) 1-24";
     const FLAGS: u64 = abi::FLAG_TEMPERATURE;
 }
 
@@ -61,7 +61,7 @@ mod tests {
     fn follows_arrhenius() {
         let law = Oxidation::default();
         let ratio = volume(&law, 700.0, 1.0) / volume(&law, 600.0, 1.0);
-        let expected = (2.08e5 / GAS * (1.0 / 600.0 - 1.0 / 700.0)).exp();
+        let expected = (1.38e5 / GAS * (1.0 / 600.0 - 1.0 / 700.0)).exp();
         assert!((ratio / expected - 1.0).abs() < 1e-12);
         assert!((volume(&law, 600.0, 2.0) / volume(&law, 600.0, 1.0) - 1.0).abs() < 1e-12);
         // All of the real area comes off.

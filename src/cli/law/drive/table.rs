@@ -40,6 +40,7 @@ pub(super) fn along(bench: &mut Bench, points: &[Point], mode: &str) -> Result<V
         // Capillary bridges and necks form in contact, so the path begins in contact.
         let touch = Motion {
             pressure: 1e6,
+            temperatures: [points.first().map_or(ROOM, |p| p.temperature); 2],
             ..Motion::default()
         };
         let h = points.first().map_or(1.0, |p| p.time);
@@ -91,6 +92,7 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
             let motion = Motion {
                 opening: at(u),
                 gap: at(u)[0],
+                temperatures: [args.temperature; 2],
                 ..Motion::default()
             };
             let a = bench
@@ -129,6 +131,7 @@ pub(super) fn by_force(bench: &mut Bench, args: &DriveArgs, to: f64) -> Result<V
         let motion = Motion {
             opening: at(u),
             gap: at(u)[0],
+            temperatures: [args.temperature; 2],
             ..Motion::default()
         };
         let answer = bench

@@ -240,7 +240,7 @@ fn renew<S: Space>(
     (contact.gap, contact.normal) = (gap, normal);
     (contact.arms, contact.radius) = (arms, radius);
     (contact.closing, contact.later) = (false, false);
-    (contact.beyond, contact.slides) = (false, false);
+    contact.beyond = false;
     let springs = contact.spring.force_t != S::Tangent::zero();
     // In the plane tangential parts turn with their frame.
     if S::D == 2 || !(springs || contact.memory().is_some()) {
