@@ -17,7 +17,7 @@ def command_line(*words):
 
 def test_the_shipped_laws_are_listed_with_their_schemas():
     laws = {(info.kind, info.name): info for info in law.list()}
-    assert len(laws) == 39
+    assert len(laws) == 50
     mac = laws["damage", "mac"]
     assert mac.built_in and not mac.error
     w = mac.parameters[0]
@@ -186,6 +186,27 @@ def test_a_law_that_breaks_a_promise_is_not_certified():
     assert not certificate.certified
     assert any("friction" in check.text for check in certificate.failures)
     assert str(certificate).endswith("NOT certified")
+
+
+def test_a_transport_law_and_one_that_reads_temperatures_are_certified():
+    pytest.importorskip("numba")
+
+    @law.transport
+    def my_spots(normal_force, conductivity, resistivity, per_force=law.Parameter(1e-6, range=(0.0, 1.0), unit="m/N", doc="width per force")):
+        "conductances in proportion to the force"
+        width = per_force * normal_force
+        return law.Conductance(conductivity * width, width / resistivity)
+
+    @law.contact
+    def my_warm(temperature, cold=law.Parameter(0.4, range=(0.0, 10.0), doc="friction at 300 K")):
+        "friction that falls with the temperature"
+        return cold / (1.0 + max(temperature - 300.0, 0.0) / 300.0)
+
+    for one in (my_spots, my_warm):
+        certificate = one.certify()
+        assert certificate.certified, str(certificate)
+    checks = {check.name for check in my_spots.certify().checks}
+    assert {"sign", "symmetry", "continuity"} <= checks
 
 
 def test_a_changed_law_is_a_new_library():
