@@ -134,6 +134,39 @@ impl Site {
         }
     }
 
+    /// Half-width (m) of the spot on which the compressive force is carried where surfaces of this hardness (Pa) yield: of a circle, in 2D of a strip.
+    pub fn plastic_spot(&self, hardness: f64) -> f64 {
+        let area = self.force() / hardness;
+        match self.dimension {
+            2 => 0.5 * area,
+            _ => (area / std::f64::consts::PI).sqrt(),
+        }
+    }
+
+    /// Conductance of a spot of this half-width (m) between bodies of conductivity `k`: 2 k a of a circle. In 2D that of a strip, counted to the
+    /// distance 2 R on either side, R the reduced radius: pi k/(2 asinh(2 R/a)) per metre of depth. 0 without a spot.
+    pub fn constriction(&self, k: f64, half_width: f64) -> f64 {
+        if half_width <= 0.0 {
+            return 0.0;
+        }
+        match self.dimension {
+            2 => {
+                // asinh x in fewer operations than that of the library: x is well above 1e-3.
+                let x = 2.0 * self.radius / half_width;
+                0.5 * std::f64::consts::PI * k / (x + (x * x + 1.0).sqrt()).ln()
+            }
+            _ => 2.0 * k * half_width,
+        }
+    }
+
+    /// The same of the electric current, by the resistivity of the pair; 0 where no current flows.
+    pub fn electric_constriction(&self, half_width: f64) -> f64 {
+        match self.resistivity > 0.0 {
+            true => self.constriction(1.0 / self.resistivity, half_width),
+            false => 0.0,
+        }
+    }
+
     /// Compressive pressure over the area (Pa), zero in tension.
     #[inline]
     pub fn pressure(&self) -> f64 {

@@ -36,21 +36,6 @@ impl BatchelorObrien {
     }
 }
 
-/// Conductance of a contact of half-width `a` (m) between bodies of conductivity `k`.
-fn through(k: f64, a: f64, site: &Site) -> f64 {
-    if a <= 0.0 {
-        return 0.0;
-    }
-    match site.dimension {
-        2 => {
-            // asinh x, in fewer operations than that of the library: x is well above 1e-3.
-            let x = 2.0 * site.radius / a;
-            0.5 * PI * k / (x + (x * x + 1.0).sqrt()).ln()
-        }
-        _ => 2.0 * k * a,
-    }
-}
-
 impl TransportLaw for BatchelorObrien {
     fn conductance(
         &self,
@@ -61,13 +46,9 @@ impl TransportLaw for BatchelorObrien {
         _next: &mut [f64],
     ) -> Conductance {
         let a = self.half_width(site);
-        let electric = match site.resistivity > 0.0 {
-            true => through(1.0 / site.resistivity, a, site),
-            false => 0.0,
-        };
         Conductance {
-            thermal: through(site.conductivity, a, site),
-            electric,
+            thermal: site.constriction(site.conductivity, a),
+            electric: site.electric_constriction(a),
         }
     }
 }

@@ -1,7 +1,6 @@
 //! Holm's constriction resistance of a plastic spot.
 #![forbid(unsafe_code)]
 use fretwork_law::{Conductance, Law, Site, TransportLaw, export, parameters};
-use std::f64::consts::PI;
 
 parameters! {
     /// R = (rho_1 + rho_2)/(4 a) through a circle of area F/H; heat in the same way, G = 2 k a. In 2D a strip of width F/H, from which the current is
@@ -18,30 +17,6 @@ impl Law for Holm {
     const REFERENCE: &'static str = "R. Holm, Electric Contacts, 4th ed. (1967), sections 4 and 7";
 }
 
-/// Half-width of the spot (m) where a force presses bodies of this hardness (Pa) together: a circle, in 2D a strip.
-fn half_width(site: &Site, hardness: f64) -> f64 {
-    let area = site.force() / hardness;
-    match site.dimension {
-        2 => 0.5 * area,
-        _ => (area / PI).sqrt(),
-    }
-}
-
-/// Conductance of a spot of half-width `a` (m) between bodies of conductivity `k`.
-fn through(k: f64, a: f64, site: &Site) -> f64 {
-    if a <= 0.0 {
-        return 0.0;
-    }
-    match site.dimension {
-        2 => {
-            // asinh x, in fewer operations than that of the library: x is well above 1e-3.
-            let x = 2.0 * site.radius / a;
-            0.5 * PI * k / (x + (x * x + 1.0).sqrt()).ln()
-        }
-        _ => 2.0 * k * a,
-    }
-}
-
 impl TransportLaw for Holm {
     fn conductance(
         &self,
@@ -51,14 +26,10 @@ impl TransportLaw for Holm {
         _state: &[f64],
         _next: &mut [f64],
     ) -> Conductance {
-        let a = half_width(site, self.hardness);
-        let electric = match site.resistivity > 0.0 {
-            true => through(1.0 / site.resistivity, a, site),
-            false => 0.0,
-        };
+        let a = site.plastic_spot(self.hardness);
         Conductance {
-            thermal: through(site.conductivity, a, site),
-            electric,
+            thermal: site.constriction(site.conductivity, a),
+            electric: site.electric_constriction(a),
         }
     }
 }

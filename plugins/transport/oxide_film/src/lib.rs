@@ -1,7 +1,6 @@
 //! A plastic spot that an oxide film covers; sliding breaks the film, and it grows again.
 #![forbid(unsafe_code)]
 use fretwork_law::{Conductance, Law, Site, TransportLaw, Variable, abi, export, parameters};
-use std::f64::consts::PI;
 
 parameters! {
     /// The share c of the spot that the film covers follows dc/dt = (1 - c)/tau - c |ds/dt|/lambda, with the slip s; tau follows Arrhenius' law where an
@@ -36,30 +35,6 @@ impl Law for OxideFilm {
     const FLAGS: u64 = abi::FLAG_TEMPERATURE;
 }
 
-/// Half-width of the spot (m) where a force presses bodies of this hardness (Pa) together: a circle, in 2D a strip.
-fn half_width(site: &Site, hardness: f64) -> f64 {
-    let area = site.force() / hardness;
-    match site.dimension {
-        2 => 0.5 * area,
-        _ => (area / PI).sqrt(),
-    }
-}
-
-/// Conductance of a spot of half-width `a` (m) between bodies of conductivity `k`.
-fn through(k: f64, a: f64, site: &Site) -> f64 {
-    if a <= 0.0 {
-        return 0.0;
-    }
-    match site.dimension {
-        2 => {
-            // asinh x, in fewer operations than that of the library: x is well above 1e-3.
-            let x = 2.0 * site.radius / a;
-            0.5 * PI * k / (x + (x * x + 1.0).sqrt()).ln()
-        }
-        _ => 2.0 * k * a,
-    }
-}
-
 impl OxideFilm {
     /// The covered share after a step of `h` (s) with a slip (m), by implicit Euler.
     fn covered(&self, before: f64, h: f64, slip: f64, temperature: f64) -> f64 {
@@ -86,15 +61,15 @@ impl TransportLaw for OxideFilm {
     ) -> Conductance {
         let covered = self.covered(state[0], site.h, slip, site.temperature);
         next[0] = covered;
-        let a = half_width(site, self.hardness);
-        let thermal = through(site.conductivity, a, site);
+        let a = site.plastic_spot(self.hardness);
+        let thermal = site.constriction(site.conductivity, a);
         if a <= 0.0 || site.resistivity <= 0.0 {
             return Conductance {
                 thermal,
                 electric: 0.0,
             };
         }
-        let metal = through(1.0 / site.resistivity, a, site);
+        let metal = site.electric_constriction(a);
         let area = site.force() / self.hardness;
         let filmed = 1.0 / (1.0 / metal + self.film / area);
         Conductance {
