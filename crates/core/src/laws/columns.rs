@@ -3,6 +3,7 @@
 use super::interface::Loaded;
 use super::kind::Kind;
 use super::library::Call;
+pub use super::outputs::{Outputs, Triple};
 use crate::contact::ContactHeat;
 use fretwork_abi::FwBatch;
 use std::ptr::{null, null_mut};
@@ -19,9 +20,6 @@ pub struct StepInfo {
     /// Theta of the scheme.
     pub theta: f64,
 }
-
-/// Vectors in the local frame, one column per component.
-pub type Triple = [Vec<f64>; 3];
 
 /// The columns of one batch; the buffers are reused from step to step.
 #[derive(Debug, Default)]
@@ -102,92 +100,6 @@ fn overrun(column: &mut Vec<f64>) -> bool {
     guards
         .into_iter()
         .any(|p| unsafe { p.assume_init_read() }.to_bits() != CANARY)
-}
-
-/// Columns written by plugins, named as in the ABI.
-#[derive(Debug, Default)]
-#[allow(missing_docs)]
-pub struct Outputs {
-    pub friction: Vec<f64>,
-    pub restitution_n: Vec<f64>,
-    pub restitution_t: Vec<f64>,
-    pub tension_strength: Vec<f64>,
-    pub shear_cohesion: Vec<f64>,
-    pub rolling: Vec<f64>,
-    pub spinning: Vec<f64>,
-    pub traction: Triple,
-    pub stiffness_n: Vec<f64>,
-    pub stiffness_t: Vec<f64>,
-    pub damping_n: Vec<f64>,
-    pub damping_t: Vec<f64>,
-    pub energy: Vec<f64>,
-    pub damage: Vec<f64>,
-    pub volume: Vec<f64>,
-    pub moment: Triple,
-    pub stiffness_twist: Vec<f64>,
-    pub stiffness_bend: Vec<f64>,
-    pub contact_force: Triple,
-    pub contact_stiffness_n: Vec<f64>,
-    pub contact_stiffness_t: Vec<f64>,
-    pub contact_unloading_t: Vec<f64>,
-    pub contact_damping_n: Vec<f64>,
-    pub contact_damping_t: Vec<f64>,
-    pub conductance: Vec<f64>,
-    pub electric_conductance: Vec<f64>,
-}
-
-/// Columns that have one size.
-type Group<'a, const N: usize> = [&'a mut Vec<f64>; N];
-
-impl Outputs {
-    /// The columns of every call, those of compliant contacts, and those of transport.
-    fn groups(&mut self) -> (Group<'_, 22>, Group<'_, 8>, Group<'_, 2>) {
-        let [tn, t1, t2] = &mut self.traction;
-        let [mn, m1, m2] = &mut self.moment;
-        let [force_n, f1, f2] = &mut self.contact_force;
-        let all = [
-            &mut self.friction,
-            &mut self.restitution_n,
-            &mut self.restitution_t,
-            &mut self.tension_strength,
-            &mut self.shear_cohesion,
-            &mut self.rolling,
-            &mut self.spinning,
-            &mut self.stiffness_n,
-            &mut self.stiffness_t,
-            &mut self.damping_n,
-            &mut self.damping_t,
-            &mut self.energy,
-            &mut self.damage,
-            &mut self.volume,
-            &mut self.stiffness_twist,
-            &mut self.stiffness_bend,
-            tn,
-            t1,
-            t2,
-            mn,
-            m1,
-            m2,
-        ];
-        let springs = [
-            &mut self.contact_stiffness_n,
-            &mut self.contact_stiffness_t,
-            &mut self.contact_unloading_t,
-            &mut self.contact_damping_n,
-            &mut self.contact_damping_t,
-            force_n,
-            f1,
-            f2,
-        ];
-        let transport = [&mut self.conductance, &mut self.electric_conductance];
-        (all, springs, transport)
-    }
-
-    /// Iterates over all columns.
-    fn all(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
-        let (all, springs, transport) = self.groups();
-        all.into_iter().chain(springs).chain(transport)
-    }
 }
 
 /// Sizes a column, of which all values are to be set.

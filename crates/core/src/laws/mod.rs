@@ -17,6 +17,7 @@ mod history;
 pub mod interface;
 pub mod kind;
 pub mod library;
+mod outputs;
 mod plugin_table;
 mod prepare;
 mod range;
