@@ -92,7 +92,7 @@ pub struct HalfSpace {
     /// Temperature of each point (K), that of the surface first.
     pub temperature: Vec<f64>,
     /// What rounding took from each so far (K).
-    lost: Vec<f64>,
+    pub(crate) lost: Vec<f64>,
 }
 
 /// What the depth adds to the equation of the surface, and how the temperatures of the depth follow from it.

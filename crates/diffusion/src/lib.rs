@@ -2,7 +2,8 @@
 //!
 //! Numbers in, numbers out: the crate knows neither contacts nor laws. A [`Graph`] holds the conductances of one instant; [`step`] advances
 //! the temperatures of nodes with heat capacities implicitly in time, [`steady`] finds the potentials of nodes without any. A node may stand for the
-//! surface of a [`HalfSpace`], whose depth is resolved by a graded grid and eliminated exactly from the system of the nodes.
+//! surface of a [`HalfSpace`], whose depth is resolved by a graded grid and eliminated exactly from the system of the nodes; heat also flows sideways
+//! between the half-spaces of neighbouring pieces of a surface, the [`Columns`].
 //!
 //! The equations are, with temperatures T (K), capacities C (J/K), conductances G (W/K) and sources Q (W),
 //!
@@ -29,6 +30,7 @@
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+pub mod columns;
 pub mod error;
 pub mod flash;
 pub mod graph;
@@ -38,10 +40,11 @@ mod solve;
 pub mod steady;
 pub mod step;
 
+pub use columns::{ColumnAxis, Columns};
 pub use error::DiffusionError;
 pub use flash::Conductor;
 pub use graph::{Edge, Graph};
 pub use half_space::{Grid, HalfSpace};
 pub use node::{Node, Store};
 pub use steady::{Steady, steady};
-pub use step::{Balance, step};
+pub use step::{Balance, step, step_with_columns};

@@ -2,10 +2,10 @@
 
 use crate::half_space::Eliminated;
 use crate::solve::System;
-use crate::{DiffusionError, Edge, Graph, Node, Store};
+use crate::{Columns, DiffusionError, Edge, Graph, Node, Store};
 
 /// The heat of a step (J; J/m in 2D): `sources` + `surroundings` = `stored` + `fixed` + `residual`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Put in by sources, also into nodes of fixed temperature.
     pub sources: f64,
@@ -18,6 +18,8 @@ pub struct Balance {
     /// What does not add up: rounding, of temperatures T by T 1e-16, so that through a conductance G to a node of fixed temperature G h T 1e-16 may
     /// flow unseen.
     pub residual: f64,
+    /// Through each edge, from its second node to its first.
+    pub through: Vec<f64>,
 }
 
 /// Advances the temperatures of all nodes by a step (s), with heat `sources` (W) of each node that are constant over it; returns the heat of the
@@ -37,6 +39,48 @@ pub fn step(
     theta: f64,
 ) -> Result<Balance, DiffusionError> {
     check(nodes, graph, sources, h, theta)?;
+    solve(nodes, graph, sources, h, theta)
+}
+
+/// As [`step`], with flow between the half-spaces of neighbouring pieces of surfaces: after all else for theta = 1, half of it before
+/// and half of it after for a theta below, so that the order in step stays.
+///
+/// # Errors
+/// As [`step`], and columns that do not fit their nodes.
+pub fn step_with_columns(
+    nodes: &mut [Node],
+    (graph, columns): (&Graph, &[Columns]),
+    sources: &[f64],
+    h: f64,
+    theta: f64,
+) -> Result<Balance, DiffusionError> {
+    check(nodes, graph, sources, h, theta)?;
+    for each in columns {
+        each.check(nodes)?;
+    }
+    let halves = theta < 1.0;
+    let mut stored = 0.0;
+    for each in columns.iter().filter(|_| halves) {
+        stored += each.conduct(nodes, 0.5 * h, theta, false);
+    }
+    let mut balance = solve(nodes, graph, sources, h, theta)?;
+    for each in columns {
+        let span = if halves { 0.5 * h } else { h };
+        stored += each.conduct(nodes, span, theta, halves);
+    }
+    balance.stored += stored;
+    balance.residual -= stored;
+    Ok(balance)
+}
+
+/// The flow through edges, to surroundings and along depths.
+fn solve(
+    nodes: &mut [Node],
+    graph: &Graph,
+    sources: &[f64],
+    h: f64,
+    theta: f64,
+) -> Result<Balance, DiffusionError> {
     let w = theta * h;
     // Unknowns are the nodes whose temperature is not fixed.
     let mut unknown = vec![u32::MAX; nodes.len()];
@@ -126,7 +170,10 @@ fn advance(
         u32::MAX => 0.0,
         u => solved.change[u as usize],
     };
-    let mut balance = Balance::default();
+    let mut balance = Balance {
+        through: Vec::with_capacity(graph.edges.len()),
+        ..Balance::default()
+    };
     for (k, node) in nodes.iter().enumerate() {
         balance.sources += h * sources[k];
         let fixed = node.store == Store::Fixed;
@@ -141,6 +188,7 @@ fn advance(
         let [a, b] = e.nodes.map(|n| n as usize);
         let reached = |k: usize| nodes[k].temperature + change_of(k);
         let flow = h * e.conductance * (reached(b) - reached(a));
+        balance.through.push(flow);
         for (k, flow) in [(a, flow), (b, -flow)] {
             if nodes[k].store == Store::Fixed {
                 balance.fixed += flow;

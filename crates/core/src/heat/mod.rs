@@ -19,7 +19,7 @@ pub mod pieces;
 pub mod state;
 
 pub use circuit::{Circuit, CircuitState, Supply};
-pub use fretwork_diffusion::{Conductor, DiffusionError, Grid, HalfSpace, Node, Store};
+pub use fretwork_diffusion::{Columns, Conductor, DiffusionError, Grid, HalfSpace, Node, Store};
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
 pub use model::{BodyNodes, Heat, MaterialPair, Partition, Shares};

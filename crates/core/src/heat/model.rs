@@ -5,6 +5,7 @@ use super::material::ThermalMaterial;
 use super::pieces::Pieces;
 use crate::contact::ContactDissipation;
 use crate::geometry::space::Space;
+use fretwork_diffusion::Columns;
 use serde::{Deserialize, Serialize};
 
 /// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays elsewhere (new surfaces, sound, plastic work that
@@ -111,6 +112,8 @@ pub struct Heat {
     pub material: Vec<u16>,
     /// Nodes of each body.
     pub nodes: Vec<BodyNodes>,
+    /// Half-spaces between which heat flows sideways.
+    pub columns: Vec<Columns>,
     /// Heat flows imposed on bodies: body, node and flow (W; W/m in 2D).
     pub imposed: Vec<(u32, u32, f64)>,
     /// Temperature of what has no node, where nothing that it touches has one (K).

@@ -1,6 +1,7 @@
 //! Pieces of the surface of a first body: strips along one axis, or rectangles along two, in the axes of the body.
 
 use crate::geometry::space::{Space, VectorLike};
+use fretwork_diffusion::{ColumnAxis, Columns};
 
 /// The strips along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +49,20 @@ impl Pieces {
     pub fn area(&self) -> f64 {
         let each = self.axes.iter();
         each.map(|a| a.length / f64::from(a.count)).product()
+    }
+
+    /// Their half-spaces, as neighbours, from a first node on, of a material of this diffusivity (m^2/s).
+    pub fn columns(&self, first: u32, diffusivity: f64) -> Columns {
+        let axis = |a: &PieceAxis| ColumnAxis {
+            count: a.count,
+            width: a.length / f64::from(a.count),
+            periodic: a.periodic,
+        };
+        Columns {
+            nodes: first as usize..(first + self.count()) as usize,
+            axes: self.axes.iter().map(axis).collect(),
+            diffusivity,
+        }
     }
 
     /// The piece of a place in the axes of the body (m).

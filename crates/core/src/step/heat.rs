@@ -6,7 +6,7 @@ use super::{Simulation, StepError};
 use crate::contact::{Bond, Contact, ContactHeat};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{CircuitState, DiffusionError, Heat, HeatState};
-use fretwork_diffusion::{Edge, Graph, steady, step};
+use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
 
 /// The node of an insulated body.
 const NONE: u32 = u32::MAX;
@@ -213,14 +213,17 @@ impl<S: Space> Simulation<S> {
                 });
             }
         }
-        let before: Vec<f64> = state.nodes.iter().map(|n| n.temperature).collect();
         let sources: Vec<f64> = state.pending.iter().map(|q| q / span).collect();
-        let balance = step(&mut state.nodes, &graph, &sources, span, heat.theta)?;
-        let reached = |k: usize| before[k] + heat.theta * (state.nodes[k].temperature - before[k]);
+        let balance = step_with_columns(
+            &mut state.nodes,
+            (&graph, &heat.columns),
+            &sources,
+            span,
+            heat.theta,
+        )?;
         let mut exchanged = 0.0;
-        for edge in &graph.edges {
+        for (edge, &flow) in graph.edges.iter().zip(&balance.through) {
             let [a, b] = edge.nodes.map(|n| n as usize);
-            let flow = span * edge.conductance * (reached(b) - reached(a));
             exchanged += flow.abs();
             for (node, flow) in [(a, flow), (b, -flow)] {
                 if driven[node] != NONE {

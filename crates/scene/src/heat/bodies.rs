@@ -5,7 +5,7 @@ use crate::source::ValidationError;
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{
-    BodyNodes, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
+    BodyNodes, Columns, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
 };
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
@@ -20,6 +20,7 @@ const DEEP: f64 = 6.0;
 pub(super) struct Nodes {
     pub list: Vec<Node>,
     pub of_bodies: Vec<BodyNodes>,
+    pub columns: Vec<Columns>,
     /// Body, node and heat flow (W; W/m in 2D).
     pub imposed: Vec<(u32, u32, f64)>,
 }
@@ -131,6 +132,8 @@ impl Nodes {
                     let store = Store::HalfSpace(Box::new(space));
                     self.list.push(Node::new(temperature, store));
                 }
+                let diffusivity = scene.material_of(body).conductor().diffusivity();
+                self.columns.push(pieces.columns(first, diffusivity));
                 self.of_bodies.push(BodyNodes::Pieces(first, pieces));
             }
         }

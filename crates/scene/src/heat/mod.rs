@@ -45,6 +45,7 @@ pub(crate) fn install<S: Space>(
         materials,
         material,
         nodes: nodes.of_bodies,
+        columns: nodes.columns,
         imposed: nodes.imposed,
         shares: spec.shares,
         partition: spec.partition,
