@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 ///
 /// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
 /// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
-/// plus carried minus external work equals the initial energy.
+/// plus carried minus external work and expansion equals the initial energy.
 ///
 /// Dynamical systems are booked where rigid bodies and bonds are: their motion in `kinetic`, the energy of their deformation in
 /// `elastic`, their weight in `potential`, their damping in `viscous`, forces and motions imposed on them in `external_work`, and in
@@ -42,6 +42,8 @@ pub struct Energy {
     pub scheme: f64,
     /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
+    /// Work that bodies do by thermal expansion, taken from their heat.
+    pub expansion: f64,
     /// Work of imposed forces and motions, what dynamical systems stored when they were added, and what
     /// compliant contacts stored at the start.
     pub external_work: f64,
@@ -64,6 +66,8 @@ pub struct BodyWork {
     pub damping: f64,
     /// Dissipated by the scheme.
     pub scheme: f64,
+    /// Done by thermal expansion.
+    pub expansion: f64,
 }
 
 impl Energy {
@@ -73,6 +77,7 @@ impl Energy {
         self.elastic = elastic;
         self.potential += work.potential;
         self.external_work += work.external;
+        self.expansion += work.expansion;
         self.scheme += work.scheme;
         self.fracture += totals.fracture;
         self.friction += totals.friction;
@@ -89,9 +94,10 @@ impl Energy {
             + self.scheme
             + self.carried;
         let held = self.kinetic - self.initial_kinetic + self.potential + self.elastic;
-        self.residual = held + sinks - self.external_work;
+        self.residual = held + sinks - self.external_work - self.expansion;
         let seen = [
             self.external_work,
+            self.expansion,
             self.potential,
             self.kinetic,
             self.initial_kinetic,
@@ -109,8 +115,8 @@ impl Energy {
     }
 
     /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry is the
-    /// sum of all before it, minus external work and initial kinetic energy.
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 14] {
+    /// sum of all before expansion, minus expansion, external work and initial kinetic energy.
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 15] {
         // Destructured field by field, so that a new entry of the ledger does not compile until it is listed
         // here.
         let Self {
@@ -125,6 +131,7 @@ impl Energy {
             correction,
             scheme,
             carried,
+            expansion,
             external_work,
             initial_kinetic,
             residual,
@@ -171,6 +178,11 @@ impl Energy {
                 carried,
             ),
             (
+                "expansion",
+                "work of thermal expansion, taken from heat",
+                expansion,
+            ),
+            (
                 "external_work",
                 "work of imposed forces and motions",
                 external_work,
@@ -182,7 +194,7 @@ impl Energy {
             ),
             (
                 "residual",
-                "what does not add up: all entries before external_work, less external_work and initial_kinetic",
+                "what does not add up: all entries before expansion, less expansion, external_work and initial_kinetic",
                 residual,
             ),
         ]

@@ -18,19 +18,36 @@ pub struct Graph {
     pub nodes: usize,
     /// Conductances, in an order that decides the last bits of results. Two edges of one pair add up; an edge of a node to itself does nothing.
     pub edges: Vec<Edge>,
+    /// Conductances of the elements of meshes, in the same units. They may be negative, as across an obtuse angle, where all of a mesh together
+    /// take no heat from a lower temperature to a higher one.
+    pub elements: Vec<Edge>,
 }
 
 impl Graph {
-    /// Checks that conductances are finite and not negative and that nodes exist.
+    /// So many nodes with edges and no elements.
+    pub fn new(nodes: usize, edges: Vec<Edge>) -> Self {
+        Self {
+            nodes,
+            edges,
+            elements: Vec::new(),
+        }
+    }
+
+    /// Edges and elements.
+    pub(crate) fn all(&self) -> impl Iterator<Item = &Edge> {
+        self.edges.iter().chain(&self.elements)
+    }
+
+    /// Checks that conductances are finite and those of edges not negative, and that nodes exist.
     ///
     /// # Errors
     /// The first conductance that is not.
     pub fn check(&self) -> Result<(), DiffusionError> {
         let wrong = |e: &&Edge| {
-            !(e.conductance >= 0.0 && e.conductance.is_finite())
-                || e.nodes.iter().any(|n| *n as usize >= self.nodes)
+            !e.conductance.is_finite() || e.nodes.iter().any(|n| *n as usize >= self.nodes)
         };
-        match self.edges.iter().find(wrong) {
+        let negative = self.edges.iter().find(|e| e.conductance < 0.0);
+        match negative.or_else(|| self.all().find(wrong)) {
             None => Ok(()),
             Some(e) => Err(DiffusionError::Conductance {
                 nodes: e.nodes.map(|n| n as usize),
@@ -49,7 +66,7 @@ impl Graph {
             }
             k
         }
-        for e in self.edges.iter().filter(|e| e.conductance > 0.0) {
+        for e in self.all().filter(|e| e.conductance > 0.0) {
             let [a, b] = e.nodes.map(|n| root(&mut parent, n as usize));
             // The smaller number is the root, so that components are numbered by their first node.
             parent[a.max(b)] = a.min(b);

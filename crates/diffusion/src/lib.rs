@@ -19,7 +19,7 @@
 //!
 //! // A grain of 1 J/K at 400 K on a wall of 300 K, joined by 0.1 W/K, with 2 W of frictional heat: it tends to 320 K.
 //! let mut nodes = [Node::new(400.0, Store::Lumped(1.0)), Node::new(300.0, Store::Fixed)];
-//! let graph = Graph { nodes: 2, edges: vec![Edge { nodes: [0, 1], conductance: 0.1 }] };
+//! let graph = Graph::new(2, vec![Edge { nodes: [0, 1], conductance: 0.1 }]);
 //! for _ in 0..300 {
 //!     let balance = step(&mut nodes, &graph, &[2.0, 0.0], 1.0, 1.0)?;
 //!     assert!(balance.residual.abs() < 1e-10);

@@ -1,4 +1,4 @@
-//! Linear systems of graphs: symmetric, positive definite, with diagonals that exceed the sums of their rows.
+//! Linear systems of graphs: symmetric, positive definite.
 
 use crate::{DiffusionError, Edge};
 use faer::prelude::Solve;
@@ -41,7 +41,7 @@ impl<'a> System<'a> {
         let n = right.len();
         let mut diagonal = own.to_vec();
         let mut counts = vec![0u32; n];
-        let joins = |e: &&Edge| e.nodes[0] != e.nodes[1] && e.conductance > 0.0;
+        let joins = |e: &&Edge| e.nodes[0] != e.nodes[1] && e.conductance != 0.0;
         for e in edges.iter().filter(joins) {
             for k in e.nodes {
                 diagonal[k as usize] += e.conductance;

@@ -18,7 +18,7 @@ pub struct Balance {
     /// What does not add up: rounding, of temperatures T by T 1e-16, so that through a conductance G to a node of fixed temperature G h T 1e-16 may
     /// flow unseen.
     pub residual: f64,
-    /// Through each edge, from its second node to its first.
+    /// Through each of the edges that are no elements, from its second node to its first.
     pub through: Vec<f64>,
 }
 
@@ -108,8 +108,8 @@ fn solve(
         own[u] += node.surroundings;
         right[u] += sources[k] + node.surroundings * (node.ambient - node.temperature);
     }
-    let mut inner: Vec<Edge> = Vec::with_capacity(graph.edges.len());
-    for e in &graph.edges {
+    let mut inner: Vec<Edge> = Vec::with_capacity(graph.edges.len() + graph.elements.len());
+    for e in graph.all() {
         let [a, b] = e.nodes.map(|n| n as usize);
         let flow = e.conductance * (nodes[b].temperature - nodes[a].temperature);
         let [ua, ub] = [unknown[a], unknown[b]];
@@ -184,7 +184,7 @@ fn advance(
             balance.surroundings += h * node.surroundings * (node.ambient - reached);
         }
     }
-    for e in &graph.edges {
+    for e in graph.all() {
         let [a, b] = e.nodes.map(|n| n as usize);
         let reached = |k: usize| nodes[k].temperature + change_of(k);
         let flow = h * e.conductance * (reached(b) - reached(a));
@@ -213,6 +213,7 @@ fn advance(
             node.temperature = space.temperature[0];
         }
     }
+    balance.through.truncate(graph.edges.len());
     balance.residual = balance.sources + balance.surroundings - balance.stored - balance.fixed;
     balance
 }

@@ -36,10 +36,7 @@ fn flux_error(steps: u32, theta: f64) -> f64 {
     let (q, t) = (1e6, 1e-3);
     let h = t / f64::from(steps);
     let mut nodes = [half_space(CONDUCTIVITY, CAPACITY, t / 400.0, t, 0.0)];
-    let graph = Graph {
-        nodes: 1,
-        edges: Vec::new(),
-    };
+    let graph = Graph::new(1, Vec::new());
     for _ in 0..steps {
         step(&mut nodes, &graph, &[q], h, theta).unwrap();
     }
@@ -73,10 +70,7 @@ fn two_half_spaces_meet_at_their_effusivities() {
             half_space(CONDUCTIVITY, CAPACITY, h, t, temperatures[0]),
             half_space(other.0, other.1, h, t, temperatures[1]),
         ];
-        let graph = Graph {
-            nodes: 2,
-            edges: vec![edge(0, 1, 1e12)],
-        };
+        let graph = Graph::new(2, vec![edge(0, 1, 1e12)]);
         for _ in 0..1000 {
             step(&mut nodes, &graph, &[0.0; 2], h, 1.0).unwrap();
         }
@@ -98,10 +92,7 @@ fn two_lumps_approach_each_other() {
         for (node, c) in nodes.iter_mut().zip(c) {
             node.store = Store::Lumped(c);
         }
-        let graph = Graph {
-            nodes: 2,
-            edges: vec![edge(0, 1, g)],
-        };
+        let graph = Graph::new(2, vec![edge(0, 1, g)]);
         for _ in 0..steps {
             step(&mut nodes, &graph, &[0.0; 2], t / f64::from(steps), theta).unwrap();
         }
@@ -120,10 +111,7 @@ fn surroundings_take_heat() {
     let mut node = Node::new(400.0, Store::Lumped(10.0));
     (node.surroundings, node.ambient) = (2.0, 300.0);
     let mut nodes = [node];
-    let graph = Graph {
-        nodes: 1,
-        edges: Vec::new(),
-    };
+    let graph = Graph::new(1, Vec::new());
     let mut lost = 0.0;
     for _ in 0..1000 {
         lost -= step(&mut nodes, &graph, &[0.0], 5e-3, 0.5)
@@ -148,7 +136,7 @@ fn a_random_network_is_solved() {
             }
         }
     }
-    let graph = Graph { nodes: n, edges };
+    let graph = Graph::new(n, edges);
     let mut fixed = vec![None; n];
     (fixed[3], fixed[41]) = (Some(1.0), Some(-2.0));
     let mut injected = vec![0.0; n];
@@ -186,7 +174,7 @@ fn a_random_network_is_solved() {
 #[test]
 fn series_and_parallel() {
     let between = |edges: Vec<Edge>, nodes: usize| {
-        let graph = Graph { nodes, edges };
+        let graph = Graph::new(nodes, edges);
         let mut fixed = vec![None; nodes];
         (fixed[0], fixed[nodes - 1]) = (Some(1.0), Some(0.0));
         steady(&graph, &fixed, &vec![0.0; nodes]).unwrap().given[0]
@@ -201,10 +189,7 @@ fn series_and_parallel() {
 /// Nodes that no path joins to an electrode carry no current, and current into them is refused.
 #[test]
 fn what_is_not_joined_carries_no_current() {
-    let graph = Graph {
-        nodes: 5,
-        edges: vec![edge(0, 1, 1.0), edge(2, 3, 1.0), edge(3, 4, 0.0)],
-    };
+    let graph = Graph::new(5, vec![edge(0, 1, 1.0), edge(2, 3, 1.0), edge(3, 4, 0.0)]);
     let fixed = [Some(5.0), None, None, None, None];
     let found = steady(&graph, &fixed, &[0.0; 5]).unwrap();
     assert_eq!(found.potential, [5.0, 5.0, 0.0, 0.0, 0.0]);

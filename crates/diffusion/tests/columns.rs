@@ -37,10 +37,7 @@ fn surface(counts: &[u32], width: f64, periodic: bool, h: f64, t: f64) -> (Vec<N
 }
 
 fn no_edges(nodes: usize) -> Graph {
-    Graph {
-        nodes,
-        edges: Vec::new(),
-    }
+    Graph::new(nodes, Vec::new())
 }
 
 /// Exponential integral E1 by its series and, above 1, its continued fraction (M. Abramowitz, I. Stegun, 5.1.11 and 5.1.22).

@@ -38,7 +38,7 @@ fn scene(seed: u64) -> (Vec<Node>, Graph) {
             });
         }
     }
-    (nodes, Graph { nodes: 203, edges })
+    (nodes, Graph::new(203, edges))
 }
 
 fn range(nodes: &[Node]) -> (f64, f64) {
@@ -91,7 +91,7 @@ fn sources_are_stored() {
         .copied()
         .filter(|e| e.nodes.iter().all(|n| *n < 202))
         .collect();
-    let graph = Graph { nodes: 202, edges };
+    let graph = Graph::new(202, edges);
     let sources: Vec<f64> = (0..202).map(|k| f64::from(k % 7)).collect();
     let before: f64 = nodes.iter().map(|n| n.heat(0.0)).sum();
     for theta in [0.5, 0.7, 1.0] {

@@ -16,10 +16,7 @@ fn warmed(flux: impl Fn(f64) -> f64, h: f64, steps: u32) -> Vec<f64> {
     let grid = Grid::graded(STEEL.conductivity, STEEL.capacity, 0.1 * reach, 1.05, depth).unwrap();
     let space = HalfSpace::new(grid, 1.0, 0.0);
     let mut nodes = [Node::new(0.0, Store::HalfSpace(Box::new(space)))];
-    let graph = Graph {
-        nodes: 1,
-        edges: Vec::new(),
-    };
+    let graph = Graph::new(1, Vec::new());
     let mut out = Vec::new();
     for k in 0..steps {
         let middle = h * (f64::from(k) + 0.5);

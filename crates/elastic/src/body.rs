@@ -11,6 +11,7 @@
 //! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
+mod conduction;
 mod results;
 mod turning;
 
@@ -23,8 +24,8 @@ use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
 use fretwork_core::bodies::{
-    Compliance, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder, Nodes,
-    SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
+    Compliance, Conduction, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder,
+    Nodes, SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
 };
 use fretwork_core::geometry::shape::Surface;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -489,6 +490,10 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
 
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
         Some(self.mesh_now())
+    }
+
+    fn conduction(&self) -> Option<Conduction> {
+        Some(conduction::conduction(&self.model.mesh))
     }
 
     fn mesh_velocity(&self) -> Vec<S::Vector> {

@@ -5,7 +5,6 @@ use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::{Column, Table};
-use fretwork_core::bodies::Driven;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
@@ -31,7 +30,7 @@ struct State {
 /// Observes the heat of a run, and its electric circuit where it has one.
 #[derive(Debug)]
 pub struct HeatObserver {
-    /// Names of the first bodies, in their order.
+    /// Names of the first bodies, in the order of [`Heat::first_bodies`].
     names: Vec<String>,
     circuit: bool,
     flat: bool,
@@ -44,13 +43,7 @@ impl HeatObserver {
         let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
         let temperatures = || state.nodes.iter().map(|n| n.temperature);
         Some(Self {
-            names: s
-                .state
-                .bodies
-                .driven
-                .iter()
-                .map(|d| d.name.clone())
-                .collect(),
+            names: heat.first_bodies.iter().map(|b| b.0.clone()).collect(),
             circuit: heat.circuit.is_some(),
             flat: S::D == 2,
             state: State {
@@ -70,12 +63,10 @@ impl HeatObserver {
         };
         let [highest, mean] = of_grains(s, heat, state);
         let mut row = vec![highest, mean];
-        let driven = &s.state.bodies.driven;
-        row.extend(
-            driven
-                .iter()
-                .map(|d| s.temperature(d.body as usize).unwrap_or(f64::NAN)),
-        );
+        let of_body = |(_, nodes): &(String, std::ops::Range<usize>)| {
+            s.mean_temperature(nodes.clone()).unwrap_or(f64::NAN)
+        };
+        row.extend(heat.first_bodies.iter().map(of_body));
         let span = heat.clock * (s.state.time - self.state.time);
         let flows = state.received.iter().zip(&self.state.received);
         row.extend(flows.map(|(now, before)| match span > 0.0 {
@@ -159,7 +150,7 @@ impl<S: Space> Observer<S> for HeatObserver {
         all.extend(of_bodies(
             "temperature",
             "K",
-            "mean temperature of the surface of a first body; not a number of an insulated one",
+            "mean temperature of the surface of a first body, of finite elements that of its volume; not a number of an insulated one",
         ));
         all.extend(of_bodies(
             "heat_flow",
@@ -272,8 +263,10 @@ impl<S: Space> Observer<S> for HeatObserver {
         let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
             return Vec::new();
         };
-        let surface = |(name, driven): (&String, &Driven)| {
-            let BodyNodes::Pieces(first, pieces) = &heat.nodes[driven.body as usize] else {
+        let surface = |(name, nodes): &(String, std::ops::Range<usize>)| {
+            let of_body =
+                |n: &&BodyNodes| matches!(n, BodyNodes::Pieces(..)) && n.range() == *nodes;
+            let Some(BodyNodes::Pieces(first, pieces)) = heat.nodes.iter().find(of_body) else {
                 return None;
             };
             let axes = pieces.axes.iter();
@@ -290,8 +283,7 @@ impl<S: Space> Observer<S> for HeatObserver {
             let file = format!("surface_temperature_{name}.csv");
             Some(Output::Text { file, text })
         };
-        let driven = &s.state.bodies.driven;
-        self.names.iter().zip(driven).filter_map(surface).collect()
+        heat.first_bodies.iter().filter_map(surface).collect()
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

@@ -3,7 +3,7 @@
 use super::CheckLine;
 use super::load::Load;
 use crate::geometry::space::Space;
-use crate::heat::{Heat, Store};
+use crate::heat::{BodyNodes, Heat, Store};
 use crate::laws::Interface;
 use crate::laws::bench::{Bench, Motion};
 use crate::scene::build::Built;
@@ -13,6 +13,10 @@ use crate::step::Simulation;
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
 /// Transfer, chapter 5).
 const UNIFORM: f64 = 0.1;
+
+/// D h/w^2 from which on the steps along the depth and along the surface, one after another, are not those of all at once: a band source is then
+/// off by more than 1 % (crates/diffusion/tests/columns.rs).
+const SPLIT: f64 = 0.5;
 
 /// The lines.
 pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckLine> {
@@ -30,6 +34,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
         return out;
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
+    out.extend(sideways(case, heat));
     let closed = s.laws.iter().filter(|l| l.transport().is_none());
     let closed: Vec<&str> = closed.map(|l| l.name.as_str()).collect();
     if !closed.is_empty() {
@@ -52,10 +57,13 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
 /// What is done with heat, in words.
 pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
     let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
-    let of = |d: &crate::bodies::Driven| {
-        let nodes = &state.nodes[heat.nodes[d.body as usize].range()];
+    let of = |(name, range): &(String, std::ops::Range<usize>)| {
+        let nodes = &state.nodes[range.clone()];
+        let meshes = &mut heat.nodes.iter();
+        let mesh = meshes.any(|n| matches!(n, BodyNodes::Mesh(..)) && n.range() == *range);
         let what = match nodes.first().map(|n| &n.store) {
             None => "insulated".to_owned(),
+            Some(_) if mesh => format!("{} points of its mesh", nodes.len()),
             Some(Store::Fixed) => format!("kept at {:.1} K", nodes[0].temperature),
             Some(Store::Lumped(capacity)) => format!("{capacity:.3e} J/K"),
             Some(Store::HalfSpace(space)) => {
@@ -67,14 +75,32 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
                 )
             }
         };
-        format!("{} {what}", d.name)
+        format!("{name} {what}")
     };
-    let bodies: Vec<String> = s.state.bodies.driven.iter().map(of).collect();
+    let bodies: Vec<String> = heat.first_bodies.iter().map(of).collect();
     let grains = s.state.bodies.grains().count();
     Some(format!(
         "{grains} grains of one temperature each; {}",
         bodies.join(", ")
     ))
+}
+
+/// What a step does between the pieces of a surface.
+fn sideways(case: &Case, heat: &Heat) -> Option<CheckLine> {
+    let step = case.time.step * heat.clock * heat.every as f64;
+    let numbers = heat.columns.iter().map(|c| c.number(step));
+    let most = numbers.fold(0.0, f64::max);
+    if most == 0.0 {
+        return None;
+    }
+    let judged = match most < SPLIT {
+        true => "small enough for a step of its own along the surface",
+        false => {
+            "too large for a step of its own along the surface: use a smaller step, smaller `heat.every`, or fewer pieces"
+        }
+    };
+    let text = format!("D h/w^2 = {most:.2e} between pieces of width w of a surface: {judged}");
+    Some(("heat sideways".to_owned(), text))
 }
 
 fn clock(case: &Case, heat: &Heat) -> String {

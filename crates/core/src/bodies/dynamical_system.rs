@@ -19,6 +19,7 @@
 //! "The non-smooth contact dynamics method", same volume.
 
 use super::compliance::Compliance;
+use super::conduction::Conduction;
 use super::contactor::{Contactor, ContactorMotion};
 use super::drive::Dof;
 use super::nodes::Nodes;
@@ -350,6 +351,11 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
 
     /// Its mesh as it is now; none of systems that have no mesh.
     fn deformed_mesh(&self) -> Option<DeformedMesh<S>> {
+        None
+    }
+
+    /// How heat flows in that mesh; none of systems whose heat is not computed.
+    fn conduction(&self) -> Option<Conduction> {
         None
     }
 

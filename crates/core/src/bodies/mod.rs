@@ -1,6 +1,7 @@
 //! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
 //! rigid.
 pub mod compliance;
+pub mod conduction;
 pub mod contactor;
 pub mod delay;
 pub mod drive;
@@ -17,6 +18,7 @@ pub mod systems;
 pub mod tensor;
 
 pub use compliance::{Compliance, block_of, column_of};
+pub use conduction::Conduction;
 pub use contactor::{Contactor, ContactorMotion, ContactorShape};
 pub use drive::{Dof, Driven, TimeFunction};
 pub use dynamical_system::{

@@ -195,6 +195,8 @@ pub struct Network<S: Space> {
     pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
+    /// By how much the largest growth of a body (m) has changed distances since the neighbour list was built.
+    pub grown: f64,
     /// Number of rebuilds of the neighbour list.
     pub rebuilds: u64,
     /// Relative motion in a step (m) from which a pair is followed through the step.
@@ -300,6 +302,7 @@ impl<S: Space> Network<S> {
             widened: Vec::new(),
             turning: Vec::new(),
             extents: Default::default(),
+            grown: 0.0,
             seen_at: Vec::new(),
             cores: Vec::new(),
         }

@@ -1,5 +1,18 @@
 //! Temperatures and conductances of contacts in a step.
 
+use crate::bodies::Nodes;
+
+/// Where the heat of a contact enters a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeatSide {
+    /// Nowhere: it is insulated.
+    Insulated,
+    /// At a node.
+    Node(u32),
+    /// Between nodes of a mesh, see [`ContactHeat::between`].
+    Between(u32),
+}
+
 /// What laws see of heat at each contact, and what they answer, in the order of the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHeat {
@@ -9,12 +22,31 @@ pub struct ContactHeat {
     pub material: Vec<[f64; 2]>,
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
-    /// Nodes of candidate and antagonist; `u32::MAX` for an insulated one.
-    pub nodes: Vec<[u32; 2]>,
+    /// Where heat enters the candidate and the antagonist.
+    pub sides: Vec<[HeatSide; 2]>,
+    /// Points of meshes that sides refer to, by nodes of the heat.
+    pub between: Vec<Nodes>,
     /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
     pub source: Vec<f64>,
     /// Whether heat or current flows in this step, so that conductances are asked for.
     pub conducts: bool,
     /// Whether current flows, so that laws are given resistivities.
     pub current: bool,
+}
+
+impl ContactHeat {
+    /// The nodes of a side with their weights, whose sum is 1; none of an insulated one.
+    pub fn terms(&self, side: HeatSide) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let node = match side {
+            HeatSide::Node(node) => Some((node as usize, 1.0)),
+            _ => None,
+        };
+        let between = match side {
+            HeatSide::Between(k) => self.between.get(k as usize),
+            _ => None,
+        };
+        let of_mesh = between.into_iter().flat_map(Nodes::terms);
+        node.into_iter()
+            .chain(of_mesh.map(|(node, weight)| (node as usize, weight)))
+    }
 }

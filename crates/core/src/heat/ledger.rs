@@ -3,7 +3,7 @@
 use fretwork_diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
-/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings = stored + fixed + pending + residual.
+/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings - expansion = stored + fixed + pending + residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeatLedger {
     /// Put in by mechanical dissipation: the shares that the case gives of the entries of [`crate::energy::Energy`].
@@ -14,6 +14,8 @@ pub struct HeatLedger {
     pub imposed: f64,
     /// Taken in from surroundings.
     pub surroundings: f64,
+    /// Turned into work by thermal expansion.
+    pub expansion: f64,
     /// Stored in grains and first bodies.
     pub stored: f64,
     /// Gone into bodies of fixed temperature, and at contacts of two insulated bodies.
@@ -38,7 +40,8 @@ impl HeatLedger {
 
     /// Adds up.
     pub(crate) fn close(&mut self, received: &[f64]) {
-        let put_in = self.dissipated + self.joule + self.imposed + self.surroundings;
+        let put_in =
+            self.dissipated + self.joule + self.imposed + self.surroundings - self.expansion;
         let found = self.stored + self.fixed + self.pending;
         self.residual = put_in - found;
         let seen = [
@@ -46,6 +49,7 @@ impl HeatLedger {
             self.joule,
             self.imposed,
             self.surroundings,
+            self.expansion,
             self.stored,
             self.fixed,
         ];
@@ -63,12 +67,13 @@ impl HeatLedger {
     }
 
     /// Every entry: name, description, value (J; J/m in 2D).
-    pub fn entries(&self) -> [(&'static str, &'static str, f64); 8] {
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 9] {
         let Self {
             dissipated,
             joule,
             imposed,
             surroundings,
+            expansion,
             stored,
             fixed,
             pending,
@@ -88,6 +93,11 @@ impl HeatLedger {
                 "heat taken in from surroundings, negative where they cool",
                 surroundings,
             ),
+            (
+                "expansion",
+                "heat turned into work by thermal expansion",
+                expansion,
+            ),
             ("stored", "heat stored in grains and first bodies", stored),
             ("fixed", "heat gone into bodies of fixed temperature", fixed),
             (
@@ -97,7 +107,7 @@ impl HeatLedger {
             ),
             (
                 "residual",
-                "what does not add up: the first four entries less stored, fixed and pending",
+                "what does not add up: the first four entries less expansion, stored, fixed and pending",
                 residual,
             ),
         ]

@@ -12,6 +12,7 @@
 //! added to its sources. Laws are given the temperatures at the start of the step.
 
 pub mod circuit;
+pub mod expansion;
 pub mod ledger;
 pub mod material;
 pub mod model;
@@ -19,7 +20,10 @@ pub mod pieces;
 pub mod state;
 
 pub use circuit::{Circuit, CircuitState, Supply};
-pub use fretwork_diffusion::{Columns, Conductor, DiffusionError, Grid, HalfSpace, Node, Store};
+pub use expansion::Expansion;
+pub use fretwork_diffusion::{
+    Columns, Conductor, DiffusionError, Edge, Grid, HalfSpace, Node, Store,
+};
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
 pub use model::{BodyNodes, Heat, MaterialPair, Partition, Shares};

@@ -5,8 +5,9 @@ use super::material::ThermalMaterial;
 use super::pieces::Pieces;
 use crate::contact::ContactDissipation;
 use crate::geometry::space::Space;
-use fretwork_diffusion::Columns;
+use fretwork_diffusion::{Columns, Edge};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays elsewhere (new surfaces, sound, plastic work that
 /// is stored).
@@ -69,23 +70,26 @@ pub enum BodyNodes {
     One(u32),
     /// One for each piece of its surface, from a first one on.
     Pieces(u32, Pieces),
+    /// Those of the points of its mesh of finite elements, from a first one to before an end.
+    Mesh(u32, u32),
 }
 
 impl BodyNodes {
     /// The nodes.
-    pub fn range(&self) -> std::ops::Range<usize> {
+    pub fn range(&self) -> Range<usize> {
         match self {
             Self::Insulated => 0..0,
             Self::One(node) => *node as usize..*node as usize + 1,
+            Self::Mesh(first, end) => *first as usize..*end as usize,
             Self::Pieces(first, pieces) => *first as usize..(*first + pieces.count()) as usize,
         }
     }
 
-    /// The node at a place in the axes of the body (m).
+    /// The node at a place in the axes of the body (m); none of a mesh, where a place is between several.
     #[inline]
     pub fn at<S: Space>(&self, place: impl FnOnce() -> S::Vector) -> Option<u32> {
         match self {
-            Self::Insulated => None,
+            Self::Insulated | Self::Mesh(..) => None,
             Self::One(node) => Some(*node),
             Self::Pieces(first, pieces) => Some(first + pieces.piece::<S>(&place())),
         }
@@ -114,6 +118,10 @@ pub struct Heat {
     pub nodes: Vec<BodyNodes>,
     /// Half-spaces between which heat flows sideways.
     pub columns: Vec<Columns>,
+    /// Conductances of finite elements between nodes (W/K; W/(m K) in 2D).
+    pub elements: Vec<Edge>,
+    /// First bodies that heat flows into, with their nodes: driven ones in their order, then those of finite elements.
+    pub first_bodies: Vec<(String, Range<usize>)>,
     /// Heat flows imposed on bodies: body, node and flow (W; W/m in 2D).
     pub imposed: Vec<(u32, u32, f64)>,
     /// Temperature of what has no node, where nothing that it touches has one (K).

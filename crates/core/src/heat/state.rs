@@ -18,19 +18,21 @@ pub struct HeatState {
     pub(crate) pending_steps: u64,
     /// The account.
     pub ledger: HeatLedger,
-    /// Heat that went into each driven body since the start, in their order (J; J/m in 2D): by its contacts, not by its surroundings.
+    /// Heat that went into each of [`super::Heat::first_bodies`] since the start (J; J/m in 2D): by its contacts, not by its surroundings.
     pub received: Vec<f64>,
+    /// Size of each body over that of the case; empty where none expands.
+    pub stretch: Vec<f64>,
     /// The circuit in the last step, where there is one.
     pub circuit: CircuitState,
 }
 
 impl HeatState {
-    /// Nodes at the start, for so many driven bodies.
-    pub fn new(nodes: Vec<Node>, driven: usize) -> Self {
+    /// Nodes at the start, for so many first bodies.
+    pub fn new(nodes: Vec<Node>, first_bodies: usize) -> Self {
         Self {
             pending: vec![0.0; nodes.len()],
             nodes,
-            received: vec![0.0; driven],
+            received: vec![0.0; first_bodies],
             ..Self::default()
         }
     }

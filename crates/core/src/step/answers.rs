@@ -97,6 +97,7 @@ impl<S: Space> Simulation<S> {
         if self.state.systems.is_empty() {
             let of = |k: usize| relative_velocity(bodies, &contacts[k]);
             fill(self.divides_contacts(), list, contacts.len(), of);
+            self.add_surface_velocities(list);
             return;
         }
         list.clear();
@@ -104,6 +105,7 @@ impl<S: Space> Simulation<S> {
             let of_sides = self.relative_velocity_of_sides(k);
             of_sides.unwrap_or_else(|| relative_velocity(bodies, contact))
         }));
+        self.add_surface_velocities(list);
     }
 
     /// Computes the relative velocities and spins at the start of the step.

@@ -3,12 +3,13 @@
 use super::answers::relative_velocity;
 use super::fields::{heat_of_contacts, heat_of_grains};
 use super::{Simulation, StepError};
-use crate::contact::{Bond, Contact, ContactHeat};
+use crate::bodies::Nodes;
+use crate::contact::{Bond, Contact, ContactHeat, HeatSide};
 use crate::geometry::space::{Space, VectorLike};
-use crate::heat::{CircuitState, DiffusionError, Heat, HeatState};
+use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Store};
 use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
 
-/// The node of an insulated body.
+/// Of a node that is of no first body.
 const NONE: u32 = u32::MAX;
 
 impl<S: Space> Simulation<S> {
@@ -22,12 +23,30 @@ impl<S: Space> Simulation<S> {
         self.state.heat = Some(state);
     }
 
-    /// Temperature of a body (K): the mean over the nodes of its surface; `None` where it has none or no heat is computed.
+    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its mesh; `None` where it has none or no heat is
+    /// computed.
     pub fn temperature(&self, body: usize) -> Option<f64> {
-        let (heat, state) = (self.heat.as_ref()?, self.state.heat.as_ref()?);
-        let nodes = &state.nodes[heat.nodes.get(body)?.range()];
-        let sum: f64 = nodes.iter().map(|n| n.temperature).sum();
-        (!nodes.is_empty()).then(|| sum / nodes.len() as f64)
+        self.mean_temperature(self.heat.as_ref()?.nodes.get(body)?.range())
+    }
+
+    /// Mean temperature of some nodes (K): by their capacities where they have one; `None` of no node.
+    pub fn mean_temperature(&self, nodes: std::ops::Range<usize>) -> Option<f64> {
+        let nodes = self.state.heat.as_ref()?.nodes.get(nodes)?;
+        if let [node] = nodes {
+            return Some(node.temperature);
+        }
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for node in nodes {
+            let weight = match &node.store {
+                Store::Lumped(capacity) => *capacity,
+                Store::HalfSpace(_) => 1.0,
+                // A held part of a mesh, unless all of it is held.
+                Store::Fixed => 1e-300,
+            };
+            sum += weight * node.temperature;
+            weights += weight;
+        }
+        (!nodes.is_empty()).then(|| sum / weights)
     }
 
     /// Keeps a body that was taken away from its surroundings: its heat leaves with it.
@@ -39,12 +58,35 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Nodes of the bodies of a contact.
-    fn thermal_nodes(&self, heat: &Heat, contact: &Contact<S>) -> [u32; 2] {
+    /// Where the heat of a contact enters its bodies.
+    fn heat_sides(
+        &self,
+        heat: &Heat,
+        contact: &Contact<S>,
+        between: &mut Vec<Nodes>,
+    ) -> [HeatSide; 2] {
         [0, 1].map(|side| {
             let body = contact.bodies[side] as usize;
+            if let BodyNodes::Mesh(first, _) = heat.nodes[body] {
+                let Some(nodes) = self.nodes_of_side(contact, side) else {
+                    return HeatSide::Insulated;
+                };
+                let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
+                let terms: Vec<(u32, f64)> = terms.collect();
+                return match (&terms[..], Nodes::sum(&terms)) {
+                    ([(node, _)], _) => HeatSide::Node(*node),
+                    (_, Some(nodes)) => {
+                        between.push(nodes);
+                        HeatSide::Between(between.len() as u32 - 1)
+                    }
+                    (_, None) => HeatSide::Insulated,
+                };
+            }
             let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
-            heat.nodes[body].at::<S>(place).unwrap_or(NONE)
+            match heat.nodes[body].at::<S>(place) {
+                Some(node) => HeatSide::Node(node),
+                None => HeatSide::Insulated,
+            }
         })
     }
 
@@ -59,16 +101,24 @@ impl<S: Space> Simulation<S> {
         thermal.conducts = thermal.current || state.pending_steps + 1 >= heat.every;
         thermal.temperature.clear();
         thermal.material.clear();
-        thermal.nodes.clear();
+        thermal.sides.clear();
+        thermal.between.clear();
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         let h = self.options.scheme.h;
         for contact in contacts {
             let pair = heat.pair(contact.bodies);
-            let nodes = self.thermal_nodes(heat, contact);
-            let of = |node: u32| state.nodes.get(node as usize).map(|n| n.temperature);
+            let sides = self.heat_sides(heat, contact, &mut thermal.between);
+            let of = |side: HeatSide| match side {
+                HeatSide::Insulated => None,
+                HeatSide::Node(node) => Some(state.nodes[node as usize].temperature),
+                HeatSide::Between(_) => {
+                    let terms = thermal.terms(side);
+                    Some(terms.map(|(n, w)| w * state.nodes[n].temperature).sum())
+                }
+            };
             // An insulated body has the temperature of what it touches.
-            let [first, second] = match nodes.map(of) {
+            let [first, second] = match sides.map(of) {
                 [Some(a), Some(b)] => [a, b],
                 [Some(t), None] | [None, Some(t)] => [t, t],
                 [None, None] => [heat.initial; 2],
@@ -80,7 +130,7 @@ impl<S: Space> Simulation<S> {
             }
             thermal.temperature.push([mean, first, second]);
             thermal.material.push(pair.material);
-            thermal.nodes.push(nodes);
+            thermal.sides.push(sides);
         }
         self.state.network.thermal = Some(thermal);
     }
@@ -149,34 +199,34 @@ impl<S: Space> Simulation<S> {
         }
         state.ledger.dissipated += thermal.source.iter().sum::<f64>();
         self.flow_of_current(heat, state, thermal, span)?;
-        let driven = self.nodes_of_driven(heat, state.nodes.len());
-        for ((contact, nodes), source) in contacts.iter().zip(&thermal.nodes).zip(&thermal.source) {
+        let first_bodies = nodes_of_first_bodies(heat, state.nodes.len());
+        for ((contact, sides), source) in contacts.iter().zip(&thermal.sides).zip(&thermal.source) {
             if *source == 0.0 {
                 continue;
             }
-            let share = match nodes {
-                [NONE, NONE] => {
+            let share = match sides {
+                [HeatSide::Insulated, HeatSide::Insulated] => {
                     state.ledger.fixed += source;
                     continue;
                 }
-                [_, NONE] => 1.0,
-                [NONE, _] => 0.0,
+                [_, HeatSide::Insulated] => 1.0,
+                [HeatSide::Insulated, _] => 0.0,
                 _ => heat.share(contact.bodies),
             };
             state.ledger.pending += source;
-            for (node, part) in nodes.iter().zip([share, 1.0 - share]) {
-                if *node == NONE {
-                    continue;
-                }
-                let node = *node as usize;
-                state.pending[node] += part * source;
-                if driven[node] != NONE {
-                    state.received[driven[node] as usize] += part * source;
+            for (side, part) in sides.iter().zip([share, 1.0 - share]) {
+                for (node, weight) in thermal.terms(*side) {
+                    let part = weight * part * source;
+                    state.pending[node] += part;
+                    if first_bodies[node] != NONE {
+                        state.received[first_bodies[node] as usize] += part;
+                    }
                 }
             }
         }
         for (body, node, flow) in &heat.imposed {
-            if self.state.bodies.removed[*body as usize] {
+            let removed = self.state.bodies.removed.get(*body as usize);
+            if removed.is_some_and(|removed| *removed) {
                 continue;
             }
             state.pending[*node as usize] += flow * span;
@@ -186,7 +236,7 @@ impl<S: Space> Simulation<S> {
         state.pending_time += span;
         state.pending_steps += 1;
         if state.pending_steps >= heat.every {
-            self.conduct_pending(heat, state, thermal, &driven)?;
+            self.conduct_pending(heat, state, thermal, &first_bodies)?;
         }
         state.ledger.close(&state.received);
         Ok(())
@@ -198,19 +248,31 @@ impl<S: Space> Simulation<S> {
         heat: &Heat,
         state: &mut HeatState,
         thermal: &ContactHeat,
-        driven: &[u32],
+        first_bodies: &[u32],
     ) -> Result<(), DiffusionError> {
         let span = state.pending_time;
-        let mut graph = Graph {
-            nodes: state.nodes.len(),
-            edges: Vec::with_capacity(thermal.nodes.len()),
-        };
-        for (nodes, [conductance, _]) in thermal.nodes.iter().zip(&thermal.conductance) {
-            if *conductance > 0.0 && !nodes.contains(&NONE) {
+        let mut graph = Graph::new(state.nodes.len(), Vec::with_capacity(thermal.sides.len()));
+        graph.elements.clone_from(&heat.elements);
+        for (sides, [conductance, _]) in thermal.sides.iter().zip(&thermal.conductance) {
+            if *conductance == 0.0 {
+                continue;
+            }
+            if let [HeatSide::Node(a), HeatSide::Node(b)] = *sides {
                 graph.edges.push(Edge {
-                    nodes: *nodes,
+                    nodes: [a, b],
                     conductance: *conductance,
                 });
+                continue;
+            }
+            for (a, one) in thermal.terms(sides[0]) {
+                for (b, other) in thermal.terms(sides[1]) {
+                    // Shape functions are positive within a facet, but for rounding.
+                    let weight = (one * other).max(0.0);
+                    graph.edges.push(Edge {
+                        nodes: [a as u32, b as u32],
+                        conductance: weight * conductance,
+                    });
+                }
             }
         }
         let sources: Vec<f64> = state.pending.iter().map(|q| q / span).collect();
@@ -226,8 +288,8 @@ impl<S: Space> Simulation<S> {
             let [a, b] = edge.nodes.map(|n| n as usize);
             exchanged += flow.abs();
             for (node, flow) in [(a, flow), (b, -flow)] {
-                if driven[node] != NONE {
-                    state.received[driven[node] as usize] += flow;
+                if first_bodies[node] != NONE {
+                    state.received[first_bodies[node] as usize] += flow;
                 }
             }
         }
@@ -235,15 +297,6 @@ impl<S: Space> Simulation<S> {
         state.pending.fill(0.0);
         (state.pending_time, state.pending_steps) = (0.0, 0);
         Ok(())
-    }
-
-    /// For each node the place of its driven body, `NONE` where it is of a grain.
-    fn nodes_of_driven(&self, heat: &Heat, nodes: usize) -> Vec<u32> {
-        let mut of = vec![NONE; nodes];
-        for (driven, place) in self.state.bodies.driven.iter().zip(0..) {
-            of[heat.nodes[driven.body as usize].range()].fill(place);
-        }
-        of
     }
 
     /// Finds the potentials of the circuit, and adds Joule's heat of each contact to its sources.
@@ -270,10 +323,10 @@ impl<S: Space> Simulation<S> {
                 (k, edge)
             })
             .collect();
-        let graph = Graph {
-            nodes: self.state.bodies.len(),
-            edges: conducting.iter().map(|(_, edge)| *edge).collect(),
-        };
+        let graph = Graph::new(
+            self.state.bodies.len(),
+            conducting.iter().map(|(_, edge)| *edge).collect(),
+        );
         let mut fixed = vec![None; graph.nodes];
         fixed[circuit.from as usize] = Some(1.0);
         fixed[circuit.to as usize] = Some(0.0);
@@ -296,4 +349,13 @@ impl<S: Space> Simulation<S> {
         state.ledger.joule += joule;
         Ok(())
     }
+}
+
+/// For each node the place of its first body, `NONE` where it is of a grain.
+fn nodes_of_first_bodies(heat: &Heat, nodes: usize) -> Vec<u32> {
+    let mut of = vec![NONE; nodes];
+    for ((_, range), place) in heat.first_bodies.iter().zip(0..) {
+        of[range.clone()].fill(place);
+    }
+    of
 }

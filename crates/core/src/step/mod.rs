@@ -28,6 +28,7 @@ mod compiled;
 pub mod control;
 pub mod coupling;
 mod error;
+mod expansion;
 pub mod fields;
 mod finite;
 mod heat;

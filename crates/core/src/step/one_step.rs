@@ -31,6 +31,7 @@ impl<S: Space> Simulation<S> {
         let (start, free) = self.detect_contacts(&info, &mut report)?;
         self.solve(&start, &free, &info, &mut report)?;
         self.commit_laws(&info, &mut report)?;
+        self.book_expansion();
         self.conduct()?;
         self.book(&start, &report.totals);
         self.move_to_end();
@@ -106,6 +107,7 @@ impl<S: Space> Simulation<S> {
         self.free_systems(&mut free);
         self.add_predicted_contacts(&free);
         self.reach_mean_places(false);
+        self.begin_expansion();
         self.initialise_contacts(info)?;
         report.timing.detect = clock.elapsed();
         Ok((start, free))
@@ -145,6 +147,7 @@ impl<S: Space> Simulation<S> {
         let parallel = self.options.solver.parallel;
         motion::advance(&mut self.state.bodies, theta * h, parallel);
         self.carry_systems();
+        self.end_expansion();
         self.end_motion();
     }
 
@@ -189,6 +192,7 @@ impl<S: Space> Simulation<S> {
         }
         let springs = self.spring_energy();
         work.scheme += totals.springs - (springs - self.workspace.spring_energy);
+        work.expansion += self.workspace.expanding.work;
         let (moving, stored) = self.end_systems(theta * h, &mut work);
         let (mut kinetic, mut elastic) = (
             self.state

@@ -97,16 +97,25 @@ impl<S: Space> Simulation<S> {
         report: &mut StepReport,
     ) -> Result<(), StepError> {
         loop {
+            // The solver knows the motion of bodies, laws that of their surfaces.
+            let of_laws = self.forms_of_bodies();
+            let of_laws = of_laws.map(|forms| std::mem::replace(&mut self.workspace.forms, forms));
             self.pose(free);
-            self.check_method()?;
-            let solved = solve::solve(
-                &mut self.workspace.problem,
-                &self.workspace.forms,
-                &self.workspace.moments,
-                options,
-                &mut self.state.auto_state,
-            );
-            report.solver.add(&solved);
+            let checked = self.check_method();
+            if checked.is_ok() {
+                let solved = solve::solve(
+                    &mut self.workspace.problem,
+                    &self.workspace.forms,
+                    &self.workspace.moments,
+                    options,
+                    &mut self.state.auto_state,
+                );
+                report.solver.add(&solved);
+            }
+            if let Some(forms) = of_laws {
+                self.workspace.forms = forms;
+            }
+            checked?;
             self.adopt_velocities()?;
             self.adopt_system_velocities()?;
             if !self.relinearise_systems()? {
@@ -149,9 +158,10 @@ impl<S: Space> Simulation<S> {
     /// The problem of the last step solved, in the form of the field's collection; none where a bond,
     /// cohesion or friction against rotation was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<solve::local::LocalProblem> {
+        let of_bodies = self.forms_of_bodies();
         solve::choose::coulomb(
             &self.workspace.problem,
-            &self.workspace.forms,
+            of_bodies.as_ref().unwrap_or(&self.workspace.forms),
             &self.workspace.moments,
         )
     }

@@ -106,6 +106,7 @@ impl<S: Steps> Simulation<S> {
         for (scar, _) in scars.filter(|(_, worn)| *worn) {
             scar.show_again(&mut self.shapes);
         }
+        self.show_expansion();
         self.processes.truncate(saved.processes.len());
         Ok(self.restore_processes(&saved.processes)?)
     }

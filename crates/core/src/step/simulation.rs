@@ -10,7 +10,7 @@ use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
-use crate::heat::Heat;
+use crate::heat::{Expansion, Heat};
 use crate::laws::{ContactStep, Interface};
 use crate::solve::{self, ContactForm};
 
@@ -29,6 +29,8 @@ pub struct Simulation<S: Space> {
     pub options: Options,
     /// Heat and current; `None` where none is computed. See [`Simulation::set_heat`].
     pub(super) heat: Option<Heat>,
+    /// Thermal expansion; `None` where no body expands. See [`Simulation::set_expansion`].
+    pub(super) expansion: Option<Expansion<S>>,
     /// What steps change; a checkpoint holds all of it.
     pub state: State<S>,
     /// What grains and contacts carry for output, by name.
@@ -62,6 +64,7 @@ impl<S: Steps> Simulation<S> {
             phases: Vec::new(),
             options: Options::default(),
             heat: None,
+            expansion: None,
             state: State::at_rest(bodies, network),
             fields: S::fields(),
             processes: Vec::new(),

@@ -141,6 +141,7 @@ impl<S: Space> Simulation<S> {
         for scar in &self.state.scars {
             scar.show_again(&mut self.shapes);
         }
+        self.show_expansion();
         // Results may be asked for before the next step.
         self.state
             .systems

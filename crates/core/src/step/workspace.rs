@@ -1,6 +1,7 @@
 //! What a step makes for itself and throws away.
 
 use super::answers::Solved;
+use super::expansion::Expanding;
 use super::mortar::MeanPlaces;
 use super::systems::SystemContacts;
 use crate::geometry::space::Space;
@@ -27,6 +28,8 @@ pub(super) struct Workspace<S: Space> {
     pub systems: SystemContacts<S>,
     /// The mean places that contacts reach to.
     pub means: MeanPlaces<S>,
+    /// What bodies do by thermal expansion.
+    pub expanding: Expanding,
     /// What contacts did in the step.
     pub solved: Solved<S>,
     /// Whether a process has given a body an impulse in the step, see [`super::Simulation::apply_impulse`].
@@ -44,6 +47,7 @@ impl<S: Space> Default for Workspace<S> {
             moments: Vec::new(),
             systems: SystemContacts::default(),
             means: MeanPlaces::default(),
+            expanding: Expanding::default(),
             solved: Solved::default(),
             pushed: false,
         }

@@ -32,6 +32,10 @@ pub struct HeatSpec {
     pub start: f64,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
+    /// Whether grains, and first bodies of balls, polygons or polyhedra that have one temperature, expand by the `expansion` (1/K) of their materials,
+    /// from their size at the start.
+    #[serde(skip_serializing_if = "is_false")]
+    pub expansion: bool,
     /// Hardness (Pa) of the softer bodies, from which the flash temperature of sliding spots follows; without it contacts have the temperature of
     /// their bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,6 +59,7 @@ impl Default for HeatSpec {
             every: 1,
             start: 0.0,
             theta: 1.0,
+            expansion: false,
             flash: None,
             circuit: None,
         }
@@ -75,7 +80,7 @@ pub struct ConvectionSpec {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BodyHeatSpec {
-    /// Where its heat goes: `Fixed` (the default), `Insulated`, `Lumped(...)` or `HalfSpace(...)`.
+    /// Where its heat goes: `Fixed` (the default), `Insulated`, `Lumped(...)`, `HalfSpace(...)`, or of finite elements `Mesh(...)`.
     pub store: StoreSpec,
     /// Its temperature at the start (K); that of the case without it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -86,6 +91,10 @@ pub struct BodyHeatSpec {
     /// Convection at a face of it; of a half-space at the surfaces of its pieces, since nothing leaves at its depth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub convection: Option<FaceSpec>,
+}
+
+fn is_false(x: &bool) -> bool {
+    !x
 }
 
 fn is_zero(x: &f64) -> bool {
@@ -120,6 +129,23 @@ pub enum StoreSpec {
     },
     /// A half-space below each piece of its surface, in which heat flows along the depth: `HalfSpace(x: 40)`.
     HalfSpace(DepthSpec),
+    /// Heat flows in its finite elements; of the bodies of `elastic` only: `Mesh()`.
+    Mesh(MeshHeatSpec),
+}
+
+/// What happens at the boundary of a body of finite elements, by the names of its parts; no heat flows through the rest, but for contacts.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct MeshHeatSpec {
+    /// Parts that keep a temperature (K).
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub fixed: BTreeMap<String, f64>,
+    /// Parts with convection.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub convection: BTreeMap<String, ConvectionSpec>,
+    /// Parts with a heat flux from outside (W/m^2).
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub flux: BTreeMap<String, f64>,
 }
 
 /// A half-space below each piece of a surface.

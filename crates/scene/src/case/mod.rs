@@ -22,7 +22,8 @@ pub use elastic_grain::ElasticGrainSpec;
 pub use grains::{Edges, GrainSpec, OneCluster, OneGrain, OnePolygon, OnePolyhedron};
 pub use half_space::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, HolderSpec};
 pub use heat::{
-    BodyHeatSpec, ConvectionSpec, DepthSpec, ElectricSpec, FaceSpec, HeatSpec, StoreSpec,
+    BodyHeatSpec, ConvectionSpec, DepthSpec, ElectricSpec, FaceSpec, HeatSpec, MeshHeatSpec,
+    StoreSpec,
 };
 pub use interface::{InterfaceSpec, SlotValues};
 pub use shapes::{Coordinates, ShapeSpec, Side, StandardName};

@@ -5,10 +5,11 @@ use crate::source::ValidationError;
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{
-    BodyNodes, Columns, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
+    BodyNodes, Columns, Edge, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
 };
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Growth of the spacing with depth, the first spacing over the distance that heat comes in a step, and the depth over that of the run.
 const GROWTH: f64 = 1.2;
@@ -21,17 +22,20 @@ pub(super) struct Nodes {
     pub list: Vec<Node>,
     pub of_bodies: Vec<BodyNodes>,
     pub columns: Vec<Columns>,
+    pub elements: Vec<Edge>,
+    /// See [`fretwork_core::heat::Heat::first_bodies`].
+    pub first_bodies: Vec<(String, Range<usize>)>,
     /// Body, node and heat flow (W; W/m in 2D).
     pub imposed: Vec<(u32, u32, f64)>,
 }
 
 /// What nodes of bodies are made from.
-struct Scene<'a, S: Space> {
-    case: &'a Case,
-    spec: &'a HeatSpec,
-    materials: &'a [ThermalMaterial],
-    material: &'a [u16],
-    simulation: &'a Simulation<S>,
+pub(super) struct Scene<'a, S: Space> {
+    pub case: &'a Case,
+    pub spec: &'a HeatSpec,
+    pub materials: &'a [ThermalMaterial],
+    pub material: &'a [u16],
+    pub simulation: &'a Simulation<S>,
 }
 
 impl Nodes {
@@ -52,11 +56,28 @@ impl Nodes {
         };
         let mut nodes = Self::default();
         let bodies = &simulation.state.bodies;
+        let of_systems = nodes.of_systems(&scene)?;
         for (body, surface) in scene.surface_of_grains().into_iter().enumerate() {
+            if let Some(carrier) = bodies.carrier(body) {
+                let of_system = of_systems[carrier.system as usize].clone();
+                nodes.of_bodies.push(of_system);
+                continue;
+            }
             let driven = bodies.driven.iter().find(|d| d.body as usize == body);
             match driven {
                 None => nodes.grain(&scene, body, surface),
                 Some(driven) => nodes.first_body(&scene, body, &driven.name)?,
+            }
+        }
+        for driven in &bodies.driven {
+            let range = nodes.of_bodies[driven.body as usize].range();
+            nodes.first_bodies.push((driven.name.clone(), range));
+        }
+        let systems = &simulation.state.systems;
+        for (system, own) in of_systems.iter().enumerate() {
+            if let Some(system) = systems.get(system).filter(|s| !s.is_grain()) {
+                let name = system.name().to_owned();
+                nodes.first_bodies.push((name, own.range()));
             }
         }
         Ok(nodes)
@@ -68,10 +89,7 @@ impl Nodes {
     }
 
     fn grain<S: Space>(&mut self, scene: &Scene<'_, S>, body: usize, surface: f64) {
-        let name = scene.case.materials.keys();
-        let name = name.into_iter().nth(usize::from(scene.material[body]));
-        let given = name.and_then(|n| scene.spec.grains.get(n));
-        let temperature = given.copied().unwrap_or(scene.spec.initial);
+        let temperature = scene.temperature_of_grain(body);
         let mut node = Node::new(temperature, Store::Lumped(scene.capacity(body)));
         if let Some(convection) = scene.spec.convection {
             node.surroundings = convection.coefficient * surface;
@@ -123,6 +141,13 @@ impl Nodes {
                 };
                 self.one(Node::new(temperature, Store::Lumped(capacity)));
             }
+            StoreSpec::Mesh(_) => {
+                let message = format!("`{name}` is rigid and has no mesh");
+                return Err(
+                    ValidationError::new(format!("heat.bodies.{name}.store"), message)
+                        .expected("`Mesh()` of a body of `elastic`"),
+                );
+            }
             StoreSpec::HalfSpace(depth) => {
                 let here = format!("heat.bodies.{name}.store");
                 let pieces = scene.pieces(&here, body, depth)?;
@@ -154,8 +179,16 @@ impl Nodes {
 }
 
 impl<S: Space> Scene<'_, S> {
-    fn material_of(&self, body: usize) -> &ThermalMaterial {
+    pub fn material_of(&self, body: usize) -> &ThermalMaterial {
         &self.materials[usize::from(self.material[body])]
+    }
+
+    /// Temperature of a grain at the start (K).
+    pub fn temperature_of_grain(&self, body: usize) -> f64 {
+        let mut names = self.case.materials.keys();
+        let name = names.nth(usize::from(self.material[body]));
+        let given = name.and_then(|n| self.spec.grains.get(n));
+        given.copied().unwrap_or(self.spec.initial)
     }
 
     /// Heat capacity of a body with a volume (J/K; J/(K m) in 2D), without inertia scaling.

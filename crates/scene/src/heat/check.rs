@@ -119,6 +119,29 @@ fn bodies(case: &Case, heat: &HeatSpec) -> Result<(), ValidationError> {
                     ));
                 }
             }
+            StoreSpec::Mesh(mesh) => {
+                let here = format!("{here}.store");
+                for (part, t) in &mesh.fixed {
+                    temperature(&format!("{here}.fixed.{part}"), *t)?;
+                }
+                for (part, convection) in &mesh.convection {
+                    let here = format!("{here}.convection.{part}");
+                    not_negative(&format!("{here}.coefficient"), convection.coefficient)?;
+                    temperature(&format!("{here}.ambient"), convection.ambient)?;
+                }
+                for (part, flux) in &mesh.flux {
+                    if !flux.is_finite() {
+                        let message = format!("must be finite, got {flux}");
+                        return Err(ValidationError::new(format!("{here}.flux.{part}"), message));
+                    }
+                }
+                if body.power != 0.0 || body.convection.is_some() {
+                    let message = format!(
+                        "heat enters `{name}` at parts of its mesh; give `flux` or `convection` of a part in `store: Mesh(..)`"
+                    );
+                    return Err(ValidationError::new(format!("heat.bodies.{name}"), message));
+                }
+            }
             _ => {}
         }
     }
@@ -129,6 +152,14 @@ fn circuit(case: &Case, heat: &HeatSpec) -> Result<(), ValidationError> {
     let Some(circuit) = &heat.circuit else {
         return Ok(());
     };
+    let deforms = case.elastic.iter().map(|b| &b.name);
+    let mut deforms = deforms.chain(case.half_spaces.iter().map(|b| &b.name));
+    if let Some(name) = deforms.next() {
+        let message = format!(
+            "current is computed in rigid bodies only, and `{name}` deforms; take `circuit` away, or make it a rigid body of `bodies`"
+        );
+        return Err(ValidationError::new("heat.circuit", message));
+    }
     first_body(case, "heat.circuit.from", &circuit.from)?;
     first_body(case, "heat.circuit.to", &circuit.to)?;
     if circuit.from == circuit.to {
@@ -169,7 +200,10 @@ pub(super) fn carries_current(case: &Case, material: &str) -> bool {
 }
 
 fn first_body(case: &Case, here: &str, name: &str) -> Result<(), ValidationError> {
-    let names = || case.bodies.iter().map(|b| b.name.as_str());
+    let rigid = || case.bodies.iter().map(|b| b.name.as_str());
+    let elastic = || case.elastic.iter().map(|b| b.name.as_str());
+    let half_spaces = || case.half_spaces.iter().map(|b| b.name.as_str());
+    let names = || rigid().chain(elastic()).chain(half_spaces());
     if names().any(|n| n == name) {
         return Ok(());
     }
@@ -231,16 +265,4 @@ pub(super) fn refuse_laws_without_heat<S: Space>(
             .expected("`heat: ()` in the case, or `heat: (initial: 293.15, ...)`"));
     }
     Ok(())
-}
-
-/// Refuses bodies that deform.
-pub(super) fn refuse_systems<S: Space>(s: &Simulation<S>) -> Result<(), ValidationError> {
-    let Some(system) = s.state.systems.get(0) else {
-        return Ok(());
-    };
-    let message = format!(
-        "heat is not computed in bodies that deform, and `{}` is one; take `heat` away, or make it a rigid body of `bodies`",
-        system.name()
-    );
-    Err(ValidationError::new("heat", message))
 }

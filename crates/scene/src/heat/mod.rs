@@ -2,6 +2,8 @@
 
 mod bodies;
 mod check;
+mod expansion;
+mod systems;
 
 pub(crate) use check::check;
 
@@ -27,7 +29,6 @@ pub(crate) fn install<S: Space>(
     let Some(spec) = &case.heat else {
         return check::refuse_laws_without_heat(case, s);
     };
-    check::refuse_systems(s)?;
     let materials = materials(case, spec, properties, densities)?;
     let material = material_of_bodies(s);
     refuse_materials_without_grains(case, spec, &material, s)?;
@@ -43,9 +44,11 @@ pub(crate) fn install<S: Space>(
     let heat = Heat {
         pairs: Heat::pairs(&materials),
         materials,
-        material,
+        material: material.clone(),
         nodes: nodes.of_bodies,
         columns: nodes.columns,
+        elements: nodes.elements,
+        first_bodies: nodes.first_bodies,
         imposed: nodes.imposed,
         shares: spec.shares,
         partition: spec.partition,
@@ -57,9 +60,12 @@ pub(crate) fn install<S: Space>(
         flash: spec.flash,
         circuit,
     };
-    let state = HeatState::new(nodes.list, s.state.bodies.driven.len());
+    let state = HeatState::new(nodes.list, heat.first_bodies.len());
     s.set_heat(heat, state);
-    Ok(())
+    match spec.expansion {
+        true => expansion::install(case, properties, &material, s),
+        false => Ok(()),
+    }
 }
 
 /// Refuses temperatures of grains of materials that no grain has.

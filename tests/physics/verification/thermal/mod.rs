@@ -1,5 +1,6 @@
 //! Heat and current: `cases/verification/thermal/`.
 
+mod expansion;
 mod sources;
 
 use super::{Table, plane, solid, until};
@@ -27,6 +28,7 @@ pub fn all(table: &mut Table) {
     wheel_and_rail(table);
     run_away(table);
     sources::all(table);
+    expansion::all(table);
 }
 
 fn heat<S: Space>(s: &Simulation<S>) -> &HeatState {

@@ -162,7 +162,8 @@ fn must_rebuild<S: Space>(
     }) {
         return true;
     }
-    let limit = 0.25 * network.skin * network.skin;
+    let half = (0.5 * network.skin - network.grown).max(0.0);
+    let limit = half * half;
     let left = |x: S::Vector, seen: &S::Vector| {
         let d = x - *seen;
         d.dot(&d) > limit
@@ -200,6 +201,7 @@ fn rebuild<S: Space>(
     network.seen_at.extend_from_slice(centres);
     let of_surfaces = watched_of_surfaces(shapes, bodies);
     network.seen_at.extend(of_surfaces);
+    network.grown = 0.0;
     network.rebuilds += 1;
 }
 

@@ -139,6 +139,9 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// As [`Core::turned`], in the place of another core, whose buffers are used again.
     fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);
 
+    /// The core with all distances from its centre times a factor, in the place of another core of the same corners.
+    fn scale_into(&self, factor: f64, out: &mut Self);
+
     /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
     /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).
     fn contact_points(

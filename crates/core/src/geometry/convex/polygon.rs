@@ -271,6 +271,13 @@ impl Core<Dim2> for Polygon {
         (out.inner, out.far) = (self.inner, self.far);
     }
 
+    fn scale_into(&self, factor: f64, out: &mut Self) {
+        out.points.clear();
+        out.points.extend(self.points.iter().map(|p| p * factor));
+        out.normals.clone_from(&self.normals);
+        (out.inner, out.far) = (self.inner * factor, self.far * factor);
+    }
+
     fn contact_points(
         &self,
         other: &Self,

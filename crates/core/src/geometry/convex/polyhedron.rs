@@ -174,6 +174,15 @@ impl Core<Dim3> for Polyhedron {
         }
     }
 
+    fn scale_into(&self, factor: f64, out: &mut Self) {
+        out.points.clear();
+        out.points.extend(self.points.iter().map(|p| p * factor));
+        out.normals.clone_from(&self.normals);
+        if !Arc::ptr_eq(&self.topology, &out.topology) {
+            out.topology = Arc::clone(&self.topology);
+        }
+    }
+
     fn contact_points(
         &self,
         other: &Self,

@@ -1,0 +1,18 @@
+//! How heat flows in the mesh of a dynamical system.
+
+/// Linear elements for heat, with the capacity of each lumped at its points: with conductivity k (W/(m K)) and heat capacity of volume rho c (J/(m^3 K))
+///
+/// ```text
+/// C_a = rho c V_a,    G_ab = -k sum_e V_e grad N_a . grad N_b
+/// ```
+///
+/// Source: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2 and 8.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conduction {
+    /// V_a, the volume that each point stands for (m^3; m^2 in 2D).
+    pub volumes: Vec<f64>,
+    /// Pairs of points and G_ab/k (m; a number in 2D); negative across an obtuse angle.
+    pub edges: Vec<([u32; 2], f64)>,
+    /// Named parts of the boundary, with their points and the area (m^2; m in 2D) that each stands for.
+    pub parts: Vec<(String, Vec<(u32, f64)>)>,
+}

@@ -1,0 +1,87 @@
+//! Thermal expansion of bodies that have one temperature.
+
+use crate::geometry::convex::Core;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::{Space, VectorLike};
+
+/// A ball or a piece as the case gives it.
+#[derive(Clone, Debug)]
+struct Rest<C, V> {
+    core: C,
+    offset: V,
+    /// Radius of a ball; rounding, bound and size of a piece (m).
+    lengths: [f64; 3],
+}
+
+/// Bodies that keep their shape and change their size with their temperature: all lengths from the centre of the body are
+///
+/// ```text
+/// lambda = 1 + alpha (T - T_0)
+/// ```
+///
+/// times those of the case, with the coefficient of linear expansion alpha and the temperature at the start T_0. Mass and inertia stay.
+#[derive(Clone, Debug)]
+pub struct Expansion<S: Space> {
+    /// Coefficient of linear expansion alpha of each body (1/K); 0 for one that does not expand.
+    pub coefficient: Vec<f64>,
+    /// Temperature T_0 at which each has the size of the case (K).
+    pub reference: Vec<f64>,
+    balls: Vec<Rest<(), S::Vector>>,
+    pieces: Vec<Rest<S::Core, S::Vector>>,
+}
+
+impl<S: Space> Expansion<S> {
+    /// Of bodies with these coefficients (1/K), whose shapes are now those of the temperatures `reference` (K).
+    pub fn new(coefficient: Vec<f64>, reference: Vec<f64>, shapes: &Shapes<S>) -> Self {
+        let ball = shapes.balls.iter().map(|b| Rest {
+            core: (),
+            offset: b.offset,
+            lengths: [b.radius, 0.0, 0.0],
+        });
+        let piece = shapes.pieces.iter().map(|p| Rest {
+            core: p.core.clone(),
+            offset: p.offset,
+            lengths: [p.rounding, p.bound, p.size],
+        });
+        Self {
+            balls: ball.collect(),
+            pieces: piece.collect(),
+            coefficient,
+            reference,
+        }
+    }
+
+    /// Lambda of a body at a temperature (K). It stays above zero.
+    pub fn stretch(&self, body: usize, temperature: f64) -> f64 {
+        let strain = self.coefficient[body] * (temperature - self.reference[body]);
+        (1.0 + strain).max(0.1)
+    }
+
+    /// Gives all shapes the sizes of the stretches of their bodies; returns the largest change of a distance from a centre (m).
+    pub fn show(&self, stretch: &[f64], shapes: &mut Shapes<S>) -> f64 {
+        let mut most = 0.0f64;
+        for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {
+            let (body, before) = (ball.body as usize, ball.radius);
+            if self.coefficient[body] == 0.0 {
+                continue;
+            }
+            ball.radius = rest.lengths[0] * stretch[body];
+            let moved = rest.offset * stretch[body] - ball.offset;
+            ball.offset += moved;
+            most = most.max((ball.radius - before).abs() + moved.norm());
+        }
+        for (piece, rest) in shapes.pieces.iter_mut().zip(&self.pieces) {
+            let body = piece.body as usize;
+            if self.coefficient[body] == 0.0 {
+                continue;
+            }
+            let (by, before) = (stretch[body], piece.bound);
+            rest.core.scale_into(by, &mut piece.core);
+            let moved = rest.offset * by - piece.offset;
+            piece.offset += moved;
+            [piece.rounding, piece.bound, piece.size] = rest.lengths.map(|x| x * by);
+            most = most.max((piece.bound - before).abs() + moved.norm());
+        }
+        most
+    }
+}

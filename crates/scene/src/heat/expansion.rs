@@ -1,0 +1,61 @@
+//! Which bodies of a case expand with their temperature.
+
+use super::Properties;
+use crate::case::Case;
+use crate::source::ValidationError;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::heat::BodyNodes;
+use fretwork_core::step::Simulation;
+
+/// Has the bodies of a case expand that have one temperature and balls, polygons or polyhedra only.
+pub(super) fn install<S: Space>(
+    case: &Case,
+    properties: &Properties,
+    material: &[u16],
+    s: &mut Simulation<S>,
+) -> Result<(), ValidationError> {
+    let mut expands = vec![false; s.state.bodies.len()];
+    let balls = s.shapes.balls.iter().map(|b| b.body);
+    for body in balls.chain(s.shapes.pieces.iter().map(|p| p.body)) {
+        let one = s.heat().map(|h| &h.nodes[body as usize]);
+        expands[body as usize] = matches!(one, Some(BodyNodes::One(_)));
+    }
+    for surface in &s.shapes.surfaces {
+        expands[surface.body as usize] = false;
+    }
+    for (body, expands) in expands.iter_mut().enumerate() {
+        *expands &= s.state.bodies.carrier(body).is_none();
+    }
+    let mut of_materials = Vec::with_capacity(case.materials.len());
+    for (k, ((name, file), properties)) in case.materials.iter().zip(properties).enumerate() {
+        let used = expands
+            .iter()
+            .zip(material)
+            .any(|(e, m)| *e && usize::from(*m) == k);
+        of_materials.push(match properties.get("expansion") {
+            _ if !used => 0.0,
+            Some(found) => found
+                .in_unit("1/K")
+                .map_err(|e| e.at(format!("materials.{name}")))?,
+            None => {
+                let message = format!(
+                    "`heat.expansion` needs the coefficient of linear expansion of `{name}`, and the file `{file}.ron` has no property `expansion`"
+                );
+                return Err(ValidationError::new(format!("materials.{name}"), message)
+                    .expected("`expansion` among its properties, in 1/K"));
+            }
+        });
+    }
+    let all = expands.iter().zip(material);
+    let coefficients = all.map(|(expands, m)| match expands {
+        true => of_materials[usize::from(*m)],
+        false => 0.0,
+    });
+    let coefficients: Vec<f64> = coefficients.collect();
+    if coefficients.iter().all(|c| *c == 0.0) {
+        let message = "no body of the case expands: grains do, and first bodies of balls, polygons or polyhedra that have one temperature";
+        return Err(ValidationError::new("heat.expansion", message));
+    }
+    s.set_expansion(coefficients);
+    Ok(())
+}

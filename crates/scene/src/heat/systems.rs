@@ -1,0 +1,179 @@
+//! The thermal nodes of bodies that deform.
+
+use super::bodies::{Nodes, Scene};
+use crate::case::{BodyHeatSpec, MeshHeatSpec, StoreSpec};
+use crate::source::{ValidationError, nearest};
+use fretwork_core::bodies::{Conduction, DynamicalSystem};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::heat::{BodyNodes, Edge, Node, Store};
+use std::f64::consts::PI;
+
+impl Nodes {
+    /// Nodes of the bodies of each dynamical system.
+    pub(super) fn of_systems<S: Space>(
+        &mut self,
+        scene: &Scene<'_, S>,
+    ) -> Result<Vec<BodyNodes>, ValidationError> {
+        let systems = &scene.simulation.state.systems;
+        let mut out = Vec::with_capacity(systems.len());
+        for (index, system) in (0..systems.len()).filter_map(|k| Some((k, systems.get(k)?))) {
+            let bodies = systems.bodies(index);
+            if system.is_grain() {
+                let body = bodies.first().copied().unwrap_or_default() as usize;
+                out.push(BodyNodes::One(self.list.len() as u32));
+                self.list.push(scene.grain_that_deforms(system, body));
+            } else {
+                out.push(self.system(scene, system, bodies.first().copied())?);
+            }
+        }
+        Ok(out)
+    }
+
+    fn system<S: Space>(
+        &mut self,
+        scene: &Scene<'_, S>,
+        system: &dyn DynamicalSystem<S>,
+        body: Option<u32>,
+    ) -> Result<BodyNodes, ValidationError> {
+        let name = system.name();
+        let fixed = BodyHeatSpec::default();
+        let spec = scene.spec.bodies.get(name).unwrap_or(&fixed);
+        let temperature = spec.temperature.unwrap_or(scene.spec.initial);
+        let here = format!("heat.bodies.{name}.store");
+        let material = scene.material_of_system(name);
+        let store = match &spec.store {
+            StoreSpec::Insulated => return Ok(BodyNodes::Insulated),
+            StoreSpec::Fixed => Store::Fixed,
+            StoreSpec::Lumped { capacity } => {
+                let mass = system.mass() / scene.case.inertia_scaling;
+                match capacity {
+                    Some(capacity) => Store::Lumped(*capacity),
+                    None if mass > 0.0 => {
+                        Store::Lumped(mass * scene.materials[material].heat_capacity)
+                    }
+                    None => {
+                        let message = format!(
+                            "the volume of `{name}` is not known; give its heat capacity, `Lumped(capacity: 1.0)` (J/K)"
+                        );
+                        return Err(ValidationError::new(here, message));
+                    }
+                }
+            }
+            StoreSpec::HalfSpace(_) => {
+                let message = format!("`{name}` deforms, and has no half-spaces for its heat");
+                return Err(ValidationError::new(here, message).expected(
+                    "`Fixed`, `Insulated`, `Lumped(..)`, or of a body of `elastic` `Mesh()`",
+                ));
+            }
+            StoreSpec::Mesh(mesh) => {
+                let Some(conduction) = system.conduction() else {
+                    let message = format!("`{name}` has no mesh");
+                    return Err(ValidationError::new(here, message).expected("a body of `elastic`"));
+                };
+                return self.mesh(scene, (&here, mesh), &conduction, (material, temperature));
+            }
+        };
+        let first = self.list.len() as u32;
+        let mut node = Node::new(temperature, store);
+        if let Some(face) = spec.convection {
+            node.surroundings = face.coefficient * face.area;
+            node.ambient = face.ambient;
+        }
+        if spec.power != 0.0 {
+            self.imposed
+                .push((body.unwrap_or(u32::MAX), first, spec.power));
+        }
+        self.list.push(node);
+        Ok(BodyNodes::One(first))
+    }
+
+    fn mesh<S: Space>(
+        &mut self,
+        scene: &Scene<'_, S>,
+        (here, spec): (&str, &MeshHeatSpec),
+        conduction: &Conduction,
+        (material, temperature): (usize, f64),
+    ) -> Result<BodyNodes, ValidationError> {
+        let material = &scene.materials[material];
+        let first = self.list.len() as u32;
+        let capacity = material.conductor().capacity;
+        let volumes = conduction.volumes.iter();
+        self.list
+            .extend(volumes.map(|v| Node::new(temperature, Store::Lumped(capacity * v))));
+        self.elements
+            .extend(conduction.edges.iter().map(|(points, factor)| Edge {
+                nodes: points.map(|p| first + p),
+                conductance: material.conductivity * factor,
+            }));
+        let part = |kind: &str, name: &str| {
+            let known = || conduction.parts.iter().map(|p| p.0.as_str());
+            let found = conduction.parts.iter().find(|p| p.0 == name);
+            found.map(|p| &p.1).ok_or_else(|| {
+                ValidationError::new(
+                    format!("{here}.{kind}.{name}"),
+                    format!("the mesh has no part `{name}`"),
+                )
+                .expected_name(known(), "parts")
+                .nearest(nearest(name, known()))
+            })
+        };
+        for (name, convection) in &spec.convection {
+            for (point, area) in part("convection", name)? {
+                let node = &mut self.list[(first + point) as usize];
+                let own = convection.coefficient * area;
+                let all = node.surroundings + own;
+                // Of two parts that share a point the mean.
+                if all > 0.0 {
+                    node.ambient =
+                        (node.ambient * node.surroundings + convection.ambient * own) / all;
+                }
+                node.surroundings = all;
+            }
+        }
+        for (name, flux) in &spec.flux {
+            for (point, area) in part("flux", name)? {
+                self.imposed.push((u32::MAX, first + point, flux * area));
+            }
+        }
+        for (name, temperature) in &spec.fixed {
+            for (point, _) in part("fixed", name)? {
+                let node = &mut self.list[(first + point) as usize];
+                *node = Node::new(*temperature, Store::Fixed);
+            }
+        }
+        Ok(BodyNodes::Mesh(first, self.list.len() as u32))
+    }
+}
+
+impl<S: Space> Scene<'_, S> {
+    /// Place of the material of a deformable body among those of the case.
+    fn material_of_system(&self, name: &str) -> usize {
+        let elastic = self.case.elastic.iter().map(|e| (&e.name, &e.material));
+        let half_spaces = self.case.half_spaces.iter().map(|h| (&h.name, &h.material));
+        let mut all = elastic.chain(half_spaces);
+        let material = all.find(|(n, _)| *n == name).map(|(_, material)| material);
+        let place = self.case.materials.keys().position(|m| Some(m) == material);
+        place.unwrap_or_default()
+    }
+
+    /// The node of a grain that deforms, which has one temperature.
+    fn grain_that_deforms(&self, system: &dyn DynamicalSystem<S>, body: usize) -> Node {
+        let material = self.material_of(body);
+        let mass = system.mass() / self.case.inertia_scaling;
+        let mut node = Node::new(
+            self.temperature_of_grain(body),
+            Store::Lumped(mass * material.heat_capacity),
+        );
+        if let Some(convection) = self.spec.convection {
+            // Of the ball of the same volume.
+            let radius = S::ball_radius(mass / material.density);
+            let surface = match S::D {
+                2 => 2.0 * PI * radius,
+                _ => 4.0 * PI * radius * radius,
+            };
+            node.surroundings = convection.coefficient * surface;
+            node.ambient = convection.ambient;
+        }
+        node
+    }
+}

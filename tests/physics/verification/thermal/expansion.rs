@@ -1,0 +1,225 @@
+//! Thermal expansion, and heat in finite elements.
+
+use super::{Table, effusivity, heat, plane, until};
+use fretwork::geometry::space::Dim2;
+use fretwork::record::code::{decode, encode};
+use fretwork::step::Simulation;
+use std::f64::consts::PI;
+
+/// Coefficient of linear expansion (1/K), rise of temperature (K) and height of the columns (m).
+const ALPHA: f64 = 1.2e-5;
+const RISE: f64 = 100.0;
+const HEIGHT: f64 = 6e-3;
+
+pub fn all(table: &mut Table) {
+    lifted(table);
+    several_steps(table);
+    held(table);
+    bonded(table);
+    wall(table);
+    grain_on_elements(table);
+}
+
+fn height(s: &Simulation<Dim2>, body: &str) -> f64 {
+    s.state.bodies.position[s.body_named(body).expect("a body")].y
+}
+
+fn lifted(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let mut s = plane(case, &[]);
+    until(&mut s, 4.0, |_| ());
+    // What is not yet warm, by the temperature of the grains before the last step.
+    let rise = height(&s, "load") - HEIGHT;
+    table.compare(
+        case,
+        "rise alpha dT L (m)",
+        ALPHA * RISE * HEIGHT,
+        rise,
+        1e-6,
+    );
+    let work = 1e3 * rise;
+    let energy = s.energies();
+    table.compare(
+        case,
+        "work of the load (J/m)",
+        -work,
+        energy.external_work,
+        1e-9,
+    );
+    table.compare(
+        case,
+        "work of the expansion (J/m)",
+        work,
+        energy.expansion,
+        1e-7,
+    );
+    table.compare(
+        case,
+        "energy closes",
+        0.0,
+        energy.relative_residual(),
+        1e-10,
+    );
+    let ledger = heat(&s).ledger;
+    table.compare(
+        case,
+        "heat gone into work (J/m)",
+        energy.expansion,
+        ledger.expansion,
+        1e-12,
+    );
+    table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
+    let stored = ledger.surroundings + ledger.dissipated - energy.expansion;
+    table.compare(
+        case,
+        "heat of the surroundings less work",
+        stored,
+        ledger.stored,
+        1e-10,
+    );
+
+    // Continued from bytes it has the same bits.
+    let mut s = plane(case, &[]);
+    until(&mut s, 0.2, |_| ());
+    let bytes = encode(&s.state).expect("bytes");
+    let mut again = plane(case, &[]);
+    assert!(again.restore(decode(&bytes).expect("a state")));
+    assert_eq!(s.shapes.balls[0].radius, again.shapes.balls[0].radius);
+    assert!(s.shapes.balls[0].radius > 1e-3);
+    until(&mut s, 0.3, |_| ());
+    until(&mut again, 0.3, |_| ());
+    assert_eq!(
+        encode(&s.state).expect("bytes"),
+        encode(&again.state).expect("bytes"),
+        "{case}: continued"
+    );
+}
+
+/// Where heat makes one step for several of the mechanics, the growth is spread over these, and for another step the rise is the same.
+fn several_steps(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    for sets in [&["heat.every=10"][..], &["time.step=4e-3"]] {
+        let mut s = plane(case, sets);
+        let (mut last, mut fastest) = (height(&s, "load"), 0.0f64);
+        until(&mut s, 4.0, |s| {
+            let now = height(s, "load");
+            fastest = fastest.max((now - last) / s.options.scheme.h);
+            last = now;
+        });
+        let rise = last - HEIGHT;
+        let quantity = format!("{}: rise (m)", sets[0]);
+        table.compare(case, &quantity, ALPHA * RISE * HEIGHT, rise, 1e-6);
+        // The rate at the start is alpha dT L/(0.1766 s), that of one step at a time ten times as much.
+        let rate = ALPHA * RISE * HEIGHT / (7850.0 * 450.0 * 1e-3 / 2e4);
+        assert!(fastest < 1.1 * rate, "{}: {fastest} of {rate}", sets[0]);
+        let closes = s.energies().relative_residual();
+        table.compare(
+            case,
+            &format!("{}: energy closes", sets[0]),
+            0.0,
+            closes,
+            1e-10,
+        );
+    }
+}
+
+fn held(table: &mut Table) {
+    let case = "thermal/held_column";
+    let mut s = plane(case, &[]);
+    until(&mut s, 3.0, |_| ());
+    let force = 1e8 * ALPHA * RISE * HEIGHT / 4.0;
+    for contact in s.contacts() {
+        let name = "force k alpha dT L/4 (N/m)";
+        table.compare(case, name, force, contact.normal_force, 1e-5);
+    }
+    let energy = s.energies();
+    // Of four springs.
+    let stored = 4.0 * 0.5 * force * force / 1e8;
+    table.compare(
+        case,
+        "energy in the springs (J/m)",
+        stored,
+        energy.elastic,
+        1e-4,
+    );
+    table.compare(
+        case,
+        "work of the expansion (J/m)",
+        stored,
+        energy.expansion,
+        1e-3,
+    );
+    table.compare(
+        case,
+        "energy closes",
+        0.0,
+        energy.relative_residual(),
+        1e-10,
+    );
+}
+
+fn bonded(table: &mut Table) {
+    let case = "thermal/expanding_bond";
+    let mut s = plane(case, &[]);
+    let mut most = 0.0f64;
+    until(&mut s, 2.0, |s| most = most.max(s.energies().elastic));
+    let [a, b] = [s.state.bodies.position[0], s.state.bodies.position[1]];
+    let apart = (b - a).norm() - 2e-3;
+    table.compare(
+        case,
+        "centres apart by alpha dT d (m)",
+        ALPHA * RISE * 2e-3,
+        apart,
+        1e-4,
+    );
+    // The bond has 1e11 Pa/m on 2 mm: as stretched by the expansion it would store 5.8e-4 J/m.
+    table.compare(case, "energy of the bond (J/m)", 0.0, most, 1e-9);
+}
+
+fn wall(table: &mut Table) {
+    let case = "thermal/mesh_wall";
+    let mut s = plane(case, &[]);
+    let range = s.heat().expect("heat").first_bodies[0].1.clone();
+    let hottest = |s: &Simulation<Dim2>| {
+        let nodes = &heat(s).nodes[range.clone()];
+        nodes.iter().map(|n| n.temperature).fold(0.0, f64::max) - 300.0
+    };
+    until(&mut s, 1e-2, |_| ());
+    let early = 2.0 * 1e6 * (1e-2 / PI).sqrt() / effusivity();
+    table.compare(
+        case,
+        "top at 10 ms, a half-space (K)",
+        early,
+        hottest(&s),
+        1e-2,
+    );
+    until(&mut s, 2.0, |_| ());
+    table.compare(case, "top in the end, q L/k (K)", 40.0, hottest(&s), 1e-6);
+    let ledger = heat(&s).ledger;
+    table.compare(
+        case,
+        "heat put in, q t b (J/m)",
+        2e6 * 1e-3,
+        ledger.imposed,
+        1e-10,
+    );
+    table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
+}
+
+fn grain_on_elements(table: &mut Table) {
+    let case = "thermal/mesh_contact";
+    let mut s = plane(case, &[]);
+    until(&mut s, 0.2, |_| ());
+    let (grain, block) = (PI * 25e-8, 2e-3 * 1e-3);
+    let mean = (400.0 * grain + 300.0 * block) / (grain + block);
+    let nodes = &heat(&s).nodes;
+    let ends = nodes.iter().map(|n| n.temperature);
+    let [low, high] = ends.fold([f64::INFINITY, 0.0], |[l, h], t| [t.min(l), t.max(h)]);
+    table.compare(case, "lowest temperature in the end (K)", mean, low, 1e-6);
+    table.compare(case, "highest temperature in the end (K)", mean, high, 1e-6);
+    let ledger = heat(&s).ledger;
+    let gained = 7850.0 * 450.0 * block * (mean - 300.0);
+    let into = heat(&s).received[0] - 0.5 * ledger.dissipated;
+    table.compare(case, "heat into the block (J/m)", gained, into, 1e-4);
+    table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
+}
