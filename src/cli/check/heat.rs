@@ -3,7 +3,7 @@
 use super::CheckLine;
 use super::load::Load;
 use crate::geometry::space::Space;
-use crate::heat::{BodyNodes, Heat, Store};
+use crate::heat::{Heat, Node, Store};
 use crate::laws::Interface;
 use crate::laws::bench::{Bench, Motion};
 use crate::scene::build::Built;
@@ -39,7 +39,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
     let closed: Vec<&str> = closed.map(|l| l.name.as_str()).collect();
     if !closed.is_empty() {
         let text = format!(
-            "{} have no transport law: their contacts conduct nothing, and keep their heat in the two bodies",
+            "{} without a transport law: contacts there conduct nothing, and keep their heat in the two bodies",
             closed.join(", ")
         );
         out.push(("no conduction".to_owned(), text));
@@ -59,8 +59,8 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
     let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
     let of = |(name, range): &(String, std::ops::Range<usize>)| {
         let nodes = &state.nodes[range.clone()];
-        let meshes = &mut heat.nodes.iter();
-        let mesh = meshes.any(|n| matches!(n, BodyNodes::Mesh(..)) && n.range() == *range);
+        let column = |n: &Node| matches!(n.store, Store::HalfSpace(_));
+        let mesh = nodes.len() > 1 && !nodes.iter().any(column);
         let what = match nodes.first().map(|n| &n.store) {
             None => "insulated".to_owned(),
             Some(_) if mesh => format!("{} points of its mesh", nodes.len()),

@@ -127,14 +127,14 @@ fn held(table: &mut Table) {
     let case = "thermal/held_column";
     let mut s = plane(case, &[]);
     until(&mut s, 3.0, |_| ());
-    let force = 1e8 * ALPHA * RISE * HEIGHT / 4.0;
+    let force = 1e6 * ALPHA * RISE * HEIGHT / 4.0;
     for contact in s.contacts() {
         let name = "force k alpha dT L/4 (N/m)";
         table.compare(case, name, force, contact.normal_force, 1e-5);
     }
     let energy = s.energies();
     // Of four springs.
-    let stored = 4.0 * 0.5 * force * force / 1e8;
+    let stored = 4.0 * 0.5 * force * force / 1e6;
     table.compare(
         case,
         "energy in the springs (J/m)",
