@@ -4,11 +4,12 @@ use super::CheckLine;
 use super::load::Load;
 use crate::geometry::space::Space;
 use crate::heat::{Heat, Store};
-use crate::laws::Interface;
 use crate::laws::bench::{Bench, Motion};
+use crate::laws::Interface;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Simulation;
+use fretwork_observe::heat::without_heat;
 
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
 /// Transfer, chapter 5).
@@ -19,14 +20,8 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
     let s = &built.simulation;
     let mut out = Vec::new();
     let Some(heat) = s.heat() else {
-        let idle = s.laws.iter().filter(|l| l.transport().is_some());
-        out.extend(idle.map(|law| {
-            let text = format!(
-                "the transport law of `{}` is not asked: the case computes no heat; `heat: ()` would",
-                law.name
-            );
-            ("NO HEAT".to_owned(), text)
-        }));
+        let idle = without_heat(s).into_iter();
+        out.extend(idle.map(|text| ("NO HEAT".to_owned(), text)));
         return out;
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
