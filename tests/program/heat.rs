@@ -1,4 +1,4 @@
-//! What a run says of its heat: an account that does not close, half-spaces, laws that are not asked.
+//! What a run says of its heat: an account that does not close, half-spaces, laws that are not asked, laws with a clock of their own.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::record::statistics::Table;
@@ -7,6 +7,7 @@ use fretwork::record::{RunEnd, RunOptions, Summary, run, run_observers};
 use fretwork::scene::build::Built;
 use fretwork::scene::{Loaded, load};
 use fretwork::shipped::search_path;
+use std::process::Command;
 use std::time::Duration;
 
 fn built(case: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
@@ -153,4 +154,41 @@ fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
         (found - beside / all).abs() < 1e-9,
         "{found} {beside} {all}"
     );
+}
+
+#[test]
+fn laws_that_count_time_of_the_mechanics_are_told_where_heat_has_a_clock() {
+    let check = |sets: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args([
+                "check",
+                "cases/verification/thermal/cubic.ron",
+                "--no-timing",
+            ])
+            .args(sets.iter().flat_map(|s| ["--set", s]))
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let told = text.lines().filter(|l| l.contains("MECHANICAL TIME"));
+        told.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let laws = [
+        "interfaces.0.transport=oxide-film",
+        "interfaces.0.wear=Some(\"oxidation\")",
+    ];
+    assert!(check(&[]).is_empty());
+    let told = check(&laws);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter()
+            .any(|t| t.contains("transport law `oxide-film` of `steel`"))
+    );
+    assert!(
+        told.iter()
+            .any(|t| t.contains("wear law `oxidation` of `steel`"))
+    );
+    assert!(check(&[&laws[..], &["heat.clock=1.0"]].concat()).is_empty());
 }

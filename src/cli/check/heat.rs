@@ -5,7 +5,7 @@ use super::load::Load;
 use crate::geometry::space::Space;
 use crate::heat::{Heat, Store};
 use crate::laws::bench::{Bench, Motion};
-use crate::laws::Interface;
+use crate::laws::{Interface, Kind};
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Simulation;
@@ -34,6 +34,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
         );
         out.push(("no conduction".to_owned(), text));
     }
+    out.extend(mechanical_time(s, heat));
     if case.inertia_scaling != 1.0 {
         let text = "heat capacities are not scaled with inertia; heat of impacts and damping is that of the scaled masses".to_owned();
         out.push(("heat and inertia".to_owned(), text));
@@ -90,6 +91,37 @@ fn clock(case: &Case, heat: &Heat) -> String {
         );
     }
     text
+}
+
+/// Laws that count time or sliding speed by themselves, and how: shipped ones.
+const COUNTING: [(Kind, &str, &str); 2] = [
+    (Kind::WEAR, "oxidation", "the sliding speed"),
+    (Kind::TRANSPORT, "oxide-film", "time"),
+];
+
+/// Laws that count time or speed of the mechanics where heat has a clock of its own.
+fn mechanical_time<S: Space>(s: &Simulation<S>, heat: &Heat) -> Vec<CheckLine> {
+    let mut out: Vec<CheckLine> = Vec::new();
+    if heat.clock == 1.0 {
+        return out;
+    }
+    for law in &s.laws {
+        for loaded in law.loaded() {
+            let plugin = &loaded.plugin;
+            let counts = COUNTING
+                .iter()
+                .find(|(kind, name, _)| *kind == plugin.kind && *name == plugin.name);
+            let Some((kind, name, what)) = counts else {
+                continue;
+            };
+            let text = format!(
+                "the {kind} law `{name}` of `{}` counts {what} of the mechanics, not of `heat.clock`: a second of mechanics is {:e} s of heat",
+                law.name, heat.clock
+            );
+            out.push(("MECHANICAL TIME".to_owned(), text));
+        }
+    }
+    out
 }
 
 /// Conductance of the median contact of an interface under the load, its Biot number, and the time in which a grain takes the temperature of its
