@@ -90,7 +90,8 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-    let mut observers = measures::<S>(&loaded.case.measures, loaded.case.inertia_scaling);
+    let case = &loaded.case;
+    let mut observers = measures::<S>(&case.measures, case.inertia_scaling, case.heat.is_some());
     observers.begin(&mut s);
     change(&mut s);
     s.state.time += 1.0;
@@ -178,7 +179,7 @@ fn sheared(s: &mut Simulation<Dim2>, v: impl Fn(f64) -> f64) {
 /// An affine field: the profile is straight and through both walls, the granular temperature null, whether bins
 /// follow the rows or not; the lattice fills pi/4 of every bin that holds whole rows.
 #[test]
-fn an_affine_field_is_couette_without_temperature() {
+fn an_affine_field_is_couette_without_granular_temperature() {
     for bins in [10, 20, 7, 33] {
         let text = between::<Dim2>(2.0, &lattice(), bins);
         let seen = seen::<Dim2>(&text, |s| sheared(s, |y| 0.3 * y));
@@ -190,8 +191,11 @@ fn an_affine_field_is_couette_without_temperature() {
             close(*w, *y, 1e-12);
         }
         // Against V^2 = 0.36.
-        assert!(p["temperature"].iter().all(|t| t.abs() < 1e-26), "{bins}");
-        close(seen.row["layer_temperature"], 0.0, 1e-26);
+        assert!(
+            p["granular_temperature"].iter().all(|t| t.abs() < 1e-26),
+            "{bins}"
+        );
+        close(seen.row["layer_granular_temperature"], 0.0, 1e-26);
         close(seen.row["layer_thickness"], 2.0, 1e-15);
         close(seen.row["layer_solid_fraction"], PI / 4.0, 1e-12);
         close(seen.row["layer_sliding"], 0.6, 1e-15);
@@ -222,21 +226,21 @@ fn a_layer_may_be_looked_at_from_above() {
     close(seen.row["layer_sliding"], -0.6, 1e-15);
 }
 
-/// A layer that moves as one at 0.3 of the wheel: no temperature, slip of 0.3 and 0.7.
+/// A layer that moves as one at 0.3 of the wheel: no granular temperature, slip of 0.3 and 0.7.
 #[test]
 fn a_rigid_layer_is_a_plug() {
     let text = between::<Dim2>(2.0, &lattice(), 20);
     let seen = seen::<Dim2>(&text, |s| sheared(s, |y| if y < 2.0 { 0.3 } else { 1.0 }));
     close(seen.row["layer_slip_first"], 0.3, 1e-12);
     close(seen.row["layer_slip_second"], 0.7, 1e-12);
-    close(seen.row["layer_temperature"], 0.0, 1e-26);
+    close(seen.row["layer_granular_temperature"], 0.0, 1e-26);
     assert_eq!(seen.row["layer_regime"], 3.0);
     assert!(seen.regime.starts_with("plug"), "{}", seen.regime);
 }
 
 /// Velocities +u and -u in turn in each row: <v> is null and T = u^2/2 in the plane.
 #[test]
-fn a_temperature_is_the_mean_square_by_the_dimension() {
+fn a_granular_temperature_is_the_mean_square_by_the_dimension() {
     let text = between::<Dim2>(2.0, &lattice(), 10);
     let seen = seen::<Dim2>(&text, |s| {
         for (k, b) in s
@@ -251,11 +255,48 @@ fn a_temperature_is_the_mean_square_by_the_dimension() {
         }
     });
     assert!(
-        seen.profile["temperature"]
+        seen.profile["granular_temperature"]
             .iter()
             .all(|t| (t - 0.02).abs() < 1e-15)
     );
     assert_eq!(seen.row["layer_regime"], 0.0);
+    let kelvin = ["temperature", "layer_temperature"];
+    assert!(!seen.profile.contains_key(kelvin[0]) && !seen.row.contains_key(kelvin[1]));
+}
+
+/// Ten rows of a poor conductor at 300 K below ten of steel at 400 K: both between, by mass, where a bin is cut in half by the border.
+#[test]
+fn temperatures_of_a_layer_are_means_by_mass() {
+    let (below, above): (Vec<_>, Vec<_>) = lattice().into_iter().partition(|(at, _)| at[1] < 1.0);
+    let above: Vec<String> = above
+        .iter()
+        .map(|(at, r)| format!("(at: {:?}, radius: {r})", &at[..2]))
+        .collect();
+    let upper = format!(
+        "grains: [List(material: \"steel\", grains: [{}]), List",
+        above.join(", ")
+    );
+    let text = between::<Dim2>(2.0, &below, 7)
+        .replace("grains: [List", &upper)
+        .replace(
+            "{\"glass\": \"glass_bead\"}",
+            "{\"glass\": \"verification_oxide\", \"steel\": \"verification_steel\"}, \
+             heat: (initial: 300.0, grains: {\"steel\": 400.0})",
+        );
+    let seen = seen::<Dim2>(&text, |_| {});
+    let mean = (5000.0 * 300.0 + 7850.0 * 400.0) / 12850.0;
+    let expected = [300.0, 300.0, 300.0, mean, 400.0, 400.0, 400.0];
+    let found = &seen.profile["temperature"];
+    assert_eq!(found.len(), expected.len());
+    for (t, expected) in found.iter().zip(expected) {
+        close(*t, expected, 1e-9);
+    }
+    close(seen.row["layer_temperature"], mean, 1e-9);
+    assert!(
+        seen.profile["granular_temperature"]
+            .iter()
+            .all(|t| *t == 0.0)
+    );
 }
 
 /// A grain of unit radius in the middle of three bins of a metre: the outer ones hold a segment of height 1/2.

@@ -18,6 +18,7 @@ mod fclib;
 mod fit;
 mod grains;
 mod growth;
+mod heat;
 mod holders;
 mod law_drive;
 mod law_new;

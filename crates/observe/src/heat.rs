@@ -1,10 +1,16 @@
 //! Temperatures, heat flows and the contact resistance of a run.
 
+mod checks;
+
+pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
+
 use super::chart::{Axis, Chart, Series};
-use super::observer::{Observer, RunEnd};
+use super::observer::{Observer, RunEnd, put_measures};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::statistics::{Column, Table};
+use super::summary::Summary;
+use checks::{ContactShares, checks};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{BodyNodes, Heat, HeatLedger, HeatState, Store};
@@ -23,6 +29,8 @@ struct State {
     /// Heat that each first body had received at the last row (J; J/m in 2D), and its time (s).
     received: Vec<f64>,
     time: f64,
+    /// Heat at contacts beside half-spaces.
+    shares: ContactShares,
     /// The row that was given last, and its time: asked for again, it is the same.
     row: Option<(f64, Vec<f64>)>,
 }
@@ -52,6 +60,7 @@ impl HeatObserver {
                 off: state.ledger.relative_residual(),
                 received: state.received.clone(),
                 time: s.state.time,
+                shares: ContactShares::default(),
                 row: None,
             },
         })
@@ -121,6 +130,7 @@ impl<S: Space> Observer<S> for HeatObserver {
             let [highest, _] = of_grains(s, heat, state);
             self.state.highest = self.state.highest.max(highest);
             self.state.off = state.ledger.relative_residual();
+            self.state.shares.add(s, heat, state);
         }
     }
 
@@ -215,6 +225,18 @@ impl<S: Space> Observer<S> for HeatObserver {
         add("temperature_mean");
         add("resistance");
         out
+    }
+
+    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+        put_measures(self, end, summary);
+        summary.heat = checks(end.simulation, self.state.off, &self.state.shares);
+    }
+
+    fn summarise_so_far(&self, summary: &mut Summary) {
+        summary.heat = Some(HeatChecks {
+            residual_relative: self.state.off,
+            ..HeatChecks::default()
+        });
     }
 
     fn verdict(&self, table: &Table) -> Vec<(String, String)> {

@@ -130,15 +130,7 @@ pub trait Observer<S: Space>: Debug + Send {
     /// Puts what it found into the summary of a run: by default outcome, units and verdict as measures. Observers come in their
     /// order, so that what earlier ones found is there.
     fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        let columns = self.columns().into_iter().map(|c| (c.name, c.unit));
-        let units = columns.chain(self.units()).filter(|(_, u)| !u.is_empty());
-        let found = self.outcome(end.table);
-        let found_here = |name: &String| found.iter().any(|(n, _)| n == name);
-        summary
-            .measure_units
-            .extend(units.filter(|(name, _)| found_here(name)));
-        summary.measures.extend(found);
-        summary.findings.extend(self.verdict(end.table));
+        put_measures(self, end, summary);
     }
 
     /// Puts what it knows without the simulation, as of its last [`Observer::before_step`], into a summary: of a run that a law
@@ -185,6 +177,24 @@ pub trait Observer<S: Space>: Debug + Send {
     fn set_end(&mut self, _end: f64, _later: bool) -> Result<(), &'static str> {
         Ok(())
     }
+}
+
+/// Puts outcome, units and verdict of an observer into a summary as measures.
+pub(crate) fn put_measures<S: Space, O: Observer<S> + ?Sized>(
+    observer: &O,
+    end: &RunEnd<'_, S>,
+    summary: &mut Summary,
+) {
+    let columns = observer.columns().into_iter().map(|c| (c.name, c.unit));
+    let units = columns.chain(observer.units());
+    let units = units.filter(|(_, u)| !u.is_empty());
+    let found = observer.outcome(end.table);
+    let found_here = |name: &String| found.iter().any(|(n, _)| n == name);
+    summary
+        .measure_units
+        .extend(units.filter(|(name, _)| found_here(name)));
+    summary.measures.extend(found);
+    summary.findings.extend(observer.verdict(end.table));
 }
 
 /// The state of one observer: its name and its bytes.

@@ -89,6 +89,10 @@ fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> 
     if let Some(top) = case.output.shear {
         all.push(Box::new(LocalShear::new(s, top)));
     }
-    all.append(measures(&case.measures, case.inertia_scaling));
+    all.append(measures(
+        &case.measures,
+        case.inertia_scaling,
+        s.heat().is_some(),
+    ));
     all
 }

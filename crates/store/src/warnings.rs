@@ -6,11 +6,12 @@ use fretwork_core::solve::Report;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::step::Simulation;
 use fretwork_observe::error_estimate::Change;
+use fretwork_observe::heat::HeatChecks;
 use fretwork_observe::nearest_places::NearestPlaces;
 pub use fretwork_observe::warning::{NOT_REACHED, Warning};
 use fretwork_scene::methods::{Demands, Service};
 
-/// Residual of the energy ledger, relative to the largest energy, above which it is not explained by
+/// Residual of the energy ledger, and of the account of heat, relative to the largest energy or heat, above which it is not explained by
 /// rounding: ledgers close to 1e-9 and better, also over millions of steps.
 pub const LEDGER: f64 = 1e-6;
 /// Penetration after a projection, as a fraction of the smaller body's length, that is worth a note.
@@ -111,6 +112,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious(ended, stopped(summary));
     serious("NOT FINITE", infinite(summary));
     serious("ENERGY DOES NOT ADD UP", ledger(summary));
+    let heat = summary.heat.as_ref();
+    let account = heat.and_then(|h| h.account(LEDGER));
+    serious("HEAT DOES NOT ADD UP", account);
     serious("TOO FAST", summary.step_size.warning());
     serious("MOTION LOST", summary.step_size.rounding_warning());
     for body in &summary.small_strain {
@@ -345,6 +349,11 @@ fn notes(summary: &Summary) -> Vec<Warning> {
             format!("friction has no interval: {why}; let it run longer (time.end)")
         }),
     );
+    let idle = &summary.without_heat;
+    note("NO HEAT", (!idle.is_empty()).then(|| idle.join("; ")));
+    let heat = summary.heat.as_ref();
+    note("SHALLOW HALF-SPACES", heat.and_then(HeatChecks::shallow));
+    note("HEAT OUT OF RANGE", heat.and_then(HeatChecks::outside));
     let nearest = summary.nearest_places.as_ref();
     note("NEAREST PLACES", nearest.and_then(NearestPlaces::warning));
     note("COARSE DRIVE", drives(summary, false));
@@ -367,134 +376,5 @@ fn notes(summary: &Summary) -> Vec<Warning> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use fretwork_observe::deformable::{BorderLoad, SmallStrain};
-
-    fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
-        let mut summary = Summary {
-            steps: 600,
-            ..Summary::default()
-        };
-        change(&mut summary);
-        of(&summary, None)
-    }
-
-    #[test]
-    fn a_sound_run_has_none() {
-        assert_eq!(of_run(|_| ()), []);
-        assert_eq!(of_run(|s| s.energy_residual_relative = 1e-9), []);
-    }
-
-    #[test]
-    fn each_failed_check_is_a_reason() {
-        let list = of_run(|s| {
-            s.solver.unconverged_steps = 12;
-            s.solver.uncoupled_steps = 1;
-            s.solver.overlap_after = 0.5;
-            s.step_size.late = 3;
-            s.step_size.deepest = 0.2;
-            s.small_strain = [("bent", 1e-3, 0.3), ("stiff", 1e-3, 1e-3)]
-                .map(|(body, strain, rotation)| SmallStrain {
-                    body: Some(body.into()),
-                    strain,
-                    rotation,
-                })
-                .into();
-            s.border_loads = [("wide", 1e-3), ("narrow", 0.5)]
-                .map(|(body, share)| BorderLoad {
-                    body: body.into(),
-                    share,
-                })
-                .into();
-            s.energy.kinetic = f64::NAN;
-            s.energy_residual_relative = 1e-3;
-            s.phases_missed = vec!["shear".to_owned()];
-            s.stopped = Some("no room".to_owned());
-            s.plugins = vec![crate::summary::PluginStamp {
-                kind: "contact".into(),
-                name: "mine".into(),
-                version: String::new(),
-                sha256: String::new(),
-                path: String::new(),
-                certified: false,
-            }];
-        });
-        let reasons: Vec<&str> = list.iter().filter(|w| w.serious).map(|w| w.of).collect();
-        let expected = [
-            "STOPPED",
-            "NOT FINITE",
-            "ENERGY DOES NOT ADD UP",
-            "TOO FAST",
-            "NOT SMALL STRAIN",
-            "LOAD AT BORDER",
-            "NOT CONVERGED",
-            "NOT COUPLED",
-            "NOT CERTIFIED",
-        ];
-        assert_eq!(reasons, expected);
-        let bent = list.iter().find(|w| w.of == "NOT SMALL STRAIN").unwrap();
-        assert!(bent.text.contains("`bent`") && bent.text.contains("strain: Corotational"));
-        let notes: Vec<&str> = list.iter().filter(|w| !w.serious).map(|w| w.of).collect();
-        assert_eq!(notes, ["OVERLAP"]);
-        assert!(
-            list[6]
-                .to_string()
-                .starts_with("NOT CONVERGED: 12 of 600 steps")
-        );
-    }
-
-    #[test]
-    fn loose_velocities_are_a_reason_where_slip_is_outweighed() {
-        let parts = |velocity, contact_law| {
-            of_run(|s| {
-                s.solver.error_parts.velocity = velocity;
-                s.solver.error_parts.contact_law = contact_law;
-            })
-        };
-        assert_eq!(parts(1e-2, 0.3), []);
-        // At rest both are small, whatever their ratio.
-        assert_eq!(parts(1e-7, 4.0), []);
-        let list = parts(3e-2, 1.8);
-        assert!(list.len() == 1 && list[0].serious && list[0].of == "LOOSE VELOCITIES");
-    }
-
-    #[test]
-    fn errors_above_five_per_cent_are_notes_that_say_whether_they_are_known() {
-        let change = |change, half_width| Some(Change { change, half_width });
-        let list = of_run(|s| {
-            let repeats = &mut s.uncertainty.repeats;
-            repeats.places = 6;
-            repeats.step.friction_coefficient = change(0.01, 0.02);
-            repeats.tolerance.friction_coefficient = change(-0.08, 0.02);
-            repeats.tolerance.damage = change(0.03, 0.06);
-            repeats.shares.correction = Some(0.04);
-        });
-        assert_eq!(list.len(), 2, "{list:?}");
-        assert!(list.iter().all(|w| !w.serious));
-        let text = list[0].to_string();
-        assert!(
-            text.starts_with("ESTIMATED ERROR")
-                && text.contains("friction -8 +- 2 % for solver.tolerance"),
-            "{text}"
-        );
-        let text = list[1].to_string();
-        assert!(
-            text.starts_with("ERROR NOT KNOWN")
-                && text.contains("damage up to 9 % for solver.tolerance"),
-            "{text}"
-        );
-        let list = of_run(|s| s.uncertainty.repeats.shares.correction = Some(0.23));
-        assert!(
-            list.len() == 1
-                && list[0].of == "POSITION CORRECTION"
-                && list[0].text.starts_with("23 %")
-        );
-    }
-
-    #[test]
-    fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
-        let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
-        assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
-    }
-}
+#[path = "warnings_tests.rs"]
+mod tests;

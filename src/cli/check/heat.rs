@@ -4,11 +4,12 @@ use super::CheckLine;
 use super::load::Load;
 use crate::geometry::space::Space;
 use crate::heat::{Heat, Node, Store};
-use crate::laws::Interface;
 use crate::laws::bench::{Bench, Motion};
+use crate::laws::{Interface, Kind};
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Simulation;
+use fretwork_observe::heat::without_heat;
 
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
 /// Transfer, chapter 5).
@@ -23,14 +24,8 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
     let s = &built.simulation;
     let mut out = Vec::new();
     let Some(heat) = s.heat() else {
-        let idle = s.laws.iter().filter(|l| l.transport().is_some());
-        out.extend(idle.map(|law| {
-            let text = format!(
-                "the transport law of `{}` is not asked: the case computes no heat; `heat: ()` would",
-                law.name
-            );
-            ("NO HEAT".to_owned(), text)
-        }));
+        let idle = without_heat(s).into_iter();
+        out.extend(idle.map(|text| ("NO HEAT".to_owned(), text)));
         return out;
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
@@ -44,6 +39,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
         );
         out.push(("no conduction".to_owned(), text));
     }
+    out.extend(mechanical_time(s, heat));
     if case.inertia_scaling != 1.0 {
         let text = "heat capacities are not scaled with inertia; heat of impacts and damping is that of the scaled masses".to_owned();
         out.push(("heat and inertia".to_owned(), text));
@@ -121,6 +117,37 @@ fn clock(case: &Case, heat: &Heat) -> String {
         );
     }
     text
+}
+
+/// Laws that count time or sliding speed by themselves, and how: shipped ones.
+const COUNTING: [(Kind, &str, &str); 2] = [
+    (Kind::WEAR, "oxidation", "the sliding speed"),
+    (Kind::TRANSPORT, "oxide-film", "time"),
+];
+
+/// Laws that count time or speed of the mechanics where heat has a clock of its own.
+fn mechanical_time<S: Space>(s: &Simulation<S>, heat: &Heat) -> Vec<CheckLine> {
+    let mut out: Vec<CheckLine> = Vec::new();
+    if heat.clock == 1.0 {
+        return out;
+    }
+    for law in &s.laws {
+        for loaded in law.loaded() {
+            let plugin = &loaded.plugin;
+            let counts = COUNTING
+                .iter()
+                .find(|(kind, name, _)| *kind == plugin.kind && *name == plugin.name);
+            let Some((kind, name, what)) = counts else {
+                continue;
+            };
+            let text = format!(
+                "the {kind} law `{name}` of `{}` counts {what} of the mechanics, not of `heat.clock`: a second of mechanics is {:e} s of heat",
+                law.name, heat.clock
+            );
+            out.push(("MECHANICAL TIME".to_owned(), text));
+        }
+    }
+    out
 }
 
 /// Conductance of the median contact of an interface under the load, its Biot number, and the time in which a grain takes the temperature of its

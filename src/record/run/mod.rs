@@ -35,6 +35,7 @@ use crate::step::{Simulation, StepReport};
 use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
+use fretwork_observe::heat::without_heat;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::{self, Observed};
 use fretwork_observe::{Observer, Observers};
@@ -287,6 +288,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             seed: case.seed,
             identity: checkpoint_writer.name(),
             unresolved_drives: sampling::unresolved(case),
+            without_heat: without_heat(simulation),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Summary::default()
         };

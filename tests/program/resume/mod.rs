@@ -8,6 +8,7 @@ mod folder;
 mod kills;
 mod laws;
 mod library;
+mod longer_heat;
 mod observer_files;
 mod repeats;
 #[cfg(unix)]

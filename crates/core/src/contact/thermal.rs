@@ -1,6 +1,7 @@
 //! Temperatures and conductances of contacts in a step.
 
 use crate::bodies::Nodes;
+use fretwork_diffusion::Node;
 
 /// Where the heat of a contact enters a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,5 +49,17 @@ impl ContactHeat {
         let of_mesh = between.into_iter().flat_map(Nodes::terms);
         node.into_iter()
             .chain(of_mesh.map(|(node, weight)| (node as usize, weight)))
+    }
+
+    /// Temperature of a side (K), by the nodes of the heat; none of an insulated one.
+    pub fn temperature_of(&self, side: HeatSide, nodes: &[Node]) -> Option<f64> {
+        match side {
+            HeatSide::Insulated => None,
+            HeatSide::Node(node) => Some(nodes[node as usize].temperature),
+            HeatSide::Between(_) => {
+                let terms = self.terms(side);
+                Some(terms.map(|(n, w)| w * nodes[n].temperature).sum())
+            }
+        }
     }
 }

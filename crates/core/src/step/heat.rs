@@ -109,14 +109,7 @@ impl<S: Space> Simulation<S> {
         for contact in contacts {
             let pair = heat.pair(contact.bodies);
             let sides = self.heat_sides(heat, contact, &mut thermal.between);
-            let of = |side: HeatSide| match side {
-                HeatSide::Insulated => None,
-                HeatSide::Node(node) => Some(state.nodes[node as usize].temperature),
-                HeatSide::Between(_) => {
-                    let terms = thermal.terms(side);
-                    Some(terms.map(|(n, w)| w * state.nodes[n].temperature).sum())
-                }
-            };
+            let of = |side: HeatSide| thermal.temperature_of(side, &state.nodes);
             // An insulated body has the temperature of what it touches.
             let [first, second] = match sides.map(of) {
                 [Some(a), Some(b)] => [a, b],

@@ -14,11 +14,16 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_scene::measures::MeasureSpec;
 
-/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are too large.
-pub fn measures<S: Space>(specs: &[MeasureSpec], inertia_scaling: f64) -> Observers<S> {
+/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are too large. `heated`: whether it
+/// computes heat.
+pub fn measures<S: Space>(
+    specs: &[MeasureSpec],
+    inertia_scaling: f64,
+    heated: bool,
+) -> Observers<S> {
     let mut all = Observers::default();
     for spec in specs {
-        all.push(measure(spec.clone(), inertia_scaling));
+        all.push(measure(spec.clone(), inertia_scaling, heated));
     }
     all
 }
@@ -28,7 +33,11 @@ fn name_of(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }
 
-fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64) -> Box<dyn Observer<S>> {
+fn measure<S: Space>(
+    spec: MeasureSpec,
+    inertia_scaling: f64,
+    heated: bool,
+) -> Box<dyn Observer<S>> {
     match spec {
         MeasureSpec::Mass {
             name,
@@ -76,9 +85,11 @@ fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64) -> Box<dyn Observe
             above,
             strain: None,
         }),
-        MeasureSpec::ThirdBody(spec) => {
-            Box::new(third_body::ThirdBody::<S>::new(spec, inertia_scaling))
-        }
+        MeasureSpec::ThirdBody(spec) => Box::new(third_body::ThirdBody::<S>::new(
+            spec,
+            inertia_scaling,
+            heated,
+        )),
         MeasureSpec::Shear {
             name,
             low,

@@ -19,6 +19,7 @@ use crate::error_estimate::Repeats;
 pub use crate::first_bodies::BodyWear;
 use crate::fretting;
 use crate::friction::Cycle;
+use crate::heat::HeatChecks;
 use crate::jump::JumpSummary;
 use crate::nearest_places::NearestPlaces;
 use crate::scars::ScarSummary;
@@ -190,9 +191,15 @@ pub struct Summary {
     /// Contacts between deformable bodies that act on the nearest place; left out without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_places: Option<NearestPlaces>,
+    /// Checks of heat; left out without heat.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heat: Option<HeatChecks>,
     /// Diagnostics of whether the step was small enough to detect every contact in time.
     #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,
+    /// Interfaces whose transport law is not asked, in sentences.
+    #[serde(skip)]
+    pub without_heat: Vec<String>,
     /// Drives that the step does not resolve.
     #[serde(skip)]
     pub unresolved_drives: Vec<UnresolvedDrive>,

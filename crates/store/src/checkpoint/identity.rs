@@ -1,11 +1,14 @@
 //! Identity of a run: the case, materials, laws and files that determine its results bit by bit.
 
 use fretwork_core::geometry::space::Space;
+use fretwork_core::heat::{Grid, HalfSpace, Node, Store};
+use fretwork_core::step::State;
 use fretwork_observe::code::{CodeError, encode};
 use fretwork_scene::source::{Source, first_difference};
 use fretwork_scene::{Built, Loaded};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// Values of the case that may differ in a resumed run, since they do not affect the computation.
@@ -26,7 +29,7 @@ pub struct Identity {
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
     plugins: Vec<(String, String)>,
-    /// SHA-256 of the built scene, which includes the effect of files named in the case (profiles, meshes,
+    /// SHA-256 of the built scene without the depths of its half-spaces of heat, which includes the effect of files named in the case (profiles, meshes,
     /// samples).
     scene: String,
 }
@@ -47,7 +50,7 @@ impl Identity {
             }
         }
         let mut hash = Hashed(Sha256::new());
-        hash.0.update(encode(&s.state)?);
+        hash.0.update(encode(&*without_depths(&s.state))?);
         // Writing to the hash never fails.
         let _ = write!(hash, "{:?}", s.shapes);
         Ok(Self {
@@ -120,6 +123,28 @@ impl Identity {
                 .to_owned()
         })
     }
+}
+
+/// A state in which half-spaces of heat have no depth. Their grids follow from what else is in an identity, except for the depth that
+/// a case does not give: it follows from `time.end`, and a run that is extended keeps the one that it began with.
+fn without_depths<S: Space>(state: &State<S>) -> Cow<'_, State<S>> {
+    let deep = |node: &Node| matches!(node.store, Store::HalfSpace(_));
+    let heat = state.heat.as_ref();
+    if !heat.is_some_and(|h| h.nodes.iter().any(deep)) {
+        return Cow::Borrowed(state);
+    }
+    let mut state = state.clone();
+    for node in state.heat.iter_mut().flat_map(|h| &mut h.nodes) {
+        if let Store::HalfSpace(space) = &mut node.store {
+            let grid = Grid {
+                depth: Vec::new(),
+                capacity: Vec::new(),
+                conductance: Vec::new(),
+            };
+            **space = HalfSpace::new(grid, space.area, node.temperature);
+        }
+    }
+    Cow::Owned(state)
 }
 
 fn hex(bytes: &[u8]) -> String {

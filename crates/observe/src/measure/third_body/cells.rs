@@ -29,7 +29,9 @@ pub(super) struct Cell {
     /// Mass times spin; its norm in 3D.
     pub spin: f64,
     /// Mass times granular temperature.
-    pub heat: f64,
+    pub granular: f64,
+    /// Mass times temperature (kg K; kg K/m); 0 where no heat is computed.
+    pub warmth: f64,
     /// Number of grains, by their volume fractions in the bin.
     pub grains: f64,
     /// Number of their contacts that carry force.
@@ -55,7 +57,8 @@ impl AddAssign<&Cell> for Cell {
         self.drive += o.drive;
         self.square += o.square;
         self.spin += o.spin;
-        self.heat += o.heat;
+        self.granular += o.granular;
+        self.warmth += o.warmth;
         self.grains += o.grains;
         self.contacts += o.contacts;
         self.bonds += o.bonds;
@@ -80,6 +83,16 @@ impl Cell {
     /// Mean velocity relative to the first body (m/s).
     pub fn velocity(&self) -> f64 {
         self.momentum / self.mass
+    }
+
+    /// Mass-weighted mean granular temperature (m^2/s^2).
+    pub fn granular_temperature(&self) -> f64 {
+        self.granular / self.mass
+    }
+
+    /// Mass-weighted mean temperature (K), where heat is computed.
+    pub fn temperature(&self) -> f64 {
+        self.warmth / self.mass
     }
 
     /// Velocity over that of the second body, weighted by its square: <v V>/<V^2>, which is also defined for

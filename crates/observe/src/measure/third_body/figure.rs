@@ -25,6 +25,8 @@ pub(super) struct Figure<'a> {
     pub shear: Vec<(f64, f64)>,
     /// Dimension, 2 or 3.
     pub dimension: usize,
+    /// Whether grains have temperatures.
+    pub heated: bool,
 }
 
 /// Headings of the panels that have a legend of the time slices.
@@ -160,7 +162,7 @@ impl Figure<'_> {
             self.stress(),
             self.in_time(
                 self.chart("Granular temperature", "granular temperature T", "m^2/s^2"),
-                |c| c.heat / c.mass,
+                Cell::granular_temperature,
             ),
             self.in_time(
                 self.chart("Coordination", "coordination number Z", ""),
@@ -172,6 +174,10 @@ impl Figure<'_> {
         if tied {
             let chart = self.chart("Damage", "broken bonds / bonds made", "");
             charts.push(self.in_time(chart, Cell::damage));
+        }
+        if self.heated {
+            let chart = self.chart("Temperature", "mean temperature T", "K");
+            charts.push(self.in_time(chart, Cell::temperature));
         }
         charts.push(
             self.history("Thickness of the third body", "thickness e", "m")

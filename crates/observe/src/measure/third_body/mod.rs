@@ -41,6 +41,8 @@ pub struct ThirdBody<S: Space> {
     clusters: Clusters,
     /// Factor to divide out of masses.
     inertia_scaling: f64,
+    /// Whether grains have temperatures.
+    heated: bool,
     /// Time of the last sample, or of the start (s).
     seen: f64,
     /// Largest sliding velocity so far (m/s).
@@ -54,8 +56,8 @@ pub struct ThirdBody<S: Space> {
 /// determined.
 const TURNING: f64 = 1e-2;
 
-/// Name, unit and description of the columns; `stress_lateral` exists in 3D only.
-const COLUMNS: [(&str, &str, &str); 20] = [
+/// Name, unit and description of the columns; `stress_lateral` exists in 3D only, `temperature` where heat is computed.
+const COLUMNS: [(&str, &str, &str); 21] = [
     ("thickness", "m", "thickness of the third body"),
     ("solid_fraction", "", "solid fraction between the faces"),
     (
@@ -64,9 +66,14 @@ const COLUMNS: [(&str, &str, &str); 20] = [
         "contacts that carry force, mean over the grains",
     ),
     (
-        "temperature",
+        "granular_temperature",
         "m^2/s^2",
         "granular temperature between the faces",
+    ),
+    (
+        "temperature",
+        "K",
+        "temperature of the grains between the faces, mean by mass",
     ),
     (
         "stress_across",
@@ -134,13 +141,20 @@ const COLUMNS: [(&str, &str, &str); 20] = [
     ),
 ];
 
-fn columns(dimension: usize) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
-    let shown = move |c: &(&str, &str, &str)| dimension == 3 || c.0 != "stress_lateral";
+fn columns(
+    dimension: usize,
+    heated: bool,
+) -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
+    let shown = move |c: &(&str, &str, &str)| match c.0 {
+        "stress_lateral" => dimension == 3,
+        "temperature" => heated,
+        _ => true,
+    };
     COLUMNS.into_iter().filter(shown)
 }
 
 impl<S: Space> ThirdBody<S> {
-    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64) -> Self {
+    pub(super) fn new(spec: ThirdBodySpec, inertia_scaling: f64, heated: bool) -> Self {
         Self {
             spent: Dissipation::new(spec.bins, Vec::new()),
             seen: spec.start,
@@ -150,9 +164,10 @@ impl<S: Space> ThirdBody<S> {
             history: History::new(),
             clusters: Clusters::default(),
             inertia_scaling,
+            heated,
             fastest: 0.0,
             rows: 0,
-            row: vec![f64::NAN; columns(S::D).count()],
+            row: vec![f64::NAN; columns(S::D, heated).count()],
         }
     }
 
@@ -196,8 +211,9 @@ impl<S: Space> ThirdBody<S> {
             now.gap.thickness,
             whole.solid(),
             now.coordination,
-            whole.heat / whole.mass,
+            whole.granular_temperature(),
         ];
+        row.extend(self.heated.then(|| whole.temperature()));
         row.extend_from_slice(&stress[..if S::D == 3 { 4 } else { 3 }]);
         row.extend([
             now.sliding,
@@ -258,7 +274,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
 
     fn columns(&self) -> Vec<Column> {
         let column = |(part, unit, doc)| Column::new(self.column(part), unit, doc);
-        columns(S::D).map(column).collect()
+        columns(S::D, self.heated).map(column).collect()
     }
 
     fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
@@ -293,7 +309,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
 
     fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
         let mut out: Vec<(String, f64)> = Vec::new();
-        let means = columns(S::D).filter(|c| {
+        let means = columns(S::D, self.heated).filter(|c| {
             !(c.0 == "sliding"
                 || c.0.starts_with("slip")
                 || c.0 == "interior_shear"
@@ -382,7 +398,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
             text,
         };
         let mut outputs = vec![
-            text("", tables::profiles(&whole, &slices, S::D)),
+            text("", tables::profiles(&whole, &slices, S::D, self.heated)),
             text("_energy", tables::energies(&self.spent, &self.spec.between)),
             text(
                 "_clusters",
@@ -400,6 +416,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
             chains: [column("chains"), column("chain_force")],
             shear: column("interior_shear"),
             dimension: S::D,
+            heated: self.heated,
         };
         outputs.push(Output::charts(format!("{name}.png"), figure.charts(), 2));
         outputs

@@ -103,8 +103,9 @@ impl LayerSnapshot {
             c.contacts += share * f64::from(degree[b]);
             c.bonds += share * held[b];
             c.broken += share * lost[b];
+            c.warmth += mass * s.temperature(b).unwrap_or_default();
         }
-        temperature(s, &gap, &floor, all, &shares, &means, &mut cells);
+        granular_temperature(s, &gap, &floor, all, &shares, &means, &mut cells);
         stress(s, &gap, along, &mut cells);
         let free = || flags.iter().zip(&degree).filter(|(free, _)| **free);
         let contacts: f64 = free().map(|(_, d)| f64::from(*d)).sum();
@@ -128,7 +129,7 @@ impl LayerSnapshot {
 
 /// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the mean
 /// positions and velocities of the bins, so that an affine field has zero temperature.
-fn temperature<S: Space>(
+fn granular_temperature<S: Space>(
     s: &Simulation<S>,
     gap: &Gap,
     floor: &S::Vector,
@@ -146,7 +147,7 @@ fn temperature<S: Space>(
         }
         let depth = gap.depth(&grain.at) / gap.thickness;
         let v = s.state.bodies.velocity[grain.body] - *floor - mean_at(&points, depth);
-        cells[cell].heat += share * grain.mass * v.dot(&v) / S::D as f64;
+        cells[cell].granular += share * grain.mass * v.dot(&v) / S::D as f64;
     }
 }
 

@@ -6,7 +6,7 @@ use super::spent::{Dissipation, Place};
 use fretwork_core::geometry::space::Space;
 
 /// Columns of the profiles, in the order of [`row`].
-const PROFILE: [&str; 22] = [
+const PROFILE: [&str; 23] = [
     "slice",
     "from [s]",
     "to [s]",
@@ -18,7 +18,8 @@ const PROFILE: [&str; 22] = [
     "spin [rad/s]",
     "solid_fraction",
     "coordination",
-    "temperature [m^2/s^2]",
+    "granular_temperature [m^2/s^2]",
+    "temperature [K]",
     "stress_across [Pa]",
     "stress_along [Pa]",
     "stress_shear [Pa]",
@@ -52,7 +53,8 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
         cell.spin / cell.mass,
         cell.solid(),
         cell.contacts / cell.grains,
-        cell.heat / cell.mass,
+        cell.granular_temperature(),
+        cell.temperature(),
         stress[0],
         stress[1],
         stress[2],
@@ -63,18 +65,23 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
     row
 }
 
-/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are `NaN`.
-pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize) -> String {
+/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are `NaN`. Temperatures in kelvin stand
+/// there where grains are `heated`.
+pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated: bool) -> String {
     // In 2D the stress has no lateral component.
-    let lateral = |k: &usize| dimension == 3 || *k != 15;
+    let shown = |k: &usize| match PROFILE[*k] {
+        "stress_lateral [Pa]" => dimension == 3,
+        "temperature [K]" => heated,
+        _ => true,
+    };
     let header = (0..PROFILE.len())
-        .filter(lateral)
+        .filter(shown)
         .map(|k| PROFILE[k].to_owned());
     let mut lines = vec![header.collect::<Vec<_>>()];
     for (slice, block) in std::iter::once(whole).chain(slices).enumerate() {
         for (k, cell) in block.bins().iter().enumerate() {
             let row = row(slice, k, cell, block);
-            let kept = (0..row.len()).filter(lateral);
+            let kept = (0..row.len()).filter(shown);
             lines.push(kept.map(|i| format!("{:e}", row[i])).collect());
         }
     }

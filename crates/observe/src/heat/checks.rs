@@ -1,0 +1,201 @@
+//! What may be wrong with the heat of a run: an account that does not close, half-spaces that are not deep enough, and contacts
+//! that heat a body beside its half-spaces.
+
+use fretwork_core::contact::HeatSide;
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
+use fretwork_core::step::Simulation;
+use serde::{Deserialize, Serialize};
+
+/// Depth of half-spaces over the distance sqrt(D t) that heat has come, below which their end may be felt.
+const DEEP: f64 = 4.0;
+/// Share of the heat of a body that may pass beside its half-spaces without a note.
+const NEGLIGIBLE: f64 = 1e-2;
+/// Distance beyond the ends of the half-spaces that is not beside them, over their length: rounding, and rotation in a step.
+const ROUNDING: f64 = 1e-3;
+
+/// The checks of a run that computes heat.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct HeatChecks {
+    /// Residual of the account of heat over its scale; among the measures as `heat_residual_relative`.
+    #[serde(skip)]
+    pub residual_relative: f64,
+    /// The first bodies with half-spaces.
+    pub half_spaces: Vec<HalfSpaceCheck>,
+}
+
+/// The half-spaces below the surface of a first body.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct HalfSpaceCheck {
+    /// Name of the body.
+    pub body: String,
+    /// Their depth (m).
+    pub depth: f64,
+    /// Distance sqrt(D t) that heat has come in thermal time (m).
+    pub reach: f64,
+    /// Share of the heat that contacts put into the body and conduct to it, of those beside the range of its half-spaces.
+    pub outside: f64,
+}
+
+impl HeatChecks {
+    /// What that means for the result: category, and text. An account is off where its residual is above `closes`.
+    pub fn account(&self, closes: f64) -> Option<String> {
+        let share = self.residual_relative;
+        (share > closes || share.is_nan()).then(|| {
+            format!(
+                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {closes:.0e}): temperatures are \
+                 wrong; this is a defect of the program, please report it"
+            )
+        })
+    }
+
+    /// Half-spaces that heat has reached the depth of.
+    pub fn shallow(&self) -> Option<String> {
+        let shallow = self.half_spaces.iter().filter(|h| h.depth < DEEP * h.reach);
+        let texts: Vec<String> = shallow
+            .map(|h| {
+                format!(
+                    "those of `{}` are {:.2e} m deep, {:.1} times the {:.2e} m that heat has come",
+                    h.body,
+                    h.depth,
+                    h.depth / h.reach,
+                    h.reach
+                )
+            })
+            .collect();
+        (!texts.is_empty()).then(|| {
+            format!(
+                "half-spaces of heat should be {DEEP} times as deep as heat comes, and no heat leaves at their depth: {}; give a larger `depth`, or leave it out \
+                 and run from the start (a run that was extended keeps the depth that it began with)",
+                texts.join("; ")
+            )
+        })
+    }
+
+    /// Contacts beside the half-spaces.
+    pub fn outside(&self) -> Option<String> {
+        let outside = self.half_spaces.iter().filter(|h| h.outside > NEGLIGIBLE);
+        let texts: Vec<String> = outside
+            .map(|h| format!("{:.0} % for `{}`", 100.0 * h.outside, h.body))
+            .collect();
+        (!texts.is_empty()).then(|| {
+            format!(
+                "heat that contacts beside the range of the half-spaces put in or conduct goes to the pieces at its ends: {}; give a wider \
+                 `over` in `store: HalfSpace(..)`",
+                texts.join(", ")
+            )
+        })
+    }
+}
+
+/// Heat at the contacts of each driven body with half-spaces, in their order: beside the half-spaces, and of all (J; J/m in 2D).
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct ContactShares(Vec<[f64; 2]>);
+
+impl ContactShares {
+    /// Adds the contacts of the last step.
+    pub fn add<S: Space>(&mut self, s: &Simulation<S>, heat: &Heat, state: &HeatState) {
+        let driven = &s.state.bodies.driven;
+        self.0.resize(driven.len(), [0.0; 2]);
+        let h = s.options.scheme.h;
+        let bounded: Vec<(usize, u32, &Pieces)> = driven
+            .iter()
+            .enumerate()
+            .filter_map(|(k, d)| match &heat.nodes[d.body as usize] {
+                BodyNodes::Pieces(_, p) if p.axes.iter().any(|a| !a.periodic) => {
+                    Some((k, d.body, p))
+                }
+                _ => None,
+            })
+            .collect();
+        let begun = s.state.time - 0.5 * h >= heat.start;
+        let (Some(thermal), true) = (&s.state.network.thermal, begun && !bounded.is_empty()) else {
+            return;
+        };
+        // With a circuit conductances are known in every step, without in those in which heat flows.
+        let steps = if thermal.current { 1 } else { heat.every };
+        let span = heat.clock * h * steps as f64;
+        let temperature = |side: HeatSide| thermal.temperature_of(side, &state.nodes);
+        let contacts = s.state.network.contacts.iter();
+        let heats = thermal
+            .sides
+            .iter()
+            .zip(&thermal.conductance)
+            .zip(&thermal.source);
+        for (contact, ((sides, conductance), source)) in contacts.zip(heats) {
+            for (side, body) in contact.bodies.into_iter().enumerate() {
+                let Some((k, _, pieces)) = bounded.iter().find(|b| b.1 == body) else {
+                    continue;
+                };
+                let [own, other] = [sides[side], sides[1 - side]].map(temperature);
+                let (share, flow) = match (own, other) {
+                    (Some(own), Some(other)) => {
+                        let first = heat.share(contact.bodies);
+                        let share = if side == 0 { first } else { 1.0 - first };
+                        (share, conductance[0] * (other - own).abs() * span)
+                    }
+                    _ => (1.0, 0.0),
+                };
+                let amount = share * source.abs() + flow;
+                let place =
+                    S::unrotate(&s.state.bodies.rotation[body as usize], &contact.arms[side]);
+                self.0[*k][1] += amount;
+                if beside(pieces, place.padded()) {
+                    self.0[*k][0] += amount;
+                }
+            }
+        }
+    }
+}
+
+/// Whether a place in the axes of a body (m) is beside its pieces.
+fn beside(pieces: &Pieces, place: [f64; 3]) -> bool {
+    pieces.axes.iter().filter(|a| !a.periodic).any(|a| {
+        let along = (place[a.axis] - a.low) / a.length;
+        !(-ROUNDING..=1.0 + ROUNDING).contains(&along)
+    })
+}
+
+/// The checks of the current state.
+pub(super) fn checks<S: Space>(
+    s: &Simulation<S>,
+    residual_relative: f64,
+    shares: &ContactShares,
+) -> Option<HeatChecks> {
+    let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
+    let time = heat.clock * (s.state.time - heat.start.max(0.0)).max(0.0);
+    let of_body = |(k, driven): (usize, &fretwork_core::bodies::Driven)| {
+        let nodes = &state.nodes[heat.nodes[driven.body as usize].range()];
+        let Some(Store::HalfSpace(space)) = nodes.first().map(|n| &n.store) else {
+            return None;
+        };
+        let conductor = heat.material_of(driven.body).conductor();
+        let [beside, all] = shares.0.get(k).copied().unwrap_or_default();
+        Some(HalfSpaceCheck {
+            body: driven.name.clone(),
+            depth: space.grid.depth.last().copied().unwrap_or_default(),
+            reach: (conductor.diffusivity() * time).sqrt(),
+            outside: if beside > 0.0 { beside / all } else { 0.0 },
+        })
+    };
+    let driven = s.state.bodies.driven.iter().enumerate();
+    Some(HeatChecks {
+        residual_relative,
+        half_spaces: driven.filter_map(of_body).collect(),
+    })
+}
+
+/// Interfaces whose transport law is not asked, since the case computes no heat: a sentence for each.
+pub fn without_heat<S: Space>(s: &Simulation<S>) -> Vec<String> {
+    let idle = s
+        .laws
+        .iter()
+        .filter(|l| l.transport().is_some() && s.heat().is_none());
+    idle.map(|law| {
+        format!(
+            "the transport law of `{}` is not asked: the case computes no heat; `heat: ()` would",
+            law.name
+        )
+    })
+    .collect()
+}

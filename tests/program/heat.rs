@@ -1,0 +1,194 @@
+//! What a run says of its heat: an account that does not close, half-spaces, laws that are not asked, laws with a clock of their own.
+
+use fretwork::geometry::space::Dim2;
+use fretwork::record::statistics::Table;
+use fretwork::record::summary::Uncertainty;
+use fretwork::record::{RunEnd, RunOptions, Summary, run, run_observers};
+use fretwork::scene::build::Built;
+use fretwork::scene::{Loaded, load};
+use fretwork::shipped::search_path;
+use std::process::Command;
+use std::time::Duration;
+
+fn built(case: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
+    let path = format!(
+        "{}/cases/verification/thermal/{case}.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let fixed = ["output.figures=false", "uncertainty.repeats=0"];
+    let sets: Vec<String> = fixed.iter().chain(sets).map(|s| (*s).to_owned()).collect();
+    let loaded = load(path.as_ref(), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim2>(&search_path());
+    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    (loaded, built)
+}
+
+fn ran(name: &str, (loaded, built): (Loaded, Built<Dim2>)) -> Summary {
+    let folder = format!("fretwork-heat-{}-{name}", std::process::id());
+    let options = RunOptions {
+        out: std::env::temp_dir().join(folder),
+        threads: 1,
+    };
+    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    std::fs::remove_dir_all(options.out).unwrap();
+    summary
+}
+
+/// Warnings of a category.
+fn of<'a>(summary: &'a Summary, category: &str) -> Vec<&'a String> {
+    let start = format!("{category}: ");
+    let all = summary.warnings.iter();
+    all.filter(|w| w.starts_with(&start)).collect()
+}
+
+#[test]
+fn an_account_of_heat_that_does_not_close_is_a_reason() {
+    let summary = ran("closes", built("half_space", &[]));
+    assert!(summary.measures["heat_residual_relative"] < 1e-9);
+    assert!(summary.trustworthy, "{:?}", summary.warnings);
+    // A joule that nothing put in, to the ten that flow.
+    let (loaded, mut built) = built("half_space", &[]);
+    let heat = built.simulation.state.heat.as_mut().unwrap();
+    heat.ledger.imposed += 1.0;
+    let summary = ran("open", (loaded, built));
+    let off = summary.measures["heat_residual_relative"];
+    assert!((off - 1.0 / 11.0).abs() < 1e-6, "{off}");
+    assert!(!summary.trustworthy);
+    let reasons: Vec<&String> = summary.reasons.iter().collect();
+    assert_eq!(reasons, of(&summary, "HEAT DOES NOT ADD UP"));
+    assert!(reasons[0].contains("9.1e-2"), "{reasons:?}");
+}
+
+#[test]
+fn a_transport_law_without_heat_is_told_once() {
+    let with = ran("with", built("two_half_spaces", &["time.end=1e-4"]));
+    assert!(of(&with, "NO HEAT").is_empty(), "{:?}", with.warnings);
+    let without = ["time.end=1e-4", "heat=None"];
+    let summary = ran("without", built("two_half_spaces", &without));
+    let told = of(&summary, "NO HEAT");
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("transport law of `contact`") && told[0].contains("`heat: ()`"));
+    assert!(summary.trustworthy, "{:?}", summary.reasons);
+}
+
+#[test]
+fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
+    let reach = (50.0f64 / (450.0 * 7850.0) * 1e-2).sqrt();
+    for (depth, told) in [(None, false), (Some(4.1), false), (Some(3.0), true)] {
+        let depth = depth.map(|d: f64| d * reach);
+        let set = format!("heat.bodies.rail.store.depth={depth:?}");
+        let summary = ran("depth", built("half_space", &[&set]));
+        let found = &summary.heat.as_ref().unwrap().half_spaces[0];
+        assert!((found.reach / reach - 1.0).abs() < 1e-9);
+        let given = depth.unwrap_or(6.0 * reach);
+        // To the next point of the grid.
+        assert!((given..1.3 * given).contains(&found.depth), "{found:?}");
+        let notes = of(&summary, "SHALLOW HALF-SPACES");
+        assert_eq!(notes.len(), usize::from(told), "{notes:?}");
+        assert!(notes.iter().all(|n| n.contains("`rail`")));
+    }
+}
+
+/// Both corners of the block conduct alike, and one of them is beside the range of the floor.
+#[test]
+fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
+    let summary = ran("inside", built("two_half_spaces", &["time.end=1e-4"]));
+    assert!(of(&summary, "HEAT OUT OF RANGE").is_empty());
+    let sets = [
+        "time.end=1e-4",
+        "heat.bodies.floor.store.over=[(-0.5e-3, 1.5e-3)]",
+    ];
+    let summary = ran("outside", built("two_half_spaces", &sets));
+    let spaces = &summary.heat.as_ref().unwrap().half_spaces;
+    let shares: Vec<f64> = spaces.iter().map(|h| h.outside).collect();
+    assert!((shares[0] - 0.5).abs() < 1e-9 && shares[1] == 0.0);
+    let told = of(&summary, "HEAT OUT OF RANGE");
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("50 % for `floor`") && told[0].contains("`over`"));
+}
+
+/// Of the friction at the two corners of a block that conducts nothing, that of the rear one is beside the range.
+#[test]
+fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
+    let (loaded, built) = built(
+        "two_half_spaces",
+        &[
+            "interfaces.0.contact=\"coulomb\"",
+            "interfaces.0.parameters.contact={\"mu\": 0.5}",
+            "interfaces.0.parameters.transport={\"thermal\": 0.0, \"reach\": 1e-6}",
+            "bodies.1.dofs.x=Velocity(Constant(0.1))",
+            "heat.shares.impact=0.0",
+            "heat.bodies.floor.store.over=[(-0.5e-3, 1.5e-3)]",
+        ],
+    );
+    let mut s = built.simulation;
+    let mut observers = run_observers(&loaded, &s);
+    observers.begin(&mut s);
+    for _ in 0..100 {
+        let report = s.step().unwrap();
+        observers.after_step(&s, &report);
+    }
+    let table = Table::new(observers.columns());
+    let end = RunEnd {
+        simulation: &s,
+        table: &table,
+        title: "test",
+        uncertainty: &Uncertainty::default(),
+        wall: Duration::ZERO,
+    };
+    let mut summary = Summary::default();
+    observers.summarise(&end, &mut summary);
+    let floor = s.body_named("floor").unwrap() as u32;
+    let (mut beside, mut all) = (0.0, 0.0);
+    for contact in &s.state.network.contacts {
+        let side = usize::from(contact.bodies[1] == floor);
+        assert_eq!(contact.bodies[side], floor);
+        all += contact.friction_work;
+        if contact.arms[side].x < -0.5e-3 {
+            beside += contact.friction_work;
+        }
+    }
+    assert!(beside > 0.0 && beside < all);
+    let found = summary.heat.unwrap().half_spaces[0].outside;
+    assert!(
+        (found - beside / all).abs() < 1e-9,
+        "{found} {beside} {all}"
+    );
+}
+
+#[test]
+fn laws_that_count_time_of_the_mechanics_are_told_where_heat_has_a_clock() {
+    let check = |sets: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .args([
+                "check",
+                "cases/verification/thermal/cubic.ron",
+                "--no-timing",
+            ])
+            .args(sets.iter().flat_map(|s| ["--set", s]))
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        let told = text.lines().filter(|l| l.contains("MECHANICAL TIME"));
+        told.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let laws = [
+        "interfaces.0.transport=oxide-film",
+        "interfaces.0.wear=Some(\"oxidation\")",
+    ];
+    assert!(check(&[]).is_empty());
+    let told = check(&laws);
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter()
+            .any(|t| t.contains("transport law `oxide-film` of `steel`"))
+    );
+    assert!(
+        told.iter()
+            .any(|t| t.contains("wear law `oxidation` of `steel`"))
+    );
+    assert!(check(&[&laws[..], &["heat.clock=1.0"]].concat()).is_empty());
+}
