@@ -236,6 +236,7 @@ const RESERVED: [&str; 55] = [
     "correction",
     "scheme",
     "carried",
+    "expansion",
     "external_work",
     "initial_kinetic",
     "residual",

@@ -57,10 +57,10 @@ fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
     for (row, residual) in columns["residual"].iter().enumerate() {
         let at = |name: &str| columns[name][row];
         let held: f64 = STORED_AND_SPENT.iter().map(|name| at(name)).sum();
-        let sum = held - at("external_work") - at("initial_kinetic");
+        let sum = held - at("expansion") - at("external_work") - at("initial_kinetic");
         let all = STORED_AND_SPENT
             .iter()
-            .chain(&["external_work", "initial_kinetic"]);
+            .chain(&["expansion", "external_work", "initial_kinetic"]);
         let scale = all.map(|name| at(name).abs()).fold(0.0, f64::max);
         let off = (sum - residual).abs();
         assert!(
@@ -113,6 +113,16 @@ fn columns_add_up_where_grains_are_taken_out() {
         "verification/falling_debris",
         &[],
         &["carried", "fracture", "potential"],
+    );
+}
+
+#[test]
+fn columns_add_up_with_thermal_expansion() {
+    adds_up(
+        "expansion",
+        "verification/thermal/expanding_column",
+        &["time.end=0.3"],
+        &["expansion", "external_work"],
     );
 }
 

@@ -106,6 +106,7 @@ impl<S: Space> Simulation<S> {
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         let h = self.options.scheme.h;
+        let flash = heat.flash.is_some() && self.begun(heat);
         for contact in contacts {
             let pair = heat.pair(contact.bodies);
             let sides = self.heat_sides(heat, contact, &mut thermal.between);
@@ -118,7 +119,7 @@ impl<S: Space> Simulation<S> {
             };
             // Two half-spaces of these temperatures meet at this one.
             let mut mean = second + pair.share * (first - second);
-            if heat.flash.is_some() {
+            if flash {
                 mean += self.flash_rise(heat, contact, h);
             }
             thermal.temperature.push([mean, first, second]);
@@ -126,6 +127,11 @@ impl<S: Space> Simulation<S> {
             thermal.sides.push(sides);
         }
         self.state.network.thermal = Some(thermal);
+    }
+
+    /// Whether the heat has begun: a step belongs to where its middle is.
+    fn begun(&self, heat: &Heat) -> bool {
+        self.state.time + 0.5 * self.options.scheme.h >= heat.start
     }
 
     /// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the start of this one, both of thermal time; 0 where
@@ -181,8 +187,7 @@ impl<S: Space> Simulation<S> {
         let span = heat.clock * self.options.scheme.h;
         thermal.source.clear();
         thermal.source.resize(contacts.len(), 0.0);
-        // A step belongs to where its middle is.
-        if self.state.time + 0.5 * self.options.scheme.h < heat.start {
+        if !self.begun(heat) {
             return Ok(());
         }
         if let Some(dissipation) = &self.state.network.dissipation {

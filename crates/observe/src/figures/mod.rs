@@ -290,8 +290,9 @@ fn forces(title: &str, table: &Table, drives: &[Drive], newton: &'static str) ->
 
 /// Ledger entry: column, label, colour, and whether it is stored or supplied rather than dissipated.
 type Entry = (&'static str, &'static str, (u8, u8, u8), bool);
-const ENTRIES: [Entry; 13] = [
+const ENTRIES: [Entry; 14] = [
     ("external_work", "external work W", (28, 30, 34), false),
+    ("expansion", "thermal expansion", (110, 110, 30), false),
     ("friction", "friction E_d", (213, 94, 0), false),
     ("fracture", "fracture of bonds", (190, 30, 45), false),
     ("viscous", "damping", (204, 121, 167), false),

@@ -258,8 +258,12 @@ impl Summary {
             x if x < 0.0 => format!("; gravity gave {}", quantity(-x, unit)),
             x => format!("; gravity took {}", quantity(x, unit)),
         };
+        let expansion = match e.expansion {
+            x if !shown(x) => String::new(),
+            x => format!("; thermal expansion did {}", quantity(x, unit)),
+        };
         let text = format!(
-            "{}{gravity}; the ledger closes to {} of the largest energy",
+            "{}{gravity}{expansion}; the ledger closes to {} of the largest energy",
             quantity(e.external_work, unit),
             number(self.energy_residual_relative, 2)
         );

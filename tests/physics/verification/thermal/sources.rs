@@ -168,14 +168,22 @@ fn flash(table: &mut Table) {
             table.compare(case, &name, exact, seen[0] - mean, 1e-6);
         }
     }
-    let mut stuck = plane(case, &["heat.flash=1e9"]);
-    until(&mut stuck, 5e-4, |_| ());
-    let thermal = stuck.state.network.thermal.as_ref().expect("temperatures");
-    let off = thermal
-        .temperature
-        .iter()
-        .map(|[t, a, b]| (t - a.max(*b)).max(0.0));
-    table.compare(case, "no flash without sliding (K)", 0.0, off.sum(), 1e-12);
+    for (quantity, sets) in [
+        ("no flash without sliding (K)", vec!["heat.flash=1e9"]),
+        (
+            "no flash before the start of the heat (K)",
+            [&RUBBED[..], &["heat.flash=1e9", "heat.start=1.0"]].concat(),
+        ),
+    ] {
+        let mut cold = plane(case, &sets);
+        until(&mut cold, 5e-4, |_| ());
+        let thermal = cold.state.network.thermal.as_ref().expect("temperatures");
+        let off = thermal
+            .temperature
+            .iter()
+            .map(|[t, a, b]| (t - a.max(*b)).max(0.0));
+        table.compare(case, quantity, 0.0, off.sum(), 1e-12);
+    }
 }
 
 /// Nothing is put in and nothing flows before the heat starts.
