@@ -211,7 +211,7 @@ fn check_bodies(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationErro
 }
 
 /// Names of columns and figures that every run may have.
-const RESERVED: [&str; 55] = [
+const RESERVED: [&str; 56] = [
     "step",
     "time",
     "cycle",
