@@ -102,7 +102,10 @@ fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f6
     let grain = s.state.bodies.grain_flags();
     let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
     for (body, nodes) in heat.nodes.iter().enumerate() {
-        if removed[body] {
+        // All bodies of a mesh have its nodes.
+        let seen =
+            body > 0 && matches!(nodes, BodyNodes::Mesh(..)) && heat.nodes[body - 1] == *nodes;
+        if removed[body] || seen {
             continue;
         }
         for node in &state.nodes[nodes.range()] {

@@ -11,6 +11,8 @@ struct Rest<C, V> {
     offset: V,
     /// Radius of a ball; rounding, bound and size of a piece (m).
     lengths: [f64; 3],
+    /// Whether it is all of its body, whose length is then its radius.
+    whole: bool,
 }
 
 /// Bodies that keep their shape and change their size with their temperature: all lengths from the centre of the body are
@@ -31,17 +33,24 @@ pub struct Expansion<S: Space> {
 }
 
 impl<S: Space> Expansion<S> {
-    /// Of bodies with these coefficients (1/K), whose shapes are now those of the temperatures `reference` (K).
-    pub fn new(coefficient: Vec<f64>, reference: Vec<f64>, shapes: &Shapes<S>) -> Self {
+    /// Of bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of the temperatures `reference` (K).
+    pub fn new(
+        coefficient: Vec<f64>,
+        reference: Vec<f64>,
+        shapes: &Shapes<S>,
+        lengths: &[f64],
+    ) -> Self {
         let ball = shapes.balls.iter().map(|b| Rest {
             core: (),
             offset: b.offset,
             lengths: [b.radius, 0.0, 0.0],
+            whole: b.offset == S::Vector::zero() && lengths[b.body as usize] == b.radius,
         });
         let piece = shapes.pieces.iter().map(|p| Rest {
             core: p.core.clone(),
             offset: p.offset,
             lengths: [p.rounding, p.bound, p.size],
+            whole: false,
         });
         Self {
             balls: ball.collect(),
@@ -57,8 +66,9 @@ impl<S: Space> Expansion<S> {
         (1.0 + strain).max(0.1)
     }
 
-    /// Gives all shapes the sizes of the stretches of their bodies; returns the largest change of a distance from a centre (m).
-    pub fn show(&self, stretch: &[f64], shapes: &mut Shapes<S>) -> f64 {
+    /// Gives all shapes the sizes of the stretches of their bodies, and bodies of one ball its radius for their length; returns the largest change of a
+    /// distance from a centre (m).
+    pub fn show(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
         let mut most = 0.0f64;
         for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {
             let (body, before) = (ball.body as usize, ball.radius);
@@ -66,6 +76,9 @@ impl<S: Space> Expansion<S> {
                 continue;
             }
             ball.radius = rest.lengths[0] * stretch[body];
+            if rest.whole {
+                lengths[body] = ball.radius;
+            }
             let moved = rest.offset * stretch[body] - ball.offset;
             ball.offset += moved;
             most = most.max((ball.radius - before).abs() + moved.norm());

@@ -39,14 +39,21 @@ impl<S: Space> Simulation<S> {
         let reference: Vec<f64> = reference.collect();
         if let Some(heat) = &mut self.state.heat {
             heat.stretch = vec![1.0; coefficient.len()];
-            self.expansion = Some(Expansion::new(coefficient, reference, &self.shapes));
+            let lengths = &self.state.bodies.length;
+            self.expansion = Some(Expansion::new(
+                coefficient,
+                reference,
+                &self.shapes,
+                lengths,
+            ));
         }
     }
 
     /// Gives shapes the sizes of the state.
     pub(super) fn show_expansion(&mut self) {
         if let (Some(expansion), Some(heat)) = (&self.expansion, &self.state.heat) {
-            expansion.show(&heat.stretch, &mut self.shapes);
+            let lengths = &mut self.state.bodies.length;
+            expansion.show(&heat.stretch, &mut self.shapes, lengths);
         }
     }
 
@@ -169,7 +176,8 @@ impl<S: Space> Simulation<S> {
             return;
         }
         state.stretch.clone_from(stretch);
-        let grown = expansion.show(stretch, &mut self.shapes);
+        let lengths = &mut self.state.bodies.length;
+        let grown = expansion.show(stretch, &mut self.shapes, lengths);
         let network = &mut self.state.network;
         network.grown += grown;
         if network.grown > GROWTH * network.skin {

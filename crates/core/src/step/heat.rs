@@ -68,9 +68,12 @@ impl<S: Space> Simulation<S> {
         [0, 1].map(|side| {
             let body = contact.bodies[side] as usize;
             if let BodyNodes::Mesh(first, _) = heat.nodes[body] {
-                let Some(nodes) = self.nodes_of_side(contact, side) else {
+                let Some(carrier) = self.state.bodies.carrier(body) else {
                     return HeatSide::Insulated;
                 };
+                // The nearest place of the facet, whose shape functions are not negative; weights of a mean place may be.
+                let systems = &self.state.systems;
+                let nodes = systems.contact_nodes(carrier, &contact.arms[side]);
                 let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
                 let terms: Vec<(u32, f64)> = terms.collect();
                 return match (&terms[..], Nodes::sum(&terms)) {
@@ -264,7 +267,7 @@ impl<S: Space> Simulation<S> {
             }
             for (a, one) in thermal.terms(sides[0]) {
                 for (b, other) in thermal.terms(sides[1]) {
-                    // Shape functions are positive within a facet, but for rounding.
+                    // Each pair by itself, so that no conductance is negative; rounding may make a shape function so.
                     let weight = (one * other).max(0.0);
                     graph.edges.push(Edge {
                         nodes: [a as u32, b as u32],

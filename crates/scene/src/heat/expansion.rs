@@ -1,4 +1,4 @@
-//! Which bodies of a case expand with their temperature.
+//! Which grains of a case expand with their temperature.
 
 use super::Properties;
 use crate::case::Case;
@@ -7,7 +7,10 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::BodyNodes;
 use fretwork_core::step::Simulation;
 
-/// Has the bodies of a case expand that have one temperature and balls, polygons or polyhedra only.
+/// Largest coefficient of linear expansion (1/K): one hundred times that of a metal.
+const LARGEST: f64 = 1e-3;
+
+/// Has the rigid grains of a case expand. First bodies do not: what holds them would have to follow.
 pub(super) fn install<S: Space>(
     case: &Case,
     properties: &Properties,
@@ -20,8 +23,8 @@ pub(super) fn install<S: Space>(
         let one = s.heat().map(|h| &h.nodes[body as usize]);
         expands[body as usize] = matches!(one, Some(BodyNodes::One(_)));
     }
-    for surface in &s.shapes.surfaces {
-        expands[surface.body as usize] = false;
+    for driven in &s.state.bodies.driven {
+        expands[driven.body as usize] = false;
     }
     for (body, expands) in expands.iter_mut().enumerate() {
         *expands &= s.state.bodies.carrier(body).is_none();
@@ -34,9 +37,16 @@ pub(super) fn install<S: Space>(
             .any(|(e, m)| *e && usize::from(*m) == k);
         of_materials.push(match properties.get("expansion") {
             _ if !used => 0.0,
-            Some(found) => found
-                .in_unit("1/K")
-                .map_err(|e| e.at(format!("materials.{name}")))?,
+            Some(found) => {
+                let here = format!("materials.{name}");
+                let found = found.in_unit("1/K").map_err(|e| e.at(here.clone()))?;
+                if !(found.abs() <= LARGEST) {
+                    let message = format!("`expansion` of `{file}.ron` is {found:e} per kelvin");
+                    return Err(ValidationError::new(here, message)
+                        .expected(format!("at most {LARGEST:e} 1/K, as 1.2e-5 of steel")));
+                }
+                found
+            }
             None => {
                 let message = format!(
                     "`heat.expansion` needs the coefficient of linear expansion of `{name}`, and the file `{file}.ron` has no property `expansion`"
@@ -53,7 +63,7 @@ pub(super) fn install<S: Space>(
     });
     let coefficients: Vec<f64> = coefficients.collect();
     if coefficients.iter().all(|c| *c == 0.0) {
-        let message = "no body of the case expands: grains do, and first bodies of balls, polygons or polyhedra that have one temperature";
+        let message = "no body of the case expands: grains do that are rigid and of a material with an `expansion` above zero";
         return Err(ValidationError::new("heat.expansion", message));
     }
     s.set_expansion(coefficients);

@@ -48,7 +48,8 @@ impl Nodes {
                 let mass = system.mass() / scene.case.inertia_scaling;
                 match capacity {
                     Some(capacity) => Store::Lumped(*capacity),
-                    None if mass > 0.0 => {
+                    // The mass of a half-space is what moves with it, not that of a material.
+                    None if system.conduction().is_some() => {
                         Store::Lumped(mass * scene.materials[material].heat_capacity)
                     }
                     None => {
@@ -138,6 +139,17 @@ impl Nodes {
         for (name, temperature) in &spec.fixed {
             for (point, _) in part("fixed", name)? {
                 let node = &mut self.list[(first + point) as usize];
+                if node.store == Store::Fixed && node.temperature != *temperature {
+                    let message = format!(
+                        "a point of `{name}` is on another part too, and would be kept at {temperature} K and at {} K",
+                        node.temperature
+                    );
+                    return Err(
+                        ValidationError::new(format!("{here}.fixed.{name}"), message).expected(
+                            "one temperature for parts that meet, or parts that do not meet",
+                        ),
+                    );
+                }
                 *node = Node::new(*temperature, Store::Fixed);
             }
         }

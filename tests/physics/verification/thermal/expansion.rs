@@ -18,6 +18,8 @@ pub fn all(table: &mut Table) {
     bonded(table);
     wall(table);
     grain_on_elements(table);
+    two_meshes(table);
+    polygon(table);
 }
 
 fn height(s: &Simulation<Dim2>, body: &str) -> f64 {
@@ -222,4 +224,82 @@ fn grain_on_elements(table: &mut Table) {
     let into = heat(&s).received[0] - 0.5 * ledger.dissipated;
     table.compare(case, "heat into the block (J/m)", gained, into, 1e-4);
     table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
+}
+
+/// Two blocks whose meshes do not match: through their contacts flows what the law says, between the temperatures of the two.
+fn two_meshes(table: &mut Table) {
+    let case = "elastic/patch";
+    let sets = [
+        "materials.steel=verification_steel",
+        "interfaces.0.transport=constant-conductance",
+        "interfaces.0.parameters.transport={\"thermal\": 1e-3, \"reach\": 1e-5}",
+        "heat=(initial: 300.0, shares: (friction: 0.0, impact: 0.0, viscous: 0.0, adhesion: 0.0), bodies: {\"lower\": (store: Mesh()), \"upper\": (store: Mesh(), temperature: 400.0)})",
+    ];
+    let mut s = plane(case, &sets);
+    until(&mut s, 8e-4, |_| ());
+    let before = heat(&s).received[0];
+    s.step().expect("a step");
+    let flow = (heat(&s).received[0] - before) / s.options.scheme.h;
+    let thermal = s.state.network.thermal.as_ref().expect("contacts");
+    let all: f64 = thermal.conductance.iter().map(|c| c[0]).sum();
+    assert!(all > 5e-3, "{all}");
+    let quantity = "flow between two meshes, n G dT (W/m)";
+    table.compare(case, quantity, 100.0 * all, flow, 1e-5);
+    let range = |t: &&[f64; 3]| t.iter().all(|t| (300.0..=400.0).contains(t));
+    let inside = thermal.temperature.iter().filter(range).count();
+    assert_eq!(inside, thermal.temperature.len());
+}
+
+/// A square between a floor and a load, which friction holds: its corners slide outwards by alpha dT a, with half of the load on each.
+fn polygon(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let sets = [
+        "grains=[Polygons(material: \"steel\", grains: [(at: [0.0, 1e-3], points: [(-1e-3, -1e-3), (1e-3, -1e-3), (1e-3, 1e-3), (-1e-3, 1e-3)])])]",
+        "interfaces.0.contact=coulomb",
+        "interfaces.0.parameters=(contact: {\"mu\": 0.3})",
+        "bodies.load.position=[0.0, 2e-3]",
+    ];
+    let mut s = plane(case, &sets);
+    until(&mut s, 4.0, |_| ());
+    let half = 1e-3;
+    let rise = height(&s, "load") - 2.0 * half;
+    table.compare(
+        case,
+        "a square: rise alpha dT 2 a (m)",
+        ALPHA * RISE * 2.0 * half,
+        rise,
+        1e-4,
+    );
+    let energy = s.energies();
+    let friction = 4.0 * 0.3 * 500.0 * ALPHA * RISE * half;
+    table.compare(
+        case,
+        "a square: friction at its corners (J/m)",
+        friction,
+        energy.friction,
+        2e-3,
+    );
+    let work = 1e3 * rise + energy.friction;
+    table.compare(
+        case,
+        "a square: work of the expansion (J/m)",
+        work,
+        energy.expansion,
+        2e-3,
+    );
+    table.compare(
+        case,
+        "a square: energy closes",
+        0.0,
+        energy.relative_residual(),
+        1e-10,
+    );
+    let ledger = heat(&s).ledger;
+    table.compare(
+        case,
+        "a square: heat closes",
+        0.0,
+        ledger.relative_residual(),
+        1e-10,
+    );
 }
