@@ -101,11 +101,13 @@ fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f6
     let removed = &s.state.bodies.removed;
     let grain = s.state.bodies.grain_flags();
     let (mut highest, mut sum, mut capacities) = (0.0f64, 0.0, 0.0);
+    // Meshes are seen once, with the first bodies, not with each body that touches for them.
+    for (_, nodes) in &heat.first_bodies {
+        let temperatures = state.nodes[nodes.clone()].iter().map(|n| n.temperature);
+        highest = temperatures.fold(highest, f64::max);
+    }
     for (body, nodes) in heat.nodes.iter().enumerate() {
-        // All bodies of a mesh have its nodes.
-        let seen =
-            body > 0 && matches!(nodes, BodyNodes::Mesh(..)) && heat.nodes[body - 1] == *nodes;
-        if removed[body] || seen {
+        if removed[body] || matches!(nodes, BodyNodes::Mesh(..)) {
             continue;
         }
         for node in &state.nodes[nodes.range()] {
