@@ -40,7 +40,7 @@ pub(super) fn install<S: Space>(
             Some(found) => {
                 let here = format!("materials.{name}");
                 let found = found.in_unit("1/K").map_err(|e| e.at(here.clone()))?;
-                if !(found.abs() <= LARGEST) {
+                if found.is_nan() || found.abs() > LARGEST {
                     let message = format!("`expansion` of `{file}.ron` is {found:e} per kelvin");
                     return Err(ValidationError::new(here, message)
                         .expected(format!("at most {LARGEST:e} 1/K, as 1.2e-5 of steel")));
