@@ -38,8 +38,7 @@ pub fn step(
     h: f64,
     theta: f64,
 ) -> Result<Balance, DiffusionError> {
-    check(nodes, graph, sources, h, theta)?;
-    solve(nodes, graph, sources, h, theta)
+    step_with_columns(nodes, (graph, &[]), sources, h, theta)
 }
 
 /// As [`step`], with flow between the half-spaces of neighbouring pieces of surfaces: after all else for theta = 1, half of it before

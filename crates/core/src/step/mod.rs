@@ -13,7 +13,7 @@
 //!       │                                        ▼
 //!       │                         laws: commit (damage, broken, wear, dissipation)
 //!       │                                        ▼
-//!       │                         heat and current, where the case has them
+//!       │                         heat, current and work of expansion, where the case has them
 //!       │                                        ▼
 //!       │                         energy ledger
 //!       │                                        ▼
