@@ -1,7 +1,7 @@
 //! The shipped material files, compiled into the program for use when they are not found beside a case.
 
 /// Names and texts of `materials/*.ron`.
-pub const FILES: [(&str, &str); 16] = [
+pub const FILES: [(&str, &str); 17] = [
     (
         "benchmark_grain",
         include_str!("../../../materials/benchmark_grain.ron"),
@@ -19,6 +19,7 @@ pub const FILES: [(&str, &str); 16] = [
         "glass_bead",
         include_str!("../../../materials/glass_bead.ron"),
     ),
+    ("granite", include_str!("../../../materials/granite.ron")),
     (
         "magnetite",
         include_str!("../../../materials/magnetite.ron"),
