@@ -12,6 +12,7 @@
 //! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
 mod conduction;
+mod expansion;
 mod results;
 mod turning;
 
@@ -23,6 +24,7 @@ use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
+use expansion::FreeStrain;
 use fretwork_core::bodies::{
     Compliance, Conduction, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder,
     Nodes, SystemSize, SystemStep, SystemWork, TouchingSurface, compliance_by_solving,
@@ -49,6 +51,8 @@ pub struct ElasticBody<S: Space> {
     moves: u32,
     /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
     jump: f64,
+    /// Of thermal expansion.
+    pub(crate) free_strain: FreeStrain,
     /// Impulse of contacts on the coordinates in the step (N s).
     pub(crate) contact: Vec<f64>,
     /// Iterations of the step; unused in small strain.
@@ -117,6 +121,7 @@ impl<S: Deformable> ElasticBody<S> {
             elastic_at_start: vec![0.0; total],
             moves: 0,
             jump: 0.0,
+            free_strain: FreeStrain::default(),
             contact: vec![0.0; total],
             iterate: Iterate::default(),
             step: None,
@@ -217,6 +222,19 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         }
     }
 
+    fn set_free_strain(&mut self, of_points: &[f64]) {
+        self.take_free_strain(of_points);
+        self.iterate.moved();
+    }
+
+    fn expands(&self) -> bool {
+        true
+    }
+
+    fn expansion_work(&self) -> &[f64] {
+        &self.free_strain.work
+    }
+
     fn linearise(&mut self, step: &SystemStep<S>) {
         if self.model.large.is_some() {
             self.begin_iterations(step);
@@ -266,7 +284,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let mut impulse: Vec<f64> = (0..free)
             .map(|c| {
                 let gravity = step.gravity[usize::from(model.freedoms.axis[c])];
-                h * (model.mass[c] * gravity - elastic[c])
+                h * (model.mass[c] * gravity - elastic[c] + self.free_strain.force(c))
             })
             .collect();
         for (p, f) in impulse.iter_mut().zip(model.viscous(&average)) {
@@ -300,7 +318,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let (viscous, scheme) = match &model.large {
             Some(large) => {
                 let [elastic, viscous] = self.internal_of_step(large, step, &average);
-                let stored = self.stored_energy() - large.energy(&self.start[0]);
+                let free = &self.free_strain.of_elements;
+                let stored = self.stored_energy() - large.energy(&self.start[0], free);
                 (viscous, h * dot(&elastic, &average) - stored)
             }
             None => {
@@ -323,6 +342,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
             },
             scheme,
             external: self.jump,
+            expansion: self.free_strain.work.iter().sum(),
             ..SystemWork::default()
         };
         for (c, m) in model.mass.iter().enumerate() {
@@ -348,7 +368,10 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
 
     fn stored_energy(&self) -> f64 {
         if let Some(large) = &self.model.large {
-            return large.energy(&self.displacement);
+            return large.energy(&self.displacement, &self.free_strain.of_elements);
+        }
+        if !self.free_strain.of_elements.is_empty() {
+            return self.stored_with_free_strain();
         }
         let strained = self.model.strained(&self.displacement);
         let pairs = strained.iter().zip(self.elastic());
@@ -516,14 +539,16 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
     }
 
     fn save(&self) -> Vec<u8> {
-        postcard::to_stdvec(&(&self.displacement, &self.velocity)).unwrap_or_default()
+        let free = &self.free_strain.of_elements;
+        postcard::to_stdvec(&(&self.displacement, &self.velocity, free)).unwrap_or_default()
     }
 
     fn restore(&mut self, saved: &[u8]) -> bool {
-        let read: Result<(Vec<f64>, Vec<f64>), _> = postcard::from_bytes(saved);
+        let read: Result<(Vec<f64>, Vec<f64>, Vec<f64>), _> = postcard::from_bytes(saved);
         let total = self.model.freedoms.total();
         match read {
-            Ok((q, v)) if q.len() == total && v.len() == total => {
+            Ok((q, v, free)) if q.len() == total && v.len() == total => {
+                self.restore_free_strain(free);
                 self.start = [q.clone(), v.clone()];
                 self.elastic.take();
                 self.moves = 0;

@@ -1,6 +1,6 @@
 //! The linear simplex: a triangle in two dimensions, a tetrahedron in three, of constant strain.
 
-use crate::material::Elasticity;
+use crate::material::{Elasticity, Symmetric};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::Matrix3;
 
@@ -15,10 +15,6 @@ pub struct Simplex<S: Space> {
     /// Gradients of the shape functions (1/m), of which the first D + 1 count.
     pub gradients: [S::Vector; CORNERS],
 }
-
-/// Strain or stress by its components: xx, yy, zz, yz, xz, xy; shear strains are those of the tensor, half of the engineering
-/// ones.
-pub type Symmetric = [f64; 6];
 
 impl<S: Space> Simplex<S> {
     /// Of its corners (m); `None` where it has no volume at all.
@@ -62,8 +58,8 @@ impl<S: Space> Simplex<S> {
             + S::Matrix::dyad(&(*gb * (self.volume * shear)), ga)
     }
 
-    /// Stress (Pa) at displacements of the corners (m); in plane strain with that along the depth.
-    pub fn stress(&self, material: &Elasticity, displacements: &[S::Vector]) -> Symmetric {
+    /// Strain at displacements of the corners (m).
+    pub fn strain(&self, displacements: &[S::Vector]) -> Symmetric {
         let mut gradient = Matrix3::<f64>::zeros();
         for (g, u) in self.gradients().iter().zip(displacements) {
             for i in 0..S::D {
@@ -72,13 +68,13 @@ impl<S: Space> Simplex<S> {
                 }
             }
         }
-        let (lambda, shear) = (material.lambda(), material.shear());
-        let pressure = lambda * gradient.trace();
-        let at = |i: usize, j: usize| {
-            let own = if i == j { pressure } else { 0.0 };
-            own + shear * (gradient[(i, j)] + gradient[(j, i)])
-        };
+        let at = |i: usize, j: usize| 0.5 * (gradient[(i, j)] + gradient[(j, i)]);
         [at(0, 0), at(1, 1), at(2, 2), at(1, 2), at(0, 2), at(0, 1)]
+    }
+
+    /// Stress (Pa) at displacements of the corners (m); in plane strain with that along the depth.
+    pub fn stress(&self, material: &Elasticity, displacements: &[S::Vector]) -> Symmetric {
+        material.stress(&self.strain(displacements))
     }
 }
 

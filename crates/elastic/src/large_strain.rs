@@ -20,9 +20,9 @@
 //! Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd edition (2008), chapters 8 and 9; for tangents that are not
 //! positive J. Teran, E. Sifakis, G. Irving and R. Fedkiw, "Robust quasistatic finite elements and flesh simulation" (2005).
 
-use crate::element::{CORNERS, Simplex, Symmetric};
+use crate::element::{CORNERS, Simplex};
 use crate::freedom::Freedoms;
-use crate::material::Elasticity;
+use crate::material::{Elasticity, Symmetric};
 use crate::matrix::{Pattern, Sparse};
 use crate::mesh::{Mesh, place};
 use crate::strain::{Response, Strain};
@@ -41,6 +41,8 @@ pub struct Stretch<'a> {
     pub h: f64,
     /// Theta.
     pub theta: f64,
+    /// Free strain of each element; empty without expansion.
+    pub free_strain: &'a [f64],
 }
 
 /// Internal forces of a step on each coordinate (N; N/m in 2D).
@@ -151,7 +153,8 @@ impl<S: Space> LargeStrain<S> {
         let [from, to] = [step.start, step.end].map(|q| self.gradient(e, q));
         let (c, d) = (less_one(&from), less_one(&to));
         let blend = |a: &Matrix3<f64>, b: &Matrix3<f64>| a * (1.0 - step.theta) + b * step.theta;
-        let response = Response::new(self.strain, &self.material, &blend(&c, &d))?;
+        let free = step.free_strain.get(e).copied().unwrap_or(0.0);
+        let response = Response::new(self.strain, &self.material, &blend(&c, &d), free)?;
         let mut viscous = Matrix3::zeros();
         if self.damping > 0.0 {
             viscous = self.hooke(&((d - c) * (0.5 * self.damping / step.h)));
@@ -265,21 +268,27 @@ impl<S: Space> LargeStrain<S> {
         out
     }
 
-    /// Energy stored at coordinates (J; J/m in 2D).
-    pub fn energy(&self, q: &[f64]) -> f64 {
-        let one = |(e, simplex): (usize, &Simplex<S>)| {
-            let c = less_one(&self.gradient(e, q));
-            let response = Response::new(self.strain, &self.material, &c);
-            response.map_or(0.0, |r| r.energy() * simplex.volume)
-        };
-        self.simplices.iter().enumerate().map(one).sum()
+    /// Energy stored at coordinates with free strains of the elements, or none (J; J/m in 2D).
+    pub fn energy(&self, q: &[f64], free_strain: &[f64]) -> f64 {
+        let free = |e: usize| free_strain.get(e).copied().unwrap_or(0.0);
+        (0..self.simplices.len())
+            .map(|e| self.energy_of(e, q, free(e)))
+            .sum()
+    }
+
+    /// Energy stored in an element (J; J/m in 2D).
+    pub fn energy_of(&self, e: usize, q: &[f64], free_strain: f64) -> f64 {
+        let c = less_one(&self.gradient(e, q));
+        let response = Response::new(self.strain, &self.material, &c, free_strain);
+        response.map_or(0.0, |r| r.energy() * self.simplices[e].volume)
     }
 
     /// Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain with that along the depth.
-    pub fn stresses(&self, q: &[f64]) -> Vec<Symmetric> {
+    pub fn stresses(&self, q: &[f64], free_strain: &[f64]) -> Vec<Symmetric> {
         let one = |e: usize| {
             let h = self.gradient(e, q);
-            let response = Response::new(self.strain, &self.material, &less_one(&h));
+            let free = free_strain.get(e).copied().unwrap_or(0.0);
+            let response = Response::new(self.strain, &self.material, &less_one(&h), free);
             let f = Matrix3::identity() + h;
             let s = response.map_or_else(Matrix3::zeros, |r| r.stress());
             let s = f * s * f.transpose() / f.determinant();

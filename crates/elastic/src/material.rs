@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Strain or stress by its components: xx, yy, zz, yz, xz, xy; shear strains are those of the tensor, half of the engineering
+/// ones.
+pub type Symmetric = [f64; 6];
+
 /// A homogeneous isotropic linear elastic material. In two dimensions the strain is plane.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -58,6 +62,34 @@ impl Elasticity {
     /// Shear modulus G = E/(2 (1 + nu)) (Pa).
     pub fn shear(&self) -> f64 {
         0.5 * self.young / (1.0 + self.poisson)
+    }
+
+    /// Three times the bulk modulus, 3 lambda + 2 G (Pa): the pressure of a free strain that is held, over that strain.
+    pub fn thermal_modulus(&self) -> f64 {
+        3.0 * self.lambda() + 2.0 * self.shear()
+    }
+
+    /// Stress of a strain (Pa), lambda tr(epsilon) 1 + 2 G epsilon.
+    pub fn stress(&self, strain: &Symmetric) -> Symmetric {
+        let pressure = self.lambda() * (strain[0] + strain[1] + strain[2]);
+        let mut stress = strain.map(|e| 2.0 * self.shear() * e);
+        stress[..3].iter_mut().for_each(|s| *s += pressure);
+        stress
+    }
+
+    /// Energy of a strain per volume (Pa), sigma : epsilon/2.
+    pub fn energy(&self, strain: &Symmetric) -> f64 {
+        let stress = self.stress(strain);
+        let mut each = stress.iter().zip(strain).map(|(s, e)| s * e);
+        let normal: f64 = each.by_ref().take(3).sum();
+        0.5 * normal + each.sum::<f64>()
+    }
+
+    /// A strain less a free strain along each axis.
+    pub fn less(strain: &Symmetric, free: f64) -> Symmetric {
+        let mut out = *strain;
+        out[..3].iter_mut().for_each(|e| *e -= free);
+        out
     }
 
     /// E/(1 - nu^2) (Pa): two bodies in contact have 1/E* as the sum of the inverses of theirs.

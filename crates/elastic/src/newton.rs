@@ -76,6 +76,7 @@ impl<S: Deformable> ElasticBody<S> {
             end: &end,
             h: step.h,
             theta: step.theta,
+            free_strain: &self.free_strain.of_elements,
         })
     }
 
@@ -144,6 +145,7 @@ impl<S: Deformable> ElasticBody<S> {
             end: &end,
             h,
             theta,
+            free_strain: &self.free_strain.of_elements,
         };
         let inertia = 1.0 + h * theta * model.damping.mass;
         let free = model.freedoms.free;

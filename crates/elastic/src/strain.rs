@@ -29,8 +29,18 @@ impl Strain {
 }
 
 /// An element at a strain C - 1: its energy, stress and tangent.
+///
+/// Where it expands freely by lambda = 1 + e its energy is lambda^3 W(C/lambda^2), that of F/lambda per volume before the expansion (M. E. Gurtin, E. Fried, L.
+/// Anand, "The Mechanics and Thermodynamics of Continua" (2010), section 60).
 #[derive(Clone, Copy, Debug)]
-pub enum Response {
+pub struct Response {
+    kind: Kind,
+    /// lambda.
+    stretch: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
     /// See [`Corotational`].
     Corotational(Corotational),
     /// See [`NeoHookean`].
@@ -38,39 +48,52 @@ pub enum Response {
 }
 
 impl Response {
-    /// At C - 1; `None` for small strain, which does not depend on C.
-    pub fn new(strain: Strain, material: &Elasticity, c_less_one: &Matrix3<f64>) -> Option<Self> {
-        match strain {
-            Strain::Small => None,
-            Strain::Corotational => {
-                Some(Self::Corotational(Corotational::new(material, c_less_one)))
-            }
-            Strain::NeoHookean => Some(Self::NeoHookean(NeoHookean::new(material, c_less_one))),
-        }
+    /// At C - 1 with a free strain e; `None` for small strain, which does not depend on C.
+    pub fn new(
+        strain: Strain,
+        material: &Elasticity,
+        c_less_one: &Matrix3<f64>,
+        free_strain: f64,
+    ) -> Option<Self> {
+        // lambda^2 - 1, without the rounding of 1.
+        let grown = free_strain * (2.0 + free_strain);
+        let c = (c_less_one - Matrix3::identity() * grown) / (1.0 + grown);
+        let kind = match strain {
+            Strain::Small => return None,
+            Strain::Corotational => Kind::Corotational(Corotational::new(material, &c)),
+            Strain::NeoHookean => Kind::NeoHookean(NeoHookean::new(material, &c)),
+        };
+        Some(Self {
+            kind,
+            stretch: 1.0 + free_strain,
+        })
     }
 
     /// Energy per volume without load, W (Pa).
     pub fn energy(&self) -> f64 {
-        match self {
-            Self::Corotational(at) => at.energy(),
-            Self::NeoHookean(at) => at.energy(),
-        }
+        let energy = match &self.kind {
+            Kind::Corotational(at) => at.energy(),
+            Kind::NeoHookean(at) => at.energy(),
+        };
+        self.stretch.powi(3) * energy
     }
 
     /// The second Piola-Kirchhoff stress, S = 2 dW/dC (Pa).
     pub fn stress(&self) -> Matrix3<f64> {
-        match self {
-            Self::Corotational(at) => at.stress(),
-            Self::NeoHookean(at) => at.stress(),
-        }
+        let stress = match &self.kind {
+            Kind::Corotational(at) => at.stress(),
+            Kind::NeoHookean(at) => at.stress(),
+        };
+        stress * self.stretch
     }
 
     /// The change of S (Pa) by a change of C.
     pub fn change(&self, dc: &Matrix3<f64>) -> Matrix3<f64> {
-        match self {
-            Self::Corotational(at) => at.change(dc),
-            Self::NeoHookean(at) => at.change(dc),
-        }
+        let change = match &self.kind {
+            Kind::Corotational(at) => at.change(dc),
+            Kind::NeoHookean(at) => at.change(dc),
+        };
+        change / self.stretch
     }
 }
 

@@ -30,6 +30,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
     out.extend(sideways(case, heat));
+    out.extend(expanding(s, heat));
     let closed = s.laws.iter().filter(|l| l.transport().is_none());
     let closed: Vec<&str> = closed.map(|l| l.name.as_str()).collect();
     if !closed.is_empty() {
@@ -79,6 +80,30 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
         "{grains} grains of one temperature each; {}",
         bodies.join(", ")
     ))
+}
+
+/// Which bodies expand with their temperature, and which first bodies do not.
+fn expanding<S: Space>(s: &Simulation<S>, heat: &Heat) -> Option<CheckLine> {
+    let expansion = s.expansion()?;
+    let bodies = &s.state.bodies;
+    let expands = |body: usize| expansion.coefficient[body] != 0.0;
+    let grains = bodies.grains().filter(|g| expands(*g)).count();
+    let driven = bodies.driven.iter();
+    let rigid = driven.filter(|d| expands(d.body as usize));
+    let mut named: Vec<&str> = rigid.map(|d| d.name.as_str()).collect();
+    let systems = expansion.systems.iter();
+    named.extend(systems.filter_map(|e| Some(s.state.systems.get(e.system)?.name())));
+    let firsts = heat.first_bodies.iter().map(|(name, _)| name.as_str());
+    let others: Vec<&str> = firsts.filter(|name| !named.contains(name)).collect();
+    let mut text = format!("{grains} grains");
+    for name in &named {
+        text += &format!(", {name}");
+    }
+    text += " change their size with their temperature";
+    if !others.is_empty() {
+        text += &format!("; {} keep theirs", others.join(", "));
+    }
+    Some(("expansion".to_owned(), text))
 }
 
 /// What a step does between the pieces of a surface.

@@ -55,6 +55,8 @@ pub struct SystemWork {
     /// are not linear the second part is the work against the force that the step was taken with, h f . v_theta, less the change
     /// of the stored energy: negative where the scheme adds energy.
     pub scheme: f64,
+    /// Of thermal expansion: what the stored energy gained when the free strain of the step was set.
+    pub expansion: f64,
 }
 
 /// What holds a part of a system along an axis.
@@ -149,6 +151,20 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Begins a step at the current state, which it remembers as its start. A linear system forms A here where h or theta have
     /// changed.
     fn begin_step(&mut self, step: &SystemStep<S>);
+
+    /// Takes the strain that each point of its mesh has without stress, or one of all points, by the thermal expansion of the step; before
+    /// [`Self::begin_step`]. Here nothing: it does not expand.
+    fn set_free_strain(&mut self, _of_points: &[f64]) {}
+
+    /// Work of the expansion at each point of its mesh in the step (J; J/m in 2D), which sums to [`SystemWork::expansion`]; none where it does not expand.
+    fn expansion_work(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Whether [`Self::set_free_strain`] makes it expand.
+    fn expands(&self) -> bool {
+        false
+    }
 
     /// Forms A and what [`Self::compliance`] gives for the step, where they depend on the state: a body in large strain
     /// takes its tangent and factorises, one in a floating frame turns its blocks. Called once a step, at q_m, before all that

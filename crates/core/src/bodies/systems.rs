@@ -215,6 +215,11 @@ impl<S: Space> Systems<S> {
         }
     }
 
+    /// Sets free strains of a system, see [`DynamicalSystem::set_free_strain`].
+    pub fn set_free_strain(&mut self, system: usize, of_points: &[f64]) {
+        self.entries[system].system.set_free_strain(of_points);
+    }
+
     /// Begins a step with all systems.
     pub fn begin_step(&mut self, step: &SystemStep<S>) {
         for entry in &mut self.entries {
@@ -419,6 +424,7 @@ impl<S: Space> Systems<S> {
             sum.external += work.external;
             sum.damping += work.damping;
             sum.scheme += work.scheme;
+            sum.expansion += work.expansion;
         }
         sum
     }

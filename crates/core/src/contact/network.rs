@@ -34,6 +34,12 @@ impl Key {
         (self.candidate & Self::PIECE == 0).then_some(self.candidate as usize)
     }
 
+    /// Returns the index of the antagonist if it is a ball.
+    pub fn antagonist_ball(&self) -> Option<usize> {
+        let other = Self::SURFACE | Self::PIECE;
+        (self.antagonist & other == 0).then_some(self.antagonist as usize)
+    }
+
     /// Returns the index of the antagonist if it is a surface.
     pub fn surface(&self) -> Option<usize> {
         (self.antagonist & Self::SURFACE != 0)

@@ -1,8 +1,9 @@
-//! Thermal expansion of bodies that have one temperature.
+//! Thermal expansion of rigid bodies, which have one temperature, and of bodies of finite elements.
 
 use crate::geometry::convex::Core;
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
+use std::ops::Range;
 
 /// A ball or a piece as the case gives it.
 #[derive(Clone, Debug)]
@@ -13,6 +14,19 @@ struct Rest<C, V> {
     lengths: [f64; 3],
     /// Whether it is all of its body, whose length is then its radius.
     whole: bool,
+}
+
+/// A body of finite elements that expands: its points have the free strain alpha (T - T_0).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpandingSystem {
+    /// Its index among the dynamical systems.
+    pub system: usize,
+    /// Its nodes of heat: one, or one for each point of its mesh.
+    pub nodes: Range<usize>,
+    /// Coefficient of linear expansion alpha (1/K).
+    pub coefficient: f64,
+    /// Temperature T_0 at which it is without free strain (K).
+    pub reference: f64,
 }
 
 /// Bodies that keep their shape and change their size with their temperature: all lengths from the centre of the body are
@@ -28,15 +42,19 @@ pub struct Expansion<S: Space> {
     pub coefficient: Vec<f64>,
     /// Temperature T_0 at which each has the size of the case (K).
     pub reference: Vec<f64>,
+    /// Bodies of finite elements that expand.
+    pub systems: Vec<ExpandingSystem>,
     balls: Vec<Rest<(), S::Vector>>,
     pieces: Vec<Rest<S::Core, S::Vector>>,
 }
 
 impl<S: Space> Expansion<S> {
-    /// Of bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of the temperatures `reference` (K).
+    /// Of rigid bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of the temperatures `reference` (K), and of
+    /// systems.
     pub fn new(
         coefficient: Vec<f64>,
         reference: Vec<f64>,
+        systems: Vec<ExpandingSystem>,
         shapes: &Shapes<S>,
         lengths: &[f64],
     ) -> Self {
@@ -57,7 +75,13 @@ impl<S: Space> Expansion<S> {
             pieces: piece.collect(),
             coefficient,
             reference,
+            systems,
         }
+    }
+
+    /// Displacement of a ball from the centre of its body in the axes of that (m), as the case gives it.
+    pub fn offset(&self, ball: usize) -> S::Vector {
+        self.balls[ball].offset
     }
 
     /// Lambda of a body at a temperature (K). It stays above zero.

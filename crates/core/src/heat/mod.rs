@@ -20,7 +20,7 @@ pub mod pieces;
 pub mod state;
 
 pub use circuit::{Circuit, CircuitState, Supply};
-pub use expansion::Expansion;
+pub use expansion::{ExpandingSystem, Expansion};
 pub use fretwork_diffusion::{
     Columns, Conductor, DiffusionError, Edge, Grid, HalfSpace, Node, Store,
 };

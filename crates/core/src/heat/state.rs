@@ -22,6 +22,8 @@ pub struct HeatState {
     pub received: Vec<f64>,
     /// Size of each body over that of the case; empty where none expands.
     pub stretch: Vec<f64>,
+    /// Temperature of each node that its body has expanded to (K); empty where no body of finite elements expands.
+    pub expanded: Vec<f64>,
     /// The circuit in the last step, where there is one.
     pub circuit: CircuitState,
 }
@@ -35,5 +37,17 @@ impl HeatState {
             received: vec![0.0; first_bodies],
             ..Self::default()
         }
+    }
+
+    /// In how many steps of the mechanics, this one included, bodies come to the size of their temperature.
+    pub(crate) fn parts(&self, every: u64) -> f64 {
+        every.saturating_sub(self.pending_steps).max(1) as f64
+    }
+
+    /// Takes work of expansion (J) from the heat of a node.
+    pub(crate) fn pay_for_expansion(&mut self, node: usize, work: f64) {
+        self.pending[node] -= work;
+        self.ledger.pending -= work;
+        self.ledger.expansion += work;
     }
 }

@@ -10,11 +10,14 @@
 //! Laws see u_surface. The solver, which knows bodies, gets w with what else is added to its velocities: s becomes s + w, and the impulse of a
 //! bond -(a + B u) becomes -(a + B w + B u). Contacts then work on bodies by sum p.u_bodies and take sum p.u_surface: the difference, -sum p.w,
 //! is the work that the expansion does. It is an entry of the ledger of energy, and is taken from the heat of the body that expands.
+//!
+//! A body of finite elements takes the free strain of its temperatures at the start of the step; what its stored energy gains by that is the
+//! work of its expansion.
 
 use super::Simulation;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
-use crate::heat::expansion::Expansion;
+use crate::heat::{ExpandingSystem, Expansion};
 use crate::solve::ContactForm;
 
 /// Share of the skin of the neighbour list by which bodies may grow before the list is built again.
@@ -27,26 +30,39 @@ pub(super) struct Expanding {
     stretch: Vec<f64>,
     /// Rate of strain of each body (1/s).
     rate: Vec<f64>,
-    /// Work of the step (J).
+    /// Work of rigid bodies in the step (J).
     pub work: f64,
 }
 
 impl<S: Space> Simulation<S> {
-    /// Has bodies expand from here on, by coefficients of linear expansion (1/K) of each, from the temperatures that they have now. Heat is set before.
-    pub fn set_expansion(&mut self, coefficient: Vec<f64>) {
+    /// Has rigid bodies expand from here on, by coefficients of linear expansion (1/K) of each, from the temperatures that they have now, and
+    /// bodies of finite elements. Heat is set before.
+    pub fn set_expansion(&mut self, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>) {
         let all = 0..self.state.bodies.len();
         let reference = all.map(|b| self.temperature(b).unwrap_or_default());
         let reference: Vec<f64> = reference.collect();
         if let Some(heat) = &mut self.state.heat {
             heat.stretch = vec![1.0; coefficient.len()];
+            if !systems.is_empty() {
+                heat.expanded = heat.nodes.iter().map(|n| n.temperature).collect();
+                for system in &systems {
+                    heat.expanded[system.nodes.clone()].fill(system.reference);
+                }
+            }
             let lengths = &self.state.bodies.length;
             self.expansion = Some(Expansion::new(
                 coefficient,
                 reference,
+                systems,
                 &self.shapes,
                 lengths,
             ));
         }
+    }
+
+    /// Thermal expansion, where bodies expand.
+    pub fn expansion(&self) -> Option<&Expansion<S>> {
+        self.expansion.as_ref()
     }
 
     /// Gives shapes the sizes of the state.
@@ -57,7 +73,29 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Finds by how much bodies expand in the step: to the size of their temperature at its start, or where heat makes one step for several of the
+    /// Gives bodies of finite elements the free strain of the step: that of their temperatures at its start, or where heat makes one step for several
+    /// of the mechanics the same part of the way there in each of them.
+    pub(super) fn strain_systems(&mut self) {
+        let Some(heat) = self.heat.as_ref().filter(|heat| self.begun(heat)) else {
+            return;
+        };
+        let (Some(expansion), Some(state)) = (&self.expansion, &mut self.state.heat) else {
+            return;
+        };
+        let parts = state.parts(heat.every);
+        for system in &expansion.systems {
+            let strain = system.nodes.clone().map(|node| {
+                let expanded = &mut state.expanded[node];
+                *expanded += (state.nodes[node].temperature - *expanded) / parts;
+                system.coefficient * (*expanded - system.reference)
+            });
+            let strain: Vec<f64> = strain.collect();
+            let systems = &mut self.state.systems;
+            systems.set_free_strain(system.system, &strain);
+        }
+    }
+
+    /// Finds by how much rigid bodies expand in the step: to the size of their temperature at its start, or where heat makes one step for several of the
     /// mechanics by the same part in each of them.
     pub(super) fn begin_expansion(&mut self) {
         let (Some(expansion), Some(heat), Some(state)) =
@@ -66,7 +104,7 @@ impl<S: Space> Simulation<S> {
             return;
         };
         let expanding = &mut self.workspace.expanding;
-        let parts = heat.every.saturating_sub(state.pending_steps).max(1) as f64;
+        let parts = state.parts(heat.every);
         let h = self.options.scheme.h;
         expanding.stretch.clone_from(&state.stretch);
         expanding.rate.clear();
@@ -85,43 +123,53 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// The velocities of the surfaces of a contact on their bodies (m/s): at a contact of balls along its normal.
-    fn surface_velocities(&self, contact: &Contact<S>) -> [S::Vector; 2] {
+    /// The velocities of the surfaces of a contact on their bodies (m/s): of balls that are bodies of their own along its normal.
+    fn surface_velocities(&self, expansion: &Expansion<S>, contact: &Contact<S>) -> [S::Vector; 2] {
         let rate = &self.workspace.expanding.rate;
         std::array::from_fn(|side| {
-            let velocity = contact.arms[side] * rate[contact.bodies[side] as usize];
-            match contact.central {
-                true => contact.normal * contact.normal.dot(&velocity),
-                false => velocity,
+            let body = contact.bodies[side] as usize;
+            if rate[body] == 0.0 {
+                return S::Vector::zero();
             }
+            let arm = contact.arms[side];
+            if !contact.central {
+                return arm * rate[body];
+            }
+            let along = contact.normal * contact.normal.dot(&arm);
+            // The arm of a ball of a body that nothing moves is from the centre of the ball.
+            let offset = match [contact.key.ball(), contact.key.antagonist_ball()][side] {
+                Some(ball) => expansion.offset(ball) * self.workspace.expanding.stretch[body],
+                None => S::Vector::zero(),
+            };
+            (S::rotate(&self.state.bodies.rotation[body], &offset) + along) * rate[body]
         })
     }
 
     /// Adds w to the relative velocities of all contacts.
     pub(super) fn add_surface_velocities(&self, relative: &mut [S::Vector]) {
-        if self.expansion.is_none() {
+        let Some(expansion) = &self.expansion else {
             return;
-        }
+        };
         for (u, contact) in relative.iter_mut().zip(&self.state.network.contacts) {
-            let [i, j] = self.surface_velocities(contact);
+            let [i, j] = self.surface_velocities(expansion, contact);
             *u += i - j;
         }
     }
 
     /// The forms of the contacts in the velocities of the bodies, where these are not those of the surfaces.
     pub(super) fn forms_of_bodies(&self) -> Option<Vec<ContactForm<S>>> {
-        self.expansion.as_ref()?;
+        let expansion = self.expansion.as_ref()?;
         let mut forms = self.workspace.forms.clone();
         for (form, contact) in forms.iter_mut().zip(&self.state.network.contacts) {
-            let [i, j] = self.surface_velocities(contact);
+            let [i, j] = self.surface_velocities(expansion, contact);
             let w = i - j;
             let (n, t) = (form.normal.dot(&w), S::tangential(&form.normal, &w));
             form.shift_n += n;
             if let Some(bond) = &mut form.elastic {
                 bond.a_n += bond.b_n * n;
             }
-            // The part along the normal of balls has none across it but for rounding.
-            if !contact.central {
+            // What is along the normal has a part across it that is rounding.
+            if !contact.central || t.norm() > 1e-12 * w.norm() {
                 form.shift_t += t;
                 if let Some(bond) = &mut form.elastic {
                     bond.a_t += t * bond.b_t;
@@ -133,9 +181,9 @@ impl<S: Space> Simulation<S> {
 
     /// Takes the work of expansion from the heat of the bodies that do it.
     pub(super) fn book_expansion(&mut self) {
-        if self.expansion.is_none() {
+        let Some(expansion) = &self.expansion else {
             return;
-        }
+        };
         let contacts = &self.state.network.contacts;
         let steps = &self.workspace.solved.contact_steps;
         let mut works = Vec::new();
@@ -144,7 +192,7 @@ impl<S: Space> Simulation<S> {
             if *impulse == S::Vector::zero() {
                 continue;
             }
-            let velocities = self.surface_velocities(contact);
+            let velocities = self.surface_velocities(expansion, contact);
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
                 let work = sign * impulse.dot(&velocities[side]);
                 if work != 0.0 {
@@ -152,15 +200,26 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
+        let mut of_systems = Vec::new();
+        for system in &expansion.systems {
+            let found = self.state.systems.get(system.system);
+            let work = found.map_or(&[][..], |s| s.expansion_work());
+            for (point, work) in work.iter().enumerate().filter(|(_, work)| **work != 0.0) {
+                // A single node is that of all points.
+                let node = system.nodes.start + point;
+                of_systems.push((node.min(system.nodes.end - 1), *work));
+            }
+        }
         let mut all = 0.0;
         if let (Some(heat), Some(state)) = (&self.heat, &mut self.state.heat) {
             for (body, work) in works {
                 all += work;
                 if let Some(node) = heat.nodes[body as usize].range().next() {
-                    state.pending[node] -= work;
-                    state.ledger.pending -= work;
-                    state.ledger.expansion += work;
+                    state.pay_for_expansion(node, work);
                 }
+            }
+            for (node, work) in of_systems {
+                state.pay_for_expansion(node, work);
             }
         }
         self.workspace.expanding.work = all;

@@ -133,7 +133,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Whether the heat has begun: a step belongs to where its middle is.
-    fn begun(&self, heat: &Heat) -> bool {
+    pub(super) fn begun(&self, heat: &Heat) -> bool {
         self.state.time + 0.5 * self.options.scheme.h >= heat.start
     }
 

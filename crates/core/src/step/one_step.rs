@@ -53,6 +53,7 @@ impl<S: Space> Simulation<S> {
     /// Applies the schedule, starts imposed motion, and has processes apply their forces.
     fn begin_step(&mut self) -> Result<(), StepError> {
         self.begin_records();
+        self.strain_systems();
         let driven = self.state.bodies.motion_of_driven();
         self.begin_motion();
         self.watch_first_move(&driven);

@@ -187,6 +187,7 @@ impl<S: Space> Simulation<S> {
         work.external += own.external;
         work.damping += own.damping;
         work.scheme += own.scheme;
+        work.expansion += own.expansion;
         self.state.systems.energies()
     }
 

@@ -2,24 +2,30 @@
 
 use super::ElasticBody;
 use crate::compiled::Deformable;
-use crate::element::{Simplex, Symmetric};
+use crate::element::Simplex;
 use crate::freedom::Held;
+use crate::material::{Elasticity, Symmetric};
 use fretwork_core::bodies::{DeformedMesh, Dof, Holder, SystemStep, TouchingSurface};
 
 impl<S: Deformable> ElasticBody<S> {
     /// Stress in each element (Pa).
     fn stresses(&self) -> Vec<Symmetric> {
         if let Some(large) = &self.model.large {
-            return large.stresses(&self.displacement);
+            return large.stresses(&self.displacement, &self.free_strain.of_elements);
         }
         let mesh = &self.model.mesh;
-        let stress = |points: &[u32]| {
+        let stress = |(e, points): (usize, &[u32])| {
             let simplex = Simplex::<S>::new(&mesh.corners(points));
             let displacements: Vec<S::Vector> =
                 points.iter().map(|p| self.displacement(*p)).collect();
-            simplex.map_or([0.0; 6], |s| s.stress(&self.model.material, &displacements))
+            simplex.map_or([0.0; 6], |s| {
+                let strain = s.strain(&displacements);
+                let free = self.free_strain.of_elements.get(e);
+                let strained = Elasticity::less(&strain, free.copied().unwrap_or(0.0));
+                self.model.material.stress(&strained)
+            })
         };
-        mesh.elements().map(stress).collect()
+        mesh.elements().enumerate().map(stress).collect()
     }
 
     /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N; N/m in 2D): what the support
@@ -49,7 +55,9 @@ impl<S: Deformable> ElasticBody<S> {
                 let viscous = imposed
                     .clone()
                     .map(|c| viscous.get(c).copied().unwrap_or(0.0));
-                elastic.iter().zip(viscous).map(|(e, v)| e + v).collect()
+                let free = imposed.clone().map(|c| self.free_strain.force(c));
+                let elastic = elastic.iter().zip(free).map(|(e, f)| e - f);
+                elastic.zip(viscous).map(|(e, v)| e + v).collect()
             }
         };
         imposed

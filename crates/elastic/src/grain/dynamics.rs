@@ -3,7 +3,7 @@
 use super::shape::stresses;
 use super::{ElasticGrain, Formed, Middle, State};
 use crate::compiled::Deformable;
-use crate::element::Symmetric;
+use crate::material::Symmetric;
 use crate::small_strain;
 use fretwork_core::bodies::{
     Contactor, ContactorMotion, DeformedMesh, DynamicalSystem, Nodes, SystemSize, SystemStep,

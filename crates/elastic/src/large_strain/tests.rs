@@ -67,6 +67,12 @@ fn norm(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
+/// Free strains of some elements.
+fn free<S: Space>(sample: &Sample<S>) -> Vec<f64> {
+    let elements = sample.mesh.elements().enumerate();
+    elements.map(|(e, _)| 0.02 * (e as f64).sin()).collect()
+}
+
 /// Largest difference of the tangent from central differences of the force, as a share of it, along some direction.
 fn tangent_error<S: Space>(strain: Strain, theta: f64, moved: f64) -> f64 {
     let sample = sample::<S>(strain, 1e-3);
@@ -76,6 +82,7 @@ fn tangent_error<S: Space>(strain: Strain, theta: f64, moved: f64) -> f64 {
         end: &to,
         h: 0.1,
         theta,
+        free_strain: &free(&sample),
     };
     let direction = sample.displaced(waves(0.5, 0.7));
     let small = 1e-5;
@@ -125,17 +132,18 @@ fn turns_freely<S: Space>(strain: Strain) {
                 end: &end,
                 h: 0.1,
                 theta,
+                free_strain: &[],
             });
             let most = norm(&forces.elastic).max(norm(&forces.viscous));
             assert!(most < 1e-13 * RUBBER.young, "{strain:?} {to}: {most:e}");
         }
-        let stresses = sample.large.stresses(&end);
+        let stresses = sample.large.stresses(&end, &[]);
         let most = stresses
             .iter()
             .flatten()
             .fold(0.0, |m: f64, s| m.max(s.abs()));
         assert!(most < 1e-14 * RUBBER.young, "{strain:?}: {most:e}");
-        assert!(sample.large.energy(&end) < 1e-26 * RUBBER.young);
+        assert!(sample.large.energy(&end, &[]) < 1e-26 * RUBBER.young);
     }
 }
 
@@ -157,6 +165,7 @@ fn patch<S: Space>(strain: Strain) {
         end: &q,
         h: 1.0,
         theta: 0.5,
+        free_strain: &[],
     };
     let forces = sample.large.forces(&step);
     let sides = [1.0, 1.5, 1.2];
@@ -167,7 +176,7 @@ fn patch<S: Space>(strain: Strain) {
             assert!(forces.elastic[c].abs() < 1e-14 * forces.size[c] + 1e-9);
         }
     }
-    let stresses = sample.large.stresses(&q);
+    let stresses = sample.large.stresses(&q, &[]);
     for stress in &stresses {
         for (s, first) in stress.iter().zip(stresses[0]) {
             assert!((s - first).abs() < 1e-12 * RUBBER.young);
@@ -190,4 +199,65 @@ fn elements_that_turn_inside_out_are_found() {
     assert!(inverted(&sample.displaced(|x| x * 0.1)).is_none());
     assert!(inverted(&sample.displaced(|x| Vector3::new(-x.x, x.y, 0.0))).is_some());
     assert!(inverted(&vec![f64::NAN; sample.freedoms.total()]).is_some());
+}
+
+/// A body of uniform free strain that has it, turned by any angle, is without force, stress and energy.
+#[test]
+fn what_expands_freely_is_without_stress() {
+    for strain in BOTH {
+        let sample = sample::<Dim3>(strain, 0.0);
+        let free = vec![0.05; free(&sample).len()];
+        let turn = turned(0.7);
+        let q = sample.displaced(|x| turn(x * 1.05));
+        let forces = sample.large.forces(&Stretch {
+            start: &q,
+            end: &q,
+            h: 1.0,
+            theta: 0.5,
+            free_strain: &free,
+        });
+        let most = norm(&forces.elastic);
+        assert!(most < 1e-12 * RUBBER.young, "{strain:?}: {most:e}");
+        let stresses = sample.large.stresses(&q, &free);
+        let most = stresses
+            .iter()
+            .flatten()
+            .fold(0.0, |m: f64, s| m.max(s.abs()));
+        assert!(most < 1e-13 * RUBBER.young, "{strain:?}: {most:e}");
+        assert!(sample.large.energy(&q, &free) < 1e-24 * RUBBER.young);
+    }
+}
+
+/// Forces are derivatives of the stored energy with any free strains, in the plane where the depth stays too.
+#[test]
+fn forces_with_free_strains_are_derivatives_of_the_energy() {
+    fn error<S: Space>(strain: Strain) -> f64 {
+        let sample = sample::<S>(strain, 0.0);
+        let free = free(&sample);
+        let q = sample.displaced(waves(0.2, 0.3));
+        let direction = sample.displaced(waves(0.5, 0.7));
+        let small = 1e-6;
+        let [low, high] = [-small, small].map(|s| {
+            let at: Vec<f64> = q.iter().zip(&direction).map(|(q, d)| q + s * d).collect();
+            sample.large.energy(&at, &free)
+        });
+        let forces = sample.large.forces(&Stretch {
+            start: &q,
+            end: &q,
+            h: 1.0,
+            theta: 1.0,
+            free_strain: &free,
+        });
+        let power: f64 = forces
+            .elastic
+            .iter()
+            .zip(&direction)
+            .map(|(f, d)| f * d)
+            .sum();
+        ((high - low) / (2.0 * small) / power - 1.0).abs()
+    }
+    for strain in BOTH {
+        let found = [error::<Dim2>(strain), error::<Dim3>(strain)];
+        assert!(found.iter().all(|e| *e < 1e-7), "{strain:?}: {found:?}");
+    }
 }

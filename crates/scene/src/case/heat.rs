@@ -32,7 +32,8 @@ pub struct HeatSpec {
     pub start: f64,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
-    /// Whether rigid grains expand by the `expansion` (1/K) of their materials, from their size at the start.
+    /// Whether bodies expand by the `expansion` (1/K) of their materials, from their size at the start: rigid grains, first bodies of balls, polygons or
+    /// polyhedra that are `Lumped`, and bodies of `elastic`.
     #[serde(skip_serializing_if = "is_false")]
     pub expansion: bool,
     /// Hardness (Pa) of the softer bodies, from which the flash temperature of sliding spots follows; without it contacts have the temperature of

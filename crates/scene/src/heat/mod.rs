@@ -63,7 +63,7 @@ pub(crate) fn install<S: Space>(
     let state = HeatState::new(nodes.list, heat.first_bodies.len());
     s.set_heat(heat, state);
     match spec.expansion {
-        true => expansion::install(case, properties, &material, s),
+        true => expansion::install(case, spec, properties, &material, s),
         false => Ok(()),
     }
 }

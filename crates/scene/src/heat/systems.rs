@@ -1,7 +1,7 @@
 //! The thermal nodes of bodies that deform.
 
 use super::bodies::{Nodes, Scene};
-use crate::case::{BodyHeatSpec, MeshHeatSpec, StoreSpec};
+use crate::case::{BodyHeatSpec, Case, MeshHeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
 use fretwork_core::bodies::{Conduction, DynamicalSystem};
 use fretwork_core::geometry::space::Space;
@@ -40,7 +40,7 @@ impl Nodes {
         let spec = scene.spec.bodies.get(name).unwrap_or(&fixed);
         let temperature = spec.temperature.unwrap_or(scene.spec.initial);
         let here = format!("heat.bodies.{name}.store");
-        let material = scene.material_of_system(name);
+        let material = material_of(scene.case, name);
         let store = match &spec.store {
             StoreSpec::Insulated => return Ok(BodyNodes::Insulated),
             StoreSpec::Fixed => Store::Fixed,
@@ -158,16 +158,6 @@ impl Nodes {
 }
 
 impl<S: Space> Scene<'_, S> {
-    /// Place of the material of a deformable body among those of the case.
-    fn material_of_system(&self, name: &str) -> usize {
-        let elastic = self.case.elastic.iter().map(|e| (&e.name, &e.material));
-        let half_spaces = self.case.half_spaces.iter().map(|h| (&h.name, &h.material));
-        let mut all = elastic.chain(half_spaces);
-        let material = all.find(|(n, _)| *n == name).map(|(_, material)| material);
-        let place = self.case.materials.keys().position(|m| Some(m) == material);
-        place.unwrap_or_default()
-    }
-
     /// The node of a grain that deforms, which has one temperature.
     fn grain_that_deforms(&self, system: &dyn DynamicalSystem<S>, body: usize) -> Node {
         let material = self.material_of(body);
@@ -188,4 +178,14 @@ impl<S: Space> Scene<'_, S> {
         }
         node
     }
+}
+
+/// Place of the material of a deformable body among those of the case.
+pub(super) fn material_of(case: &Case, name: &str) -> usize {
+    let elastic = case.elastic.iter().map(|e| (&e.name, &e.material));
+    let half_spaces = case.half_spaces.iter().map(|h| (&h.name, &h.material));
+    let mut all = elastic.chain(half_spaces);
+    let material = all.find(|(n, _)| *n == name).map(|(_, material)| material);
+    let place = case.materials.keys().position(|m| Some(m) == material);
+    place.unwrap_or_default()
 }

@@ -20,6 +20,9 @@ pub fn all(table: &mut Table) {
     grain_on_elements(table);
     two_meshes(table);
     polygon(table);
+    first_body(table);
+    elements(table);
+    held_elements(table);
 }
 
 fn height(s: &Simulation<Dim2>, body: &str) -> f64 {
@@ -296,4 +299,153 @@ fn polygon(table: &mut Table) {
         ledger.relative_residual(),
         1e-10,
     );
+}
+
+/// First bodies of balls expand about their position, so that what lies on them rises: one disk, and two of one body that hold a grain between them, on
+/// which nothing slides.
+fn first_body(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let pin = |balls: &str| {
+        format!(
+            "bodies.floor=(name: \"pin\", material: \"steel\", shapes: [Balls([{balls}])], position: [0.0, 1e-3])"
+        )
+    };
+    let grain = |y: f64| {
+        format!("grains=[List(material: \"steel\", grains: [(at: [0.0, {y}], radius: 1e-3)])]")
+    };
+    // The body warms as fast as the grain.
+    let heat = |disks: usize| {
+        let area = disks as f64 * 2.0 * PI * 1e-3;
+        format!(
+            "heat.bodies={{\"pin\": (store: Lumped(), convection: (coefficient: 1e4, area: {area}, ambient: 400.0)), \"load\": (store: Insulated)}}"
+        )
+    };
+    // Heights above the centre of the pin.
+    let between = 3f64.sqrt() * 1e-3;
+    let scenes = [
+        ("([0.0, 0.0], 1e-3)", 2e-3),
+        ("([-1e-3, 0.0], 1e-3), ([1e-3, 0.0], 1e-3)", between),
+    ];
+    for (k, (balls, height_of_grain)) in scenes.into_iter().enumerate() {
+        let top = 2e-3 + height_of_grain;
+        let sets = [
+            pin(balls),
+            grain(1e-3 + height_of_grain),
+            heat(k + 1),
+            format!("bodies.load.position=[0.0, {top}]"),
+            "interfaces.0.contact=coulomb".to_owned(),
+            "interfaces.0.parameters=(contact: {\"mu\": 0.3})".to_owned(),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let mut s = plane(case, &sets);
+        until(&mut s, 4.0, |_| ());
+        let rise = height(&s, "load") - top;
+        let name = format!("on a first body of {} disks: rise (m)", k + 1);
+        let expected = ALPHA * RISE * (height_of_grain + 1e-3);
+        table.compare(case, &name, expected, rise, 2e-5);
+        let energy = s.energies();
+        let name = format!("on a first body of {} disks: work (J/m)", k + 1);
+        table.compare(case, &name, 1e3 * rise, energy.expansion, 1e-5);
+        let closes = energy.relative_residual();
+        table.compare(case, "a first body: energy closes", 0.0, closes, 1e-10);
+        // What sticks does not slide.
+        assert!(energy.friction < 1e-4 * energy.expansion, "{energy:?}");
+        let ledger = super::heat(&s).ledger;
+        let closes = ledger.relative_residual();
+        table.compare(case, "a first body: heat closes", 0.0, closes, 1e-10);
+    }
+}
+
+/// Poisson's ratio, Young's modulus (Pa) and width (m) of the block of finite elements.
+const NU: f64 = 0.3;
+const YOUNG: f64 = 210e9;
+const WIDTH: f64 = 1e-3;
+
+/// A block of finite elements lifts a load, by each measure of strain; the answer is the same where heat makes one step for several.
+fn elements(table: &mut Table) {
+    let case = "thermal/mesh_expansion";
+    let runs: [(&[&str], f64); 4] = [
+        (&[], 1e-6),
+        (&["heat.every=10"], 1e-6),
+        // Of second order in the strain, 1.6e-3.
+        (&["elastic.block.strain=Corotational"], 3e-3),
+        (&["elastic.block.strain=NeoHookean"], 3e-3),
+    ];
+    for (sets, tolerance) in runs {
+        let mut s = plane(case, sets);
+        until(&mut s, 0.15, |_| ());
+        let rise = height(&s, "load") - 2e-3;
+        let free = (1.0 + NU) * ALPHA * RISE * 2e-3;
+        let pressed = 1e3 * 2e-3 * (1.0 - NU * NU) / (YOUNG * WIDTH);
+        let named = |what: &str| match sets {
+            [] => what.to_owned(),
+            _ => format!("{}: {what}", sets[0]),
+        };
+        let name = named("rise (1 + nu) alpha dT L - F L/(E' b) (m)");
+        table.compare(case, &name, free - pressed, rise, tolerance);
+        let energy = s.energies();
+        let closes = energy.relative_residual();
+        table.compare(case, &named("energy closes"), 0.0, closes, 1e-10);
+        let ledger = heat(&s).ledger;
+        let name = named("heat gone into work (J/m)");
+        table.compare(case, &name, energy.expansion, ledger.expansion, 1e-12);
+        let closes = ledger.relative_residual();
+        table.compare(case, &named("heat closes"), 0.0, closes, 1e-10);
+    }
+
+    // Continued from bytes it has the same bits.
+    for strain in ["Small", "NeoHookean"] {
+        let set = format!("elastic.block.strain={strain}");
+        let [mut s, mut again] = [0, 1].map(|_| plane(case, &[&set]));
+        until(&mut s, 2e-3, |_| ());
+        let bytes = encode(&s.state).expect("bytes");
+        assert!(again.restore(decode(&bytes).expect("a state")));
+        until(&mut s, 4e-3, |_| ());
+        until(&mut again, 4e-3, |_| ());
+        let [s, again] = [s, again].map(|s| encode(&s.state).expect("bytes"));
+        assert_eq!(s, again, "{case}, {strain}: continued");
+    }
+}
+
+/// The same between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy comes from the heat.
+fn held_elements(table: &mut Table) {
+    let case = "thermal/mesh_expansion";
+    for (strain, tolerance) in [
+        ("Small", 1e-8),
+        ("Corotational", 3e-3),
+        ("NeoHookean", 5e-3),
+    ] {
+        let sets = [
+            format!("elastic.block.strain={strain}"),
+            "elastic.block.supports=[(part: \"left\", x: Fixed), (part: \"bottom\", y: Fixed), (part: \"top\", y: Fixed)]".to_owned(),
+            "elastic.block.touches=Nothing".to_owned(),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let mut s = plane(case, &sets);
+        until(&mut s, 0.15, |_| ());
+        let stress = -YOUNG * ALPHA * RISE / (1.0 - NU);
+        let system = s.state.systems.get(0).expect("the block");
+        let mesh = system.deformed_mesh().expect("a mesh");
+        let middle = mesh.stress[mesh.stress.len() / 2];
+        let name = format!("{strain}: stress between plates (Pa)");
+        table.compare(case, &name, stress, middle[1], tolerance);
+        let holders = system.holders();
+        let top = holders.iter().find(|h| h.part == "top").expect("the top");
+        let name = format!("{strain}: force on the plate above (N/m)");
+        table.compare(case, &name, stress * WIDTH, top.force, tolerance);
+        let energy = s.energies();
+        // sigma_y and sigma_z of the strains -alpha dT, both held.
+        let zz = NU * stress - YOUNG * ALPHA * RISE;
+        let stored = -0.5 * (stress + zz) * ALPHA * RISE * WIDTH * 2e-3;
+        let name = format!("{strain}: energy stored (J/m)");
+        table.compare(case, &name, stored, energy.elastic, 2.0 * tolerance);
+        let closes = energy.relative_residual();
+        table.compare(
+            case,
+            &format!("{strain}: energy closes"),
+            0.0,
+            closes,
+            1e-10,
+        );
+    }
 }

@@ -20,6 +20,7 @@ pub fn all(table: &mut Table) {
     sliding(table);
     account(table);
     half_space(table);
+    order_in_step(table);
     two_half_spaces(table);
     cubic(table);
     series_and_parallel(table);
@@ -169,6 +170,35 @@ fn half_space(table: &mut Table) {
         rise("1e-5", "0.55"),
         1e-3,
     );
+}
+
+/// A warm grain on a cold floor, through their contact: T = T_0 + dT exp(-G t/C), of first order in the step for theta = 1 and of second for 1/2.
+fn order_in_step(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let sets = [
+        "grains=[List(material: \"steel\", grains: [(at: [0.0, 1e-3], radius: 1e-3)])]",
+        "bodies.load.position=[0.0, 2e-3]",
+        "interfaces.0.transport=constant-conductance",
+        "interfaces.0.parameters=(transport: {\"thermal\": 50.0, \"reach\": 1e-5})",
+        "heat=(initial: 300.0, grains: {\"steel\": 400.0}, bodies: {\"load\": (store: Insulated)})",
+    ];
+    let capacity = 7850.0 * 450.0 * PI * 1e-6;
+    let exact = 300.0 + 100.0 * f64::exp(-50.0 * 0.2 / capacity);
+    let error = |step: &str, theta: &str| {
+        let own = [format!("time.step={step}"), format!("heat.theta={theta}")];
+        let all = sets.iter().copied().chain(own.iter().map(String::as_str));
+        let mut s = plane(case, &all.collect::<Vec<&str>>());
+        until(&mut s, 0.2, |_| ());
+        let grain = s.state.bodies.grains().next().expect("a grain");
+        (s.temperature(grain).expect("a temperature") - exact).abs()
+    };
+    for (theta, expected) in [("1.0", 1.0), ("0.5", 2.0)] {
+        let [a, b, c] = ["2e-2", "1e-2", "5e-3"].map(|step| error(step, theta));
+        for (coarse, fine) in [(a, b), (b, c)] {
+            let name = format!("a grain that cools: order in step, theta = {theta}");
+            table.compare(case, &name, expected, (coarse / fine).log2(), 0.03);
+        }
+    }
 }
 
 fn two_half_spaces(table: &mut Table) {
