@@ -102,7 +102,7 @@ pub(crate) struct Eliminated {
     pub diagonal: f64,
     /// Added to the right-hand side of the surface (W).
     pub right: f64,
-    /// For each point below the surface its pivot and its right-hand side, both eliminated from below (W/K, W).
+    /// For each point below the surface the inverse of its pivot and its right-hand side, both eliminated from below (K/W, W).
     points: Vec<(f64, f64)>,
 }
 
@@ -139,17 +139,17 @@ impl HalfSpace {
             if k > 0 {
                 // The point joins the one above by g: its own equation is (pivot + g) d_k = right + g d_(k-1).
                 let g = area * grid.conductance[k - 1];
-                points[k] = (pivot + g, right);
-                below_diagonal = g * (pivot / (pivot + g));
-                below_right = g * (right / (pivot + g));
+                let inverse = 1.0 / (pivot + g);
+                points[k] = (inverse, right);
+                below_diagonal = g * (pivot * inverse);
+                below_right = g * (right * inverse);
             } else {
-                points[0] = (pivot, right);
+                (below_diagonal, below_right) = (pivot, right);
             }
         }
-        let (diagonal, right) = points[0];
         Eliminated {
-            diagonal,
-            right,
+            diagonal: below_diagonal,
+            right: below_right,
             points,
         }
     }
@@ -166,8 +166,8 @@ impl HalfSpace {
         take(0, change);
         for k in 1..self.grid.points() {
             let g = self.area * self.grid.conductance[k - 1];
-            let (pivot, right) = eliminated.points[k];
-            change = (right + g * change) / pivot;
+            let (inverse, right) = eliminated.points[k];
+            change = (right + g * change) * inverse;
             take(k, change);
         }
         stored

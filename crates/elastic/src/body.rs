@@ -52,7 +52,7 @@ pub struct ElasticBody<S: Space> {
     /// Kinetic energy that a jump of imposed velocities at the start of the step brought (J).
     jump: f64,
     /// Of thermal expansion.
-    pub(crate) free_strain: FreeStrain,
+    pub(crate) free_strain: FreeStrain<S>,
     /// Impulse of contacts on the coordinates in the step (N s).
     pub(crate) contact: Vec<f64>,
     /// Iterations of the step; unused in small strain.
@@ -548,7 +548,9 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let total = self.model.freedoms.total();
         match read {
             Ok((q, v, free)) if q.len() == total && v.len() == total => {
-                self.restore_free_strain(free);
+                if !self.restore_free_strain(free) {
+                    return false;
+                }
                 self.start = [q.clone(), v.clone()];
                 self.elastic.take();
                 self.moves = 0;

@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn stress_and_tangent_are_derivatives_of_the_energy() {
         for strain in [Strain::Corotational, Strain::NeoHookean] {
-            let at = |c: &Matrix3<f64>| Response::new(strain, &RUBBER, c).unwrap();
+            let at = |c: &Matrix3<f64>| Response::new(strain, &RUBBER, c, 0.0).unwrap();
             let (c, step) = (strained(1.0), 1e-6);
             let here = at(&c);
             for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
@@ -150,6 +150,29 @@ mod tests {
                     "{strain:?} at {scale:e}: {off:e}"
                 );
             }
+        }
+    }
+
+    /// A body that does not move while it would expand by lambda: by hand from (1 + e)^3 W(F/(1 + e)) at F = 1.
+    #[test]
+    fn what_is_held_has_the_stress_of_its_free_strain() {
+        let (l, g) = (RUBBER.lambda(), RUBBER.shear());
+        for e in [0.1, -0.05, 1e-3] {
+            let n: f64 = 1.0 + e;
+            let at = |strain| Response::new(strain, &RUBBER, &Matrix3::zeros(), e).unwrap();
+            // C/n^2 = 1/n^2: I1 = 3/n^2, J = n^-3.
+            let log = -3.0 * n.ln();
+            let energy = 1.5 * g * (n.powi(-2) - 1.0) - g * log + 0.5 * l * log * log;
+            let stress = g * (1.0 - n * n) + l * log * n * n;
+            let neo = at(Strain::NeoHookean);
+            assert!((neo.energy() / (n.powi(3) * energy) - 1.0).abs() < 1e-9);
+            assert!((neo.stress()[(0, 0)] / (n * stress) - 1.0).abs() < 1e-9);
+            // U = 1/n, strain 1/n - 1 along each axis.
+            let strain = 1.0 / n - 1.0;
+            let bulk = 3.0 * l + 2.0 * g;
+            let hooke = at(Strain::Corotational);
+            let energy = 1.5 * bulk * strain * strain;
+            assert!((hooke.energy() / (n.powi(3) * energy) - 1.0).abs() < 1e-9);
         }
     }
 }

@@ -108,6 +108,11 @@ impl Cycle {
 }
 
 impl Cycles {
+    /// Time from which on friction is looked at (s).
+    pub fn start(&self) -> f64 {
+        self.clock.start
+    }
+
     /// Cycles of length `period` from `start` on; without a period the second half of the time from `start`
     /// to `end` is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {

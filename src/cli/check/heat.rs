@@ -95,13 +95,18 @@ fn expanding<S: Space>(s: &Simulation<S>, heat: &Heat) -> Option<CheckLine> {
     named.extend(systems.filter_map(|e| Some(s.state.systems.get(e.system)?.name())));
     let firsts = heat.first_bodies.iter().map(|(name, _)| name.as_str());
     let others: Vec<&str> = firsts.filter(|name| !named.contains(name)).collect();
-    let mut text = format!("{grains} grains");
-    for name in &named {
-        text += &format!(", {name}");
-    }
-    text += " change their size with their temperature";
+    let grains = match grains {
+        0 => None,
+        1 => Some("1 grain".to_owned()),
+        n => Some(format!("{n} grains")),
+    };
+    let all = grains
+        .into_iter()
+        .chain(named.iter().map(|n| (*n).to_owned()));
+    let all: Vec<String> = all.collect();
+    let mut text = format!("size changes with temperature: {}", all.join(", "));
     if !others.is_empty() {
-        text += &format!("; {} keep theirs", others.join(", "));
+        text += &format!("; size stays: {}", others.join(", "));
     }
     Some(("expansion".to_owned(), text))
 }

@@ -100,3 +100,34 @@ fn a_circuit_that_is_none() {
     );
     refused(&open, &["no current can flow"]);
 }
+
+#[test]
+fn bodies_that_cannot_expand() {
+    // A material with all that heat needs, but for its expansion.
+    let oxide = with(&heat("expansion: true"), "_steel\"", "_oxide\"");
+    refused(
+        &with(&oxide, "\"grain\": \"", "\"grain\": ‸\""),
+        &["coefficient of linear expansion of `grain`", "1/K"],
+    );
+    // A row of balls over the whole period, which would have to become longer.
+    let row = heat("expansion: true, bodies: {\"floor\": (store: ‸Lumped())}");
+    let balls =
+        "shapes: [Balls([([0.05, -0.05], 0.05), ([0.15, -0.05], 0.05), ([0.25, -0.05], 0.05)])]";
+    refused(
+        &with(&row, "shapes: [HalfSpace(normal: [0.0, 1.0])]", balls),
+        &["more than half of the period", "`Fixed`"],
+    );
+    // Grains that deform.
+    let soft = with(
+        &heat("expansion: ‸true"),
+        "    output: (",
+        "    elastic_grains: [(material: \"grain\")],\n    output: (",
+    );
+    refused(&soft, &["grains that deform do not expand", "rigid grains"]);
+    // Walls alone have no size of their own.
+    let case = heat("expansion: ‸true");
+    let first = case.find("    grains: [").expect("grains");
+    let last = case.find("    friction: (").expect("friction");
+    let walls = format!("{}    grains: [],\n{}", &case[..first], &case[last..]);
+    refused(&walls, &["no body of the case expands", "`Lumped`"]);
+}

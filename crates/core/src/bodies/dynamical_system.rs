@@ -152,8 +152,8 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// changed.
     fn begin_step(&mut self, step: &SystemStep<S>);
 
-    /// Takes the strain that each point of its mesh has without stress, or one of all points, by the thermal expansion of the step; before
-    /// [`Self::begin_step`]. Here nothing: it does not expand.
+    /// Takes the strain that each point of its mesh has without stress, or one of all points, by the thermal expansion of the step. Called in every
+    /// step from the first with heat on, before [`Self::begin_step`]. Here nothing: it does not expand.
     fn set_free_strain(&mut self, _of_points: &[f64]) {}
 
     /// Work of the expansion at each point of its mesh in the step (J; J/m in 2D), which sums to [`SystemWork::expansion`]; none where it does not expand.

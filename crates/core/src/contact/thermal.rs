@@ -1,12 +1,12 @@
 //! Temperatures and conductances of contacts in a step.
 
 use crate::bodies::Nodes;
-use fretwork_diffusion::Node;
 
 /// Where the heat of a contact enters a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HeatSide {
     /// Nowhere: it is insulated.
+    #[default]
     Insulated,
     /// At a node.
     Node(u32),
@@ -14,17 +14,24 @@ pub enum HeatSide {
     Between(u32),
 }
 
+/// What a contact sees of heat in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactTemperature {
+    /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
+    pub temperature: [f64; 3],
+    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m) of the pair.
+    pub material: [f64; 2],
+    /// Where heat enters the candidate and the antagonist.
+    pub sides: [HeatSide; 2],
+}
+
 /// What laws see of heat at each contact, and what they answer, in the order of the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHeat {
-    /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
-    pub temperature: Vec<[f64; 3]>,
-    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m) of the pair.
-    pub material: Vec<[f64; 2]>,
+    /// What they see.
+    pub seen: Vec<ContactTemperature>,
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
-    /// Where heat enters the candidate and the antagonist.
-    pub sides: Vec<[HeatSide; 2]>,
     /// Points of meshes that sides refer to, by nodes of the heat.
     pub between: Vec<Nodes>,
     /// Heat put in over the step (J; J/m in 2D), by dissipation and by current.
@@ -51,15 +58,12 @@ impl ContactHeat {
             .chain(of_mesh.map(|(node, weight)| (node as usize, weight)))
     }
 
-    /// Temperature of a side (K), by the nodes of the heat; none of an insulated one.
-    pub fn temperature_of(&self, side: HeatSide, nodes: &[Node]) -> Option<f64> {
+    /// Temperature of a side (K), by those of the nodes of the heat; none of an insulated one.
+    pub fn temperature_of(&self, side: HeatSide, of: impl Fn(usize) -> f64) -> Option<f64> {
         match side {
             HeatSide::Insulated => None,
-            HeatSide::Node(node) => Some(nodes[node as usize].temperature),
-            HeatSide::Between(_) => {
-                let terms = self.terms(side);
-                Some(terms.map(|(n, w)| w * nodes[n].temperature).sum())
-            }
+            HeatSide::Node(node) => Some(of(node as usize)),
+            HeatSide::Between(_) => Some(self.terms(side).map(|(n, w)| w * of(n)).sum()),
         }
     }
 }

@@ -5,6 +5,11 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::Range;
 
+/// alpha (T - T_0) by the coefficient (1/K) and the difference of temperature (K); no body shrinks to less than a tenth.
+pub fn free_strain(coefficient: f64, difference: f64) -> f64 {
+    (coefficient * difference).max(-0.9)
+}
+
 /// A ball or a piece as the case gives it.
 #[derive(Clone, Debug)]
 struct Rest<C, V> {
@@ -79,15 +84,9 @@ impl<S: Space> Expansion<S> {
         }
     }
 
-    /// Displacement of a ball from the centre of its body in the axes of that (m), as the case gives it.
-    pub fn offset(&self, ball: usize) -> S::Vector {
-        self.balls[ball].offset
-    }
-
-    /// Lambda of a body at a temperature (K). It stays above zero.
+    /// Lambda of a body at a temperature (K).
     pub fn stretch(&self, body: usize, temperature: f64) -> f64 {
-        let strain = self.coefficient[body] * (temperature - self.reference[body]);
-        (1.0 + strain).max(0.1)
+        1.0 + free_strain(self.coefficient[body], temperature - self.reference[body])
     }
 
     /// Gives all shapes the sizes of the stretches of their bodies, and bodies of one ball its radius for their length; returns the largest change of a

@@ -39,6 +39,18 @@ impl HeatState {
         }
     }
 
+    /// Lengths of its lists, by which states of different scenes are told apart.
+    pub(crate) fn lengths(&self) -> [usize; 4] {
+        let Self {
+            nodes,
+            received,
+            stretch,
+            expanded,
+            ..
+        } = self;
+        [nodes.len(), received.len(), stretch.len(), expanded.len()]
+    }
+
     /// In how many steps of the mechanics, this one included, bodies come to the size of their temperature.
     pub(crate) fn parts(&self, every: u64) -> f64 {
         every.saturating_sub(self.pending_steps).max(1) as f64

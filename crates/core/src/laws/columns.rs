@@ -251,10 +251,11 @@ impl Columns {
     /// Fills the columns of heat from those of the contacts, of which these are members.
     pub(super) fn take_heat(&mut self, thermal: &ContactHeat, members: &[usize]) {
         for (k, at) in members.iter().enumerate() {
-            for (column, value) in self.temperature.iter_mut().zip(thermal.temperature[*at]) {
+            let seen = &thermal.seen[*at];
+            for (column, value) in self.temperature.iter_mut().zip(seen.temperature) {
                 column[k] = value;
             }
-            let [conductivity, resistivity] = thermal.material[*at];
+            let [conductivity, resistivity] = seen.material;
             self.conductivity[k] = conductivity;
             if thermal.current {
                 self.resistivity[k] = resistivity;

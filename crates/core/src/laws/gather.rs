@@ -189,13 +189,15 @@ impl Batch {
             network,
             info,
         } = *source;
+        let read = laws.iter().any(|l| l.reads_temperatures());
+        let thermal = network.thermal.as_ref().filter(|_| read);
         let contents = Contents {
             spatial: S::D == 3,
             rotates: law.rotates(),
             compliant: law.compliant(),
             after,
-            heat: network.thermal.is_some(),
-            current: network.thermal.as_ref().is_some_and(|t| t.current),
+            heat: thermal.is_some(),
+            current: thermal.is_some_and(|t| t.current),
         };
         let n = members.len();
         let memory = &network.memory[index];
@@ -285,7 +287,7 @@ impl Batch {
                 }
             }
         }
-        if let Some(thermal) = &network.thermal {
+        if let Some(thermal) = thermal {
             columns.take_heat(thermal, members);
         }
         for loaded in laws {

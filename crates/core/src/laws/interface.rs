@@ -46,6 +46,11 @@ impl Loaded {
     pub fn has(&self, flag: u64) -> bool {
         self.plugin.flags & flag != 0
     }
+
+    /// Returns whether it reads temperatures, or says what heat flows.
+    pub fn reads_temperatures(&self) -> bool {
+        self.plugin.kind == Kind::TRANSPORT || self.has(FLAG_TEMPERATURE)
+    }
 }
 
 /// When bonds are made.
@@ -318,8 +323,7 @@ impl Interface {
 
     /// Returns whether a law reads temperatures, or says what heat flows.
     pub fn reads_temperatures(&self) -> bool {
-        self.loaded()
-            .any(|l| l.plugin.kind == Kind::TRANSPORT || l.has(FLAG_TEMPERATURE))
+        self.loaded().any(Loaded::reads_temperatures)
     }
 
     /// What carries heat and current.

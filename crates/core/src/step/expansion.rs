@@ -17,6 +17,7 @@
 use super::Simulation;
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
+use crate::heat::expansion::free_strain;
 use crate::heat::{ExpandingSystem, Expansion};
 use crate::solve::ContactForm;
 
@@ -30,6 +31,8 @@ pub(super) struct Expanding {
     stretch: Vec<f64>,
     /// Rate of strain of each body (1/s).
     rate: Vec<f64>,
+    /// Whether there is one other than zero.
+    moves: bool,
     /// Work of rigid bodies in the step (J).
     pub work: f64,
 }
@@ -87,7 +90,7 @@ impl<S: Space> Simulation<S> {
             let strain = system.nodes.clone().map(|node| {
                 let expanded = &mut state.expanded[node];
                 *expanded += (state.nodes[node].temperature - *expanded) / parts;
-                system.coefficient * (*expanded - system.reference)
+                free_strain(system.coefficient, *expanded - system.reference)
             });
             let strain: Vec<f64> = strain.collect();
             let systems = &mut self.state.systems;
@@ -121,10 +124,16 @@ impl<S: Space> Simulation<S> {
             }
             expanding.rate.push((*stretch / before - 1.0) / h);
         }
+        expanding.moves = expanding.rate.iter().any(|rate| *rate != 0.0);
+    }
+
+    /// Whether a rigid body changes its size in the step.
+    fn surfaces_move(&self) -> bool {
+        self.expansion.is_some() && self.workspace.expanding.moves
     }
 
     /// The velocities of the surfaces of a contact on their bodies (m/s): of balls that are bodies of their own along its normal.
-    fn surface_velocities(&self, expansion: &Expansion<S>, contact: &Contact<S>) -> [S::Vector; 2] {
+    fn surface_velocities(&self, contact: &Contact<S>) -> [S::Vector; 2] {
         let rate = &self.workspace.expanding.rate;
         std::array::from_fn(|side| {
             let body = contact.bodies[side] as usize;
@@ -138,7 +147,7 @@ impl<S: Space> Simulation<S> {
             let along = contact.normal * contact.normal.dot(&arm);
             // The arm of a ball of a body that nothing moves is from the centre of the ball.
             let offset = match [contact.key.ball(), contact.key.antagonist_ball()][side] {
-                Some(ball) => expansion.offset(ball) * self.workspace.expanding.stretch[body],
+                Some(ball) => self.shapes.balls[ball].offset,
                 None => S::Vector::zero(),
             };
             (S::rotate(&self.state.bodies.rotation[body], &offset) + along) * rate[body]
@@ -147,21 +156,23 @@ impl<S: Space> Simulation<S> {
 
     /// Adds w to the relative velocities of all contacts.
     pub(super) fn add_surface_velocities(&self, relative: &mut [S::Vector]) {
-        let Some(expansion) = &self.expansion else {
+        if !self.surfaces_move() {
             return;
-        };
+        }
         for (u, contact) in relative.iter_mut().zip(&self.state.network.contacts) {
-            let [i, j] = self.surface_velocities(expansion, contact);
+            let [i, j] = self.surface_velocities(contact);
             *u += i - j;
         }
     }
 
     /// The forms of the contacts in the velocities of the bodies, where these are not those of the surfaces.
     pub(super) fn forms_of_bodies(&self) -> Option<Vec<ContactForm<S>>> {
-        let expansion = self.expansion.as_ref()?;
+        if !self.surfaces_move() {
+            return None;
+        }
         let mut forms = self.workspace.forms.clone();
         for (form, contact) in forms.iter_mut().zip(&self.state.network.contacts) {
-            let [i, j] = self.surface_velocities(expansion, contact);
+            let [i, j] = self.surface_velocities(contact);
             let w = i - j;
             let (n, t) = (form.normal.dot(&w), S::tangential(&form.normal, &w));
             form.shift_n += n;
@@ -184,7 +195,10 @@ impl<S: Space> Simulation<S> {
         let Some(expansion) = &self.expansion else {
             return;
         };
-        let contacts = &self.state.network.contacts;
+        let contacts = match self.surfaces_move() {
+            true => &self.state.network.contacts[..],
+            false => &[],
+        };
         let steps = &self.workspace.solved.contact_steps;
         let mut works = Vec::new();
         for (contact, step) in contacts.iter().zip(steps) {
@@ -192,7 +206,7 @@ impl<S: Space> Simulation<S> {
             if *impulse == S::Vector::zero() {
                 continue;
             }
-            let velocities = self.surface_velocities(expansion, contact);
+            let velocities = self.surface_velocities(contact);
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
                 let work = sign * impulse.dot(&velocities[side]);
                 if work != 0.0 {

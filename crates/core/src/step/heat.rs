@@ -4,13 +4,18 @@ use super::answers::relative_velocity;
 use super::fields::{heat_of_contacts, heat_of_grains};
 use super::{Simulation, StepError};
 use crate::bodies::Nodes;
-use crate::contact::{Bond, Contact, ContactHeat, HeatSide};
+use crate::contact::{Bond, Contact, ContactHeat, ContactTemperature, HeatSide};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Store};
+use crate::threads::{fill, pays};
 use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
 
 /// Of a node that is of no first body.
 const NONE: u32 = u32::MAX;
+
+/// About what it takes to find the temperatures of a contact, and the heat of what it dissipated (ns).
+const SEES: f64 = 20.0;
+const WARMS: f64 = 3.0;
 
 impl<S: Space> Simulation<S> {
     /// Computes heat, and current where there is a circuit, from here on.
@@ -58,39 +63,39 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Where the heat of a contact enters its bodies.
-    fn heat_sides(
+    /// Where the heat of a contact enters a body that is no mesh.
+    fn heat_side(&self, heat: &Heat, contact: &Contact<S>, side: usize) -> HeatSide {
+        let body = contact.bodies[side] as usize;
+        let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
+        match heat.nodes[body].at::<S>(place) {
+            Some(node) => HeatSide::Node(node),
+            None => HeatSide::Insulated,
+        }
+    }
+
+    /// The nodes at which the heat of a contact enters a body that is a mesh of which the nodes begin at `first`.
+    fn mesh_side(
         &self,
-        heat: &Heat,
-        contact: &Contact<S>,
+        first: u32,
+        (contact, side): (&Contact<S>, usize),
         between: &mut Vec<Nodes>,
-    ) -> [HeatSide; 2] {
-        [0, 1].map(|side| {
-            let body = contact.bodies[side] as usize;
-            if let BodyNodes::Mesh(first, _) = heat.nodes[body] {
-                let Some(carrier) = self.state.bodies.carrier(body) else {
-                    return HeatSide::Insulated;
-                };
-                // The nearest place of the facet, whose shape functions are not negative; weights of a mean place may be.
-                let systems = &self.state.systems;
-                let nodes = systems.contact_nodes(carrier, &contact.arms[side]);
-                let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
-                let terms: Vec<(u32, f64)> = terms.collect();
-                return match (&terms[..], Nodes::sum(&terms)) {
-                    ([(node, _)], _) => HeatSide::Node(*node),
-                    (_, Some(nodes)) => {
-                        between.push(nodes);
-                        HeatSide::Between(between.len() as u32 - 1)
-                    }
-                    (_, None) => HeatSide::Insulated,
-                };
+    ) -> HeatSide {
+        let Some(carrier) = self.state.bodies.carrier(contact.bodies[side] as usize) else {
+            return HeatSide::Insulated;
+        };
+        // The nearest place of the facet, whose shape functions are not negative; weights of a mean place may be.
+        let systems = &self.state.systems;
+        let nodes = systems.contact_nodes(carrier, &contact.arms[side]);
+        let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
+        let terms: Vec<(u32, f64)> = terms.collect();
+        match (&terms[..], Nodes::sum(&terms)) {
+            ([(node, _)], _) => HeatSide::Node(*node),
+            (_, Some(nodes)) => {
+                between.push(nodes);
+                HeatSide::Between(between.len() as u32 - 1)
             }
-            let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
-            match heat.nodes[body].at::<S>(place) {
-                Some(node) => HeatSide::Node(node),
-                None => HeatSide::Insulated,
-            }
-        })
+            (_, None) => HeatSide::Insulated,
+        }
     }
 
     /// Gives the laws the temperatures of the contacts, as at the start of the step.
@@ -102,20 +107,15 @@ impl<S: Space> Simulation<S> {
         let mut thermal = self.state.network.thermal.take().unwrap_or_default();
         thermal.current = heat.circuit.is_some();
         thermal.conducts = thermal.current || state.pending_steps + 1 >= heat.every;
-        thermal.temperature.clear();
-        thermal.material.clear();
-        thermal.sides.clear();
-        thermal.between.clear();
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
-        let h = self.options.scheme.h;
+        thermal.between.clear();
         let flash = heat.flash.is_some() && self.begun(heat);
-        for contact in contacts {
+        let nodes: Vec<f64> = state.nodes.iter().map(|n| n.temperature).collect();
+        let see = |contact: &Contact<S>, sides: [HeatSide; 2], own: [Option<f64>; 2]| {
             let pair = heat.pair(contact.bodies);
-            let sides = self.heat_sides(heat, contact, &mut thermal.between);
-            let of = |side: HeatSide| thermal.temperature_of(side, &state.nodes);
             // An insulated body has the temperature of what it touches.
-            let [first, second] = match sides.map(of) {
+            let [first, second] = match own {
                 [Some(a), Some(b)] => [a, b],
                 [Some(t), None] | [None, Some(t)] => [t, t],
                 [None, None] => [heat.initial; 2],
@@ -123,12 +123,45 @@ impl<S: Space> Simulation<S> {
             // Two half-spaces of these temperatures meet at this one.
             let mut mean = second + pair.share * (first - second);
             if flash {
-                mean += self.flash_rise(heat, contact, h);
+                mean += self.flash_rise(heat, contact, self.options.scheme.h);
             }
-            thermal.temperature.push([mean, first, second]);
-            thermal.material.push(pair.material);
-            thermal.sides.push(sides);
+            ContactTemperature {
+                temperature: [mean, first, second],
+                material: pair.material,
+                sides,
+            }
+        };
+        let of_mesh = |body: u32| match heat.nodes[body as usize] {
+            BodyNodes::Mesh(first, _) => Some(first),
+            _ => None,
+        };
+        let mut seen = std::mem::take(&mut thermal.seen);
+        let divide = pays(self.options.solver.parallel, contacts.len(), SEES);
+        fill(divide, &mut seen, contacts.len(), |k| {
+            let contact = &contacts[k];
+            if contact.bodies.iter().any(|b| of_mesh(*b).is_some()) {
+                // Found below.
+                return ContactTemperature::default();
+            }
+            let sides = [0, 1].map(|side| self.heat_side(heat, contact, side));
+            let temperature = |side| thermal.temperature_of(side, |n| nodes[n]);
+            see(contact, sides, sides.map(temperature))
+        });
+        if !heat.elements.is_empty() {
+            for (contact, seen) in contacts.iter().zip(&mut seen) {
+                let meshes = contact.bodies.map(of_mesh);
+                if meshes == [None; 2] {
+                    continue;
+                }
+                let sides = [0, 1].map(|side| match meshes[side] {
+                    None => self.heat_side(heat, contact, side),
+                    Some(first) => self.mesh_side(first, (contact, side), &mut thermal.between),
+                });
+                let temperature = |side| thermal.temperature_of(side, |n| nodes[n]);
+                *seen = see(contact, sides, sides.map(temperature));
+            }
         }
+        thermal.seen = seen;
         self.state.network.thermal = Some(thermal);
     }
 
@@ -188,24 +221,29 @@ impl<S: Space> Simulation<S> {
     ) -> Result<(), DiffusionError> {
         let contacts = &self.state.network.contacts;
         let span = heat.clock * self.options.scheme.h;
-        thermal.source.clear();
-        thermal.source.resize(contacts.len(), 0.0);
+        let dissipation = self.state.network.dissipation.as_ref();
+        let dissipation = dissipation.filter(|_| self.begun(heat));
+        let divide = pays(self.options.solver.parallel, contacts.len(), WARMS);
+        fill(divide, &mut thermal.source, contacts.len(), |k| {
+            dissipation.map_or(0.0, |dissipation| heat.shares.heat(&dissipation[k]))
+        });
         if !self.begun(heat) {
             return Ok(());
-        }
-        if let Some(dissipation) = &self.state.network.dissipation {
-            for (source, dissipated) in thermal.source.iter_mut().zip(dissipation) {
-                *source = heat.shares.heat(dissipated);
-            }
         }
         state.ledger.dissipated += thermal.source.iter().sum::<f64>();
         self.flow_of_current(heat, state, thermal, span)?;
         let first_bodies = nodes_of_first_bodies(heat, state.nodes.len());
-        for ((contact, sides), source) in contacts.iter().zip(&thermal.sides).zip(&thermal.source) {
+        let mut warm = |node: usize, part: f64| {
+            state.pending[node] += part;
+            if let Some(received) = state.received.get_mut(first_bodies[node] as usize) {
+                *received += part;
+            }
+        };
+        for ((contact, seen), source) in contacts.iter().zip(&thermal.seen).zip(&thermal.source) {
             if *source == 0.0 {
                 continue;
             }
-            let share = match sides {
+            let share = match seen.sides {
                 [HeatSide::Insulated, HeatSide::Insulated] => {
                     state.ledger.fixed += source;
                     continue;
@@ -215,12 +253,13 @@ impl<S: Space> Simulation<S> {
                 _ => heat.share(contact.bodies),
             };
             state.ledger.pending += source;
-            for (side, part) in sides.iter().zip([share, 1.0 - share]) {
-                for (node, weight) in thermal.terms(*side) {
-                    let part = weight * part * source;
-                    state.pending[node] += part;
-                    if first_bodies[node] != NONE {
-                        state.received[first_bodies[node] as usize] += part;
+            for (side, part) in seen.sides.iter().zip([share, 1.0 - share]) {
+                match side {
+                    HeatSide::Insulated => {}
+                    HeatSide::Node(node) => warm(*node as usize, part * source),
+                    HeatSide::Between(_) => {
+                        let terms = thermal.terms(*side);
+                        terms.for_each(|(node, weight)| warm(node, weight * part * source));
                     }
                 }
             }
@@ -252,12 +291,13 @@ impl<S: Space> Simulation<S> {
         first_bodies: &[u32],
     ) -> Result<(), DiffusionError> {
         let span = state.pending_time;
-        let mut graph = Graph::new(state.nodes.len(), Vec::with_capacity(thermal.sides.len()));
+        let mut graph = Graph::new(state.nodes.len(), Vec::with_capacity(thermal.seen.len()));
         graph.elements.clone_from(&heat.elements);
-        for (sides, [conductance, _]) in thermal.sides.iter().zip(&thermal.conductance) {
+        for (seen, [conductance, _]) in thermal.seen.iter().zip(&thermal.conductance) {
             if *conductance == 0.0 {
                 continue;
             }
+            let sides = &seen.sides;
             if let [HeatSide::Node(a), HeatSide::Node(b)] = *sides {
                 graph.edges.push(Edge {
                     nodes: [a, b],

@@ -7,7 +7,7 @@
 //! sigma = C : (epsilon - e 1),   f_a = V (3 lambda + 2 G) e grad N_a
 //! ```
 //!
-//! with f_a the force of the free strain on a corner, and in large strain the energy is that of F/(1 + e), see [`crate::strain`]. In
+//! with f_a the force of the free strain on a corner, and in large strain the energy is (1 + e)^3 W(F/(1 + e)), see [`crate::strain`]. In
 //! plane strain the depth stays, so that a free body expands by (1 + nu) e in the plane.
 //!
 //! The free strain changes at the start of a step, where the displacement does not. What the stored energy gains by that is the work of expansion.
@@ -17,95 +17,127 @@
 use super::ElasticBody;
 use crate::compiled::Deformable;
 use crate::element::Simplex;
-use crate::material::Elasticity;
+use crate::material::{Elasticity, Symmetric};
+use fretwork_core::geometry::space::Space;
+use std::sync::Arc;
 
-/// Free strains of the elements of a body and what follows from them; all empty without expansion.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FreeStrain {
+/// Free strains of a body and what follows from them; all empty without expansion.
+#[derive(Clone, Debug)]
+pub(crate) struct FreeStrain<S: Space> {
+    /// Of each point of the mesh, or one of all.
+    of_points: Vec<f64>,
     /// Of each element.
     pub of_elements: Vec<f64>,
+    /// The elements in small strain.
+    simplices: Arc<Vec<Option<Simplex<S>>>>,
     /// Force on each coordinate in small strain (N; N/m in 2D).
     force: Vec<f64>,
     /// Work at each point by the last change (J; J/m in 2D).
     pub work: Vec<f64>,
 }
 
-impl FreeStrain {
+impl<S: Space> Default for FreeStrain<S> {
+    fn default() -> Self {
+        Self {
+            of_points: Vec::new(),
+            of_elements: Vec::new(),
+            simplices: Arc::default(),
+            force: Vec::new(),
+            work: Vec::new(),
+        }
+    }
+}
+
+impl<S: Space> FreeStrain<S> {
     /// Force on a coordinate (N; N/m in 2D).
     #[inline]
     pub fn force(&self, coordinate: usize) -> f64 {
         self.force.get(coordinate).copied().unwrap_or(0.0)
+    }
+
+    /// Of an element.
+    #[inline]
+    pub fn of(&self, element: usize) -> f64 {
+        self.of_elements.get(element).copied().unwrap_or(0.0)
     }
 }
 
 impl<S: Deformable> ElasticBody<S> {
     /// Takes the free strain of each point, or one of all points.
     pub(super) fn take_free_strain(&mut self, of_points: &[f64]) {
+        if of_points == self.free_strain.of_points {
+            self.free_strain.work.fill(0.0);
+            return;
+        }
+        self.find_simplices();
         let mesh = &self.model.mesh;
         let one = |p: u32| match of_points {
             [all] => *all,
             _ => of_points[p as usize],
         };
         let share = 1.0 / (S::D + 1) as f64;
-        let means = mesh.elements().map(|points| {
-            let sum: f64 = points.iter().map(|p| one(*p)).sum();
-            sum * share
-        });
-        let now: Vec<f64> = means.collect();
-        if now == self.free_strain.of_elements {
-            self.free_strain.work.fill(0.0);
-            return;
-        }
-        let before = std::mem::take(&mut self.free_strain.of_elements);
+        let mut now = Vec::new();
         let mut work = vec![0.0; mesh.points().len()];
         for (e, points) in mesh.elements().enumerate() {
-            let from = before.get(e).copied().unwrap_or(0.0);
-            if from == now[e] {
+            let (from, to) = (
+                self.free_strain.of(e),
+                share * points.iter().map(|p| one(*p)).sum::<f64>(),
+            );
+            now.push(to);
+            if from == to {
                 continue;
             }
             let gained = match &self.model.large {
                 Some(large) => {
                     let [to, from] =
-                        [now[e], from].map(|free| large.energy_of(e, &self.displacement, free));
+                        [to, from].map(|e_free| large.energy_of(e, &self.displacement, e_free));
                     to - from
                 }
-                None => self.energy_gained(points, from, now[e]),
+                None => self.energy_gained(e, points, [from, to]),
             };
             for p in points {
                 work[*p as usize] += gained * share;
             }
         }
-        self.free_strain = FreeStrain {
-            force: match self.model.large {
-                None => self.force_of(&now),
-                Some(_) => Vec::new(),
-            },
-            of_elements: now,
-            work,
-        };
+        self.free_strain.force = self.force_of(&now);
+        self.free_strain.of_elements = now;
+        self.free_strain.of_points = of_points.to_vec();
+        self.free_strain.work = work;
     }
 
-    /// Takes the free strains of the elements that a body was saved with.
-    pub(super) fn restore_free_strain(&mut self, of_elements: Vec<f64>) {
-        self.free_strain = FreeStrain {
-            force: match self.model.large {
-                None => self.force_of(&of_elements),
-                Some(_) => Vec::new(),
-            },
-            of_elements,
-            work: Vec::new(),
-        };
+    /// Takes the free strains of the elements that a body was saved with; false where they are not its own.
+    pub(super) fn restore_free_strain(&mut self, of_elements: Vec<f64>) -> bool {
+        if !of_elements.is_empty() && of_elements.len() != self.model.mesh.elements().count() {
+            return false;
+        }
+        self.find_simplices();
+        self.free_strain.force = self.force_of(&of_elements);
+        self.free_strain.of_elements = of_elements;
+        self.free_strain.of_points.clear();
+        self.free_strain.work.clear();
+        true
+    }
+
+    /// Finds the elements in small strain, where they are not known.
+    fn find_simplices(&mut self) {
+        if self.model.large.is_none() && self.free_strain.simplices.is_empty() {
+            let mesh = &self.model.mesh;
+            let simplex = |points: &[u32]| Simplex::<S>::new(&mesh.corners(points));
+            self.free_strain.simplices = Arc::new(mesh.elements().map(simplex).collect());
+        }
     }
 
     /// Force of free strains of the elements on each coordinate in small strain (N; N/m in 2D).
     fn force_of(&self, free: &[f64]) -> Vec<f64> {
+        if self.model.large.is_some() || free.is_empty() {
+            return Vec::new();
+        }
         let (mesh, freedoms) = (&self.model.mesh, &self.model.freedoms);
         let modulus = self.model.material.thermal_modulus();
         let mut force = vec![0.0; freedoms.total()];
-        for (points, free) in mesh.elements().zip(free) {
-            let Some(simplex) = Simplex::<S>::new(&mesh.corners(points)) else {
-                continue;
-            };
+        let elements = mesh.elements().zip(self.free_strain.simplices.iter());
+        for ((points, simplex), free) in elements.zip(free) {
+            let Some(simplex) = simplex else { continue };
             let pressure = simplex.volume * modulus * free;
             for (p, g) in points.iter().zip(simplex.gradients()) {
                 for axis in 0..S::D {
@@ -117,8 +149,8 @@ impl<S: Deformable> ElasticBody<S> {
     }
 
     /// What an element in small strain stores more (J; J/m in 2D) with one free strain than with another.
-    fn energy_gained(&self, points: &[u32], from: f64, to: f64) -> f64 {
-        let Some((simplex, strain)) = self.strain_of(points) else {
+    fn energy_gained(&self, e: usize, points: &[u32], [from, to]: [f64; 2]) -> f64 {
+        let Some((simplex, strain)) = self.strain_of(e, points) else {
             return 0.0;
         };
         let trace = strain[0] + strain[1] + strain[2];
@@ -128,8 +160,8 @@ impl<S: Deformable> ElasticBody<S> {
     }
 
     /// An element in small strain, and its strain.
-    fn strain_of(&self, points: &[u32]) -> Option<(Simplex<S>, [f64; 6])> {
-        let simplex = Simplex::<S>::new(&self.model.mesh.corners(points))?;
+    fn strain_of(&self, e: usize, points: &[u32]) -> Option<(&Simplex<S>, Symmetric)> {
+        let simplex = self.free_strain.simplices.get(e)?.as_ref()?;
         // Less that of the first corner: a translation leaves no rounding.
         let first = self.displacement(points[0]);
         let moved = points.iter().map(|p| self.displacement(*p) - first);
@@ -140,17 +172,13 @@ impl<S: Deformable> ElasticBody<S> {
     /// Energy stored in small strain with free strains (J; J/m in 2D).
     pub(super) fn stored_with_free_strain(&self) -> f64 {
         let material = &self.model.material;
-        let each = self
-            .model
-            .mesh
-            .elements()
-            .zip(&self.free_strain.of_elements);
-        let one = |(points, free): (&[u32], &f64)| {
-            let Some((simplex, strain)) = self.strain_of(points) else {
+        let one = |(e, points): (usize, &[u32])| {
+            let Some((simplex, strain)) = self.strain_of(e, points) else {
                 return 0.0;
             };
-            simplex.volume * material.energy(&Elasticity::less(&strain, *free))
+            let left = Elasticity::less(&strain, self.free_strain.of(e));
+            simplex.volume * material.energy(&left)
         };
-        each.map(one).sum()
+        self.model.mesh.elements().enumerate().map(one).sum()
     }
 }

@@ -20,9 +20,8 @@ impl<S: Deformable> ElasticBody<S> {
                 points.iter().map(|p| self.displacement(*p)).collect();
             simplex.map_or([0.0; 6], |s| {
                 let strain = s.strain(&displacements);
-                let free = self.free_strain.of_elements.get(e);
-                let strained = Elasticity::less(&strain, free.copied().unwrap_or(0.0));
-                self.model.material.stress(&strained)
+                let left = Elasticity::less(&strain, self.free_strain.of(e));
+                self.model.material.stress(&left)
             })
         };
         mesh.elements().enumerate().map(stress).collect()

@@ -216,7 +216,11 @@ fn friction(title: &str, table: &Table, cycles: &Cycles) -> Chart {
     let mu = Axis::new("friction coefficient µ", "");
     if !cycles.oscillates() {
         let x = Axis::new("relative displacement δ", "m");
-        let points = pairs(table, "delta", "mu");
+        let times = table.column("time").into_iter();
+        let points = times.zip(pairs(table, "delta", "mu"));
+        // What is before the friction is looked at belongs to a compaction.
+        let points = points.filter(|(time, _)| *time >= cycles.start());
+        let points: Vec<(f64, f64)> = points.map(|(_, point)| point).collect();
         let moves = points.iter().any(|p| p.0 != 0.0);
         let chart = headed("Friction coefficient against displacement", title, x, mu);
         let ends = [points.first(), points.last()].map(|p| p.map_or(0.0, |p| p.0));
@@ -496,8 +500,17 @@ mod tests {
         };
         let cycles = Cycles::new(0.0, None, 4.0);
         assert_eq!(shown(&table(&names, still), Some(&cycles)), [""; 0]);
-        let moved = (0..5).flat_map(|k| [f64::from(k), 1., 0., 0., 0., 0., 0., f64::from(k), 7.]);
-        let files = shown(&table(&names, moved.collect()), None);
+        let moved: Vec<f64> = (0..5)
+            .flat_map(|k| [f64::from(k), 1., 0., 0., 0., 0., 0., f64::from(k), 7.])
+            .collect();
+        let late = friction(
+            "case",
+            &table(&names, moved.clone()),
+            &Cycles::new(2.0, None, 4.0),
+        );
+        let drawn: Vec<usize> = late.series.iter().map(|s| s.points.len()).collect();
+        assert_eq!(drawn, [3], "rows before the start of the friction");
+        let files = shown(&table(&names, moved), None);
         assert_eq!(files, ["force_displacement.png", "energy.png"]);
     }
 }

@@ -115,14 +115,16 @@ impl ContactShares {
         // With a circuit conductances are known in every step, without in those in which heat flows.
         let steps = if thermal.current { 1 } else { heat.every };
         let span = heat.clock * h * steps as f64;
-        let temperature = |side: HeatSide| thermal.temperature_of(side, &state.nodes);
+        let temperature =
+            |side: HeatSide| thermal.temperature_of(side, |n| state.nodes[n].temperature);
         let contacts = s.state.network.contacts.iter();
         let heats = thermal
-            .sides
+            .seen
             .iter()
             .zip(&thermal.conductance)
             .zip(&thermal.source);
-        for (contact, ((sides, conductance), source)) in contacts.zip(heats) {
+        for (contact, ((seen, conductance), source)) in contacts.zip(heats) {
+            let sides = &seen.sides;
             for (side, body) in contact.bodies.into_iter().enumerate() {
                 let Some((k, _, pieces)) = bounded.iter().find(|b| b.1 == body) else {
                     continue;

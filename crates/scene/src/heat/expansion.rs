@@ -4,7 +4,7 @@ use super::Properties;
 use crate::case::{Case, HeatSpec};
 use crate::source::ValidationError;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::heat::{BodyNodes, ExpandingSystem, Heat, Store};
+use fretwork_core::heat::{BodyNodes, ExpandingSystem, Node, Store};
 use fretwork_core::step::Simulation;
 use std::collections::BTreeMap;
 
@@ -20,6 +20,11 @@ struct Coefficients<'a> {
 }
 
 impl Coefficients<'_> {
+    /// Whether the file of a material has one.
+    fn are_known(&self, material: usize) -> bool {
+        self.properties[material].contains_key("expansion")
+    }
+
     /// Of a material (1/K).
     fn of(&mut self, material: usize) -> Result<f64, ValidationError> {
         if let Some(found) = self.found.get(&material) {
@@ -65,7 +70,7 @@ pub(super) fn install<S: Space>(
     let systems = systems(&mut coefficients, spec, material, s)?;
     let none = systems.iter().all(|s| s.coefficient == 0.0);
     if none && rigid.iter().all(|c| *c == 0.0) {
-        let message = "no body of the case expands: what does are rigid grains, first bodies of balls, polygons or polyhedra that are `Lumped`, and bodies of `elastic`, of a material with an `expansion` other than zero";
+        let message = "no body of the case expands; bodies that do are rigid grains, first bodies of balls, polygons or polyhedra with the store `Lumped`, and bodies of `elastic`, of a material with an `expansion` other than zero";
         return Err(ValidationError::new("heat.expansion", message));
     }
     s.set_expansion(rigid, systems);
@@ -169,15 +174,15 @@ fn systems<S: Space>(
                 (own.map_or(0..0, |own| own.1.clone()), material)
             }
         };
-        let may_warm = |heat: &Heat| {
-            let own = &state.nodes[nodes.clone()];
-            let given = spec.bodies.get(name).and_then(|b| b.temperature);
-            let reference = given.unwrap_or(heat.initial);
-            let differs = own.iter().any(|n| n.temperature != reference);
-            differs || own.iter().any(|n| n.store != Store::Fixed)
-        };
-        if nodes.is_empty() || !(system.is_grain() || may_warm(heat)) {
+        let given = spec.bodies.get(name).and_then(|b| b.temperature);
+        let reference = given.unwrap_or(heat.initial);
+        let own = &state.nodes[nodes.clone()];
+        let changes = |n: &Node| n.store != Store::Fixed || n.temperature != reference;
+        if !system.is_grain() && !own.iter().any(changes) {
             continue;
+        }
+        if !system.expands() && !coefficients.are_known(material) {
+            return Err(does_not_expand(name, system.is_grain()));
         }
         let coefficient = coefficients.of(material)?;
         if coefficient == 0.0 {
@@ -186,12 +191,11 @@ fn systems<S: Space>(
         if !system.expands() {
             return Err(does_not_expand(name, system.is_grain()));
         }
-        let given = spec.bodies.get(name).and_then(|b| b.temperature);
         out.push(ExpandingSystem {
             system: index,
             nodes,
             coefficient,
-            reference: given.unwrap_or(heat.initial),
+            reference,
         });
     }
     Ok(out)

@@ -1,6 +1,6 @@
 //! Thermal expansion, and heat in finite elements.
 
-use super::{Table, effusivity, heat, plane, until};
+use super::{Table, effusivity, heat, plane, solid, until};
 use fretwork::geometry::space::Dim2;
 use fretwork::record::code::{decode, encode};
 use fretwork::step::Simulation;
@@ -23,6 +23,8 @@ pub fn all(table: &mut Table) {
     first_body(table);
     elements(table);
     held_elements(table);
+    bent(table);
+    in_space(table);
 }
 
 fn height(s: &Simulation<Dim2>, body: &str) -> f64 {
@@ -251,9 +253,8 @@ fn two_meshes(table: &mut Table) {
     assert!(all > 5e-3, "{all}");
     let quantity = "flow between two meshes, n G dT (W/m)";
     table.compare(case, quantity, 100.0 * all, flow, 1e-5);
-    let range = |t: &&[f64; 3]| t.iter().all(|t| (300.0..=400.0).contains(t));
-    let inside = thermal.temperature.iter().filter(range).count();
-    assert_eq!(inside, thermal.temperature.len());
+    let mut seen = thermal.seen.iter().flat_map(|seen| seen.temperature);
+    assert!(seen.all(|t| (300.0..=400.0).contains(&t)));
 }
 
 /// A square on springs between a floor and a load, which friction holds: its corners move outwards by alpha dT a, against the tangential stiffness of
@@ -447,5 +448,93 @@ fn held_elements(table: &mut Table) {
             closes,
             1e-10,
         );
+        let ledger = heat(&s).ledger;
+        let name = format!("{strain}: heat gone into work (J/m)");
+        table.compare(case, &name, energy.expansion, ledger.expansion, 1e-12);
+        let name = format!("{strain}: heat closes");
+        table.compare(case, &name, 0.0, ledger.relative_residual(), 1e-10);
+    }
+}
+
+/// A block that is warmer above than below, held at its left side in x alone, bends without stress.
+fn bent(table: &mut Table) {
+    let case = "thermal/mesh_expansion";
+    let sets = [
+        "bodies=[]",
+        "elastic.block.touches=Nothing",
+        "elastic.block.supports=[(part: \"left\", x: Fixed)]",
+        "elastic.block.mesh=Block(x: (from: 0.0, to: 1e-3, size: 2.5e-5), y: (from: 0.0, to: 1e-3, size: 2.5e-5))",
+        "heat.bodies={\"block\": (store: Mesh(fixed: {\"bottom\": 300.0, \"top\": 400.0}))}",
+        "time.step=1e-3",
+    ];
+    let mut s = plane(case, &sets);
+    until(&mut s, 0.2, |_| ());
+    let mesh = s.state.systems.get(0).and_then(|b| b.deformed_mesh());
+    let mesh = mesh.expect("a mesh");
+    // The mean over the height, which the change of the height along it leaves out.
+    let rise = |x: f64| {
+        let all = mesh.points.iter().zip(&mesh.displacement);
+        let there = all.filter(|(p, _)| (p.x - x).abs() < 1e-9);
+        let rises: Vec<f64> = there.map(|(_, u)| u.y).collect();
+        rises.iter().sum::<f64>() / rises.len() as f64
+    };
+    let bend = 0.5 * (1.0 + NU) * ALPHA * (RISE / 1e-3) * 1e-6;
+    let name = "warm above: bent down by (1 + nu) alpha (dT/dy) L^2/2 (m)";
+    table.compare(case, name, bend, rise(0.0) - rise(1e-3), 2e-2);
+    // In the plane; elements of one strain are off by that of their size.
+    let [xx, yy, xy] = [0, 1, 5].map(|k| {
+        let sizes = mesh.stress.iter().map(|s| s[k].abs());
+        sizes.fold(0.0, f64::max) / (YOUNG * ALPHA * RISE)
+    });
+    assert!(xx < 0.05 && yy < 0.05 && xy < 0.05, "{xx} {yy} {xy}");
+}
+
+/// A free block in space, with damping and theta 1/2: it grows evenly without stress by each measure of strain, and the same where steps are repeated.
+fn in_space(table: &mut Table) {
+    let case = "thermal/mesh_expansion_3d";
+    for strain in ["Small", "Corotational", "NeoHookean"] {
+        let set = format!("elastic.block.strain={strain}");
+        let [mut s, mut again] = [0, 1].map(|_| solid(case, &[&set]));
+        while s.state.time < 0.05 {
+            s.step().expect("a step");
+            // What a failed trial changes is put back.
+            let tried = again.attempt(|s| s.step().map_or(Err(()), |_| Err::<(), ()>(())));
+            assert_eq!(tried.expect("steps that repeat"), Err(()));
+            again.step().expect("a step");
+        }
+        let bytes = [&s, &again].map(|s| encode(&s.state).expect("bytes"));
+        assert_eq!(
+            bytes[0], bytes[1],
+            "{strain}: after steps that were put back"
+        );
+        let nodes = &heat(&s).nodes;
+        let warmer = nodes[nodes.len() - 1].temperature - 300.0;
+        assert!(warmer > 90.0, "{warmer}");
+        let body = s.state.systems.get(0).expect("the block");
+        let mesh = body.deformed_mesh().expect("a mesh");
+        // The free strain of the step is that of the temperature at its start.
+        let strain_now = mesh.displacement.iter().map(|u| u.x).fold(0.0, f64::max) / 1e-3;
+        let name = format!("{strain}: growth along x, alpha dT");
+        table.compare(case, &name, ALPHA * warmer, strain_now, 1e-3);
+        for (axis, length) in [(1, 2e-3), (2, 1.5e-3)] {
+            let most = mesh
+                .displacement
+                .iter()
+                .map(|u| u[axis])
+                .fold(0.0, f64::max);
+            let name = format!("{strain}: the same along axis {axis}");
+            table.compare(case, &name, strain_now, most / length, 1e-6);
+        }
+        let stress = mesh.stress.iter().flatten();
+        let most = stress.fold(0.0, |m: f64, s| m.max(s.abs())) / (YOUNG * ALPHA * warmer);
+        assert!(most < 1e-3, "{strain}: {most}");
+        let energy = s.energies();
+        let name = format!("{strain}: energy closes");
+        table.compare(case, &name, 0.0, energy.relative_residual(), 1e-10);
+        let ledger = heat(&s).ledger;
+        let name = format!("{strain}: heat gone into work (J)");
+        table.compare(case, &name, energy.expansion, ledger.expansion, 1e-12);
+        let name = format!("{strain}: heat closes");
+        table.compare(case, &name, 0.0, ledger.relative_residual(), 1e-10);
     }
 }

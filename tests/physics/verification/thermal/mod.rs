@@ -193,7 +193,7 @@ fn order_in_step(table: &mut Table) {
         (s.temperature(grain).expect("a temperature") - exact).abs()
     };
     for (theta, expected) in [("1.0", 1.0), ("0.5", 2.0)] {
-        let [a, b, c] = ["2e-2", "1e-2", "5e-3"].map(|step| error(step, theta));
+        let [a, b, c] = ["1e-2", "5e-3", "2.5e-3"].map(|step| error(step, theta));
         for (coarse, fine) in [(a, b), (b, c)] {
             let name = format!("a grain that cools: order in step, theta = {theta}");
             table.compare(case, &name, expected, (coarse / fine).log2(), 0.03);

@@ -151,13 +151,7 @@ fn flash(table: &mut Table) {
         let contacts: Vec<f64> = s.contacts().map(|c| c.normal_force).collect();
         let before: Vec<f64> = ["floor", "block"].map(|b| temperature(&s, b)).to_vec();
         s.step().expect("a step");
-        let seen = &s
-            .state
-            .network
-            .thermal
-            .as_ref()
-            .expect("temperatures")
-            .temperature;
+        let seen = &s.state.network.thermal.as_ref().expect("temperatures").seen;
         let mean = (oxide * before[0] + steel * before[1]) / (oxide + steel);
         for (force, seen) in contacts.iter().zip(seen) {
             let (v, width) = (0.1 / clock, force / 1e9);
@@ -165,7 +159,7 @@ fn flash(table: &mut Table) {
             let rise = |e: f64| 2.0 * flux * (width / (0.5 * v)).sqrt() / (e * PI.sqrt());
             let exact = 1.0 / (1.0 / rise(steel) + 1.0 / rise(oxide));
             let name = format!("flash temperature, clock {clock} (K)");
-            table.compare(case, &name, exact, seen[0] - mean, 1e-6);
+            table.compare(case, &name, exact, seen.temperature[0] - mean, 1e-6);
         }
     }
     for (quantity, sets) in [
@@ -179,9 +173,10 @@ fn flash(table: &mut Table) {
         until(&mut cold, 5e-4, |_| ());
         let thermal = cold.state.network.thermal.as_ref().expect("temperatures");
         let off = thermal
-            .temperature
+            .seen
             .iter()
-            .map(|[t, a, b]| (t - a.max(*b)).max(0.0));
+            .map(|seen| seen.temperature)
+            .map(|[t, a, b]| (t - a.max(b)).max(0.0));
         table.compare(case, quantity, 0.0, off.sum(), 1e-12);
     }
 }
