@@ -1,27 +1,34 @@
 //! Cost of heat and current.
 //!
 //! `cargo bench --bench heat` steps the headline case in the middle of its fretting, and boxes of disks of several sizes, without heat, with
-//! heat, and with heat and a current, in turns in one run, and prints the shares of a step that these take, as in `docs/heat.md`. The steps without
-//! heat have the bits of a case that has never heard of it.
+//! heat, and with heat and a current, and prints the shares of a step that these take, as in `docs/heat.md`. The steps without
+//! heat have the bits of a case that has never heard of it. With `-- headline` it does the first alone.
+//!
+//! Each variant steps in processes of its own, which take turns: in one process two simulations of the same case differ by up to 9 %, by
+//! where their memory lies. On one thread, as the heat of a step is solved.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
-use fretwork::step::Simulation;
 use std::path::Path;
+use std::process::Command;
 use std::time::Instant;
 
-/// Steps of a turn, and turns of the headline case and of the packings.
-const STEPS: u32 = 10;
-const TURNS: [usize; 2] = [31, 9];
+/// What a process that times one variant is asked for: this word, the case, steps before and in the time, and `--set`s.
+const ONE: &str = "--one";
 
 fn main() {
+    let asked: Vec<String> = std::env::args().collect();
+    if let Some(at) = asked.iter().position(|a| a == ONE) {
+        println!("{}", time(&asked[at + 1..]));
+        return;
+    }
     println!(
         "| scene | grains | contacts | step without heat | sources only | every 10 steps | with heat | with current |"
     );
     println!("|---|---|---|---|---|---|---|---|");
     headline();
-    if std::env::args().any(|a| a == "headline") {
+    if asked.iter().any(|a| a == "headline") {
         return;
     }
     for grains in [1250, 5000, 20000] {
@@ -49,10 +56,10 @@ fn headline() {
     compare(
         "third body",
         "wheel_rail_fretting",
-        1000,
+        [1000, 300],
         [Vec::new(), sources, seldom, warm, current],
         &[],
-        TURNS[0],
+        7,
     );
 }
 
@@ -83,10 +90,11 @@ fn boxes(grains: usize) {
     compare(
         "packing",
         "verification/thermal/network",
-        50,
+        // A larger box takes longer to come together.
+        [(grains as f64).sqrt() as u32 * 3 / 2, 60],
         [plain, sources, seldom, heat, current],
         &common,
-        TURNS[1],
+        3,
     );
 }
 
@@ -94,36 +102,35 @@ fn boxes(grains: usize) {
 fn compare(
     scene: &str,
     case: &str,
-    first: u32,
+    steps: [u32; 2],
     variants: [Vec<String>; 5],
     common: &[String],
     turns: usize,
 ) {
-    let mut simulations: Vec<Simulation<Dim2>> = variants
-        .iter()
-        .map(|sets| {
-            let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-            let sets: Vec<String> = common.iter().chain(sets).cloned().collect();
-            let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-            let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
-            let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
-            for _ in 0..first {
-                s.step().unwrap_or_else(|e| panic!("{e}"));
-            }
-            s
-        })
-        .collect();
-    let turns: Vec<Vec<f64>> = (0..turns)
-        .map(|_| simulations.iter_mut().map(time).collect())
+    let program = std::env::current_exe().unwrap_or_else(|e| panic!("{e}"));
+    let one = |sets: &Vec<String>| {
+        let mut command = Command::new(&program);
+        command.arg(ONE).arg(case);
+        command.args(steps.map(|n| n.to_string()));
+        let output = command.args(common.iter().chain(sets)).output();
+        let said = output.unwrap_or_else(|e| panic!("{e}")).stdout;
+        let said = String::from_utf8_lossy(&said).into_owned();
+        let numbers = said
+            .split_whitespace()
+            .map(|x| x.parse().unwrap_or(f64::NAN));
+        numbers.collect::<Vec<f64>>()
+    };
+    let turns: Vec<Vec<Vec<f64>>> = (0..turns)
+        .map(|_| variants.iter().map(one).collect())
         .collect();
     // Of times that lie beside each other, so that what else the machine does changes both.
-    let share = |k: usize| 100.0 * (median(turns.iter().map(|t| t[k] / t[0])) - 1.0);
-    let plain = 1e3 * median(turns.iter().map(|t| t[0])) / f64::from(STEPS);
-    let s = &simulations[0];
+    let share = |k: usize| 100.0 * (median(turns.iter().map(|t| t[k][0] / t[0][0])) - 1.0);
+    let plain = 1e3 * median(turns.iter().map(|t| t[0][0]));
+    let of_scene = &turns[0][0];
     println!(
         "| {scene} | {} | {} | {:.2} ms | {:+.1} % | {:+.1} % | {:+.1} % | {:+.1} % |",
-        s.state.bodies.grains().count(),
-        s.state.network.contacts.len(),
+        of_scene[1],
+        of_scene[2],
         plain,
         share(1),
         share(2),
@@ -132,13 +139,28 @@ fn compare(
     );
 }
 
-/// Time of some steps (s).
-fn time(s: &mut Simulation<Dim2>) -> f64 {
-    let clock = Instant::now();
-    for _ in 0..STEPS {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
-    clock.elapsed().as_secs_f64()
+/// Steps one variant; gives the time of a step (s), grains and contacts.
+fn time(asked: &[String]) -> String {
+    let [case, first, steps, sets @ ..] = asked else {
+        panic!("the case, the steps before and in the time");
+    };
+    let [first, steps] = [first, steps].map(|n| n.parse::<u32>().unwrap_or_else(|e| panic!("{e}")));
+    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
+    let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    s.options.solver.parallel = false;
+    let mut make = |steps: u32| {
+        let clock = Instant::now();
+        for _ in 0..steps {
+            s.step().unwrap_or_else(|e| panic!("{e}"));
+        }
+        clock.elapsed().as_secs_f64() / f64::from(steps)
+    };
+    make(first);
+    let each = make(steps);
+    let grains = s.state.bodies.grains().count();
+    format!("{each:e} {grains} {}", s.state.network.contacts.len())
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {

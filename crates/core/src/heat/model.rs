@@ -105,6 +105,17 @@ pub struct MaterialPair {
     pub share: f64,
 }
 
+/// A heat flow from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Imposed {
+    /// The body that takes it, with which it ends; none of a mesh that touches nothing, which stays.
+    pub body: Option<u32>,
+    /// The node.
+    pub node: u32,
+    /// The flow (W; W/m in 2D).
+    pub flow: f64,
+}
+
 /// Heat of a scene, as a case gives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heat {
@@ -122,8 +133,8 @@ pub struct Heat {
     pub elements: Vec<Edge>,
     /// First bodies that heat flows into, with their nodes: driven ones in their order, then those of finite elements.
     pub first_bodies: Vec<(String, Range<usize>)>,
-    /// Heat flows imposed on bodies: body, node and flow (W; W/m in 2D).
-    pub imposed: Vec<(u32, u32, f64)>,
+    /// Heat flows imposed from outside.
+    pub imposed: Vec<Imposed>,
     /// Temperature of what has no node, where nothing that it touches has one (K).
     pub initial: f64,
     /// What becomes heat.

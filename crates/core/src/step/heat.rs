@@ -6,7 +6,7 @@ use super::{Simulation, StepError};
 use crate::bodies::Nodes;
 use crate::contact::{Bond, Contact, ContactHeat, ContactTemperature, HeatSide};
 use crate::geometry::space::{Space, VectorLike};
-use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Store};
+use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Imposed, Store};
 use crate::threads::{fill, pays};
 use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
 
@@ -63,16 +63,6 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Where the heat of a contact enters a body that is no mesh.
-    fn heat_side(&self, heat: &Heat, contact: &Contact<S>, side: usize) -> HeatSide {
-        let body = contact.bodies[side] as usize;
-        let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
-        match heat.nodes[body].at::<S>(place) {
-            Some(node) => HeatSide::Node(node),
-            None => HeatSide::Insulated,
-        }
-    }
-
     /// The nodes at which the heat of a contact enters a body that is a mesh of which the nodes begin at `first`.
     fn mesh_side(
         &self,
@@ -111,7 +101,28 @@ impl<S: Space> Simulation<S> {
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         thermal.between.clear();
         let flash = heat.flash.is_some() && self.begun(heat);
-        let nodes: Vec<f64> = state.nodes.iter().map(|n| n.temperature).collect();
+        let temperature = |node: usize| state.nodes[node].temperature;
+        // What most bodies are, side by side in memory: of one temperature.
+        let ends: Vec<Option<(HeatSide, Option<f64>)>> = heat
+            .nodes
+            .iter()
+            .map(|nodes| match nodes {
+                BodyNodes::Insulated => Some((HeatSide::Insulated, None)),
+                BodyNodes::One(node) => {
+                    Some((HeatSide::Node(*node), Some(temperature(*node as usize))))
+                }
+                BodyNodes::Pieces(..) | BodyNodes::Mesh(..) => None,
+            })
+            .collect();
+        let end = |contact: &Contact<S>, side: usize| {
+            let body = contact.bodies[side] as usize;
+            let found = ends[body].or_else(|| {
+                let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
+                let node = heat.nodes[body].at::<S>(place)?;
+                Some((HeatSide::Node(node), Some(temperature(node as usize))))
+            });
+            found.unwrap_or((HeatSide::Insulated, None))
+        };
         let see = |contact: &Contact<S>, sides: [HeatSide; 2], own: [Option<f64>; 2]| {
             let pair = heat.pair(contact.bodies);
             // An insulated body has the temperature of what it touches.
@@ -131,22 +142,17 @@ impl<S: Space> Simulation<S> {
                 sides,
             }
         };
-        let of_mesh = |body: u32| match heat.nodes[body as usize] {
-            BodyNodes::Mesh(first, _) => Some(first),
-            _ => None,
-        };
         let mut seen = std::mem::take(&mut thermal.seen);
         let divide = pays(self.options.solver.parallel, contacts.len(), SEES);
         fill(divide, &mut seen, contacts.len(), |k| {
             let contact = &contacts[k];
-            if contact.bodies.iter().any(|b| of_mesh(*b).is_some()) {
-                // Found below.
-                return ContactTemperature::default();
-            }
-            let sides = [0, 1].map(|side| self.heat_side(heat, contact, side));
-            let temperature = |side| thermal.temperature_of(side, |n| nodes[n]);
-            see(contact, sides, sides.map(temperature))
+            let [first, second] = [0, 1].map(|side| end(contact, side));
+            see(contact, [first.0, second.0], [first.1, second.1])
         });
+        let of_mesh = |body: u32| match heat.nodes[body as usize] {
+            BodyNodes::Mesh(first, _) => Some(first),
+            _ => None,
+        };
         if !heat.elements.is_empty() {
             for (contact, seen) in contacts.iter().zip(&mut seen) {
                 let meshes = contact.bodies.map(of_mesh);
@@ -154,11 +160,11 @@ impl<S: Space> Simulation<S> {
                     continue;
                 }
                 let sides = [0, 1].map(|side| match meshes[side] {
-                    None => self.heat_side(heat, contact, side),
+                    None => seen.sides[side],
                     Some(first) => self.mesh_side(first, (contact, side), &mut thermal.between),
                 });
-                let temperature = |side| thermal.temperature_of(side, |n| nodes[n]);
-                *seen = see(contact, sides, sides.map(temperature));
+                let own = sides.map(|side| thermal.temperature_of(side, temperature));
+                *seen = see(contact, sides, own);
             }
         }
         thermal.seen = seen;
@@ -264,9 +270,9 @@ impl<S: Space> Simulation<S> {
                 }
             }
         }
-        for (body, node, flow) in &heat.imposed {
-            let removed = self.state.bodies.removed.get(*body as usize);
-            if removed.is_some_and(|removed| *removed) {
+        for Imposed { body, node, flow } in &heat.imposed {
+            let removed = |body: u32| self.state.bodies.removed.get(body as usize);
+            if body.and_then(removed).is_some_and(|removed| *removed) {
                 continue;
             }
             state.pending[*node as usize] += flow * span;

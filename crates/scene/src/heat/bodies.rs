@@ -5,7 +5,8 @@ use crate::source::ValidationError;
 use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{
-    BodyNodes, Columns, Edge, Grid, HalfSpace, Node, PieceAxis, Pieces, Store, ThermalMaterial,
+    BodyNodes, Columns, Edge, Grid, HalfSpace, Imposed, Node, PieceAxis, Pieces, Store,
+    ThermalMaterial,
 };
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
@@ -25,8 +26,7 @@ pub(super) struct Nodes {
     pub elements: Vec<Edge>,
     /// See [`fretwork_core::heat::Heat::first_bodies`].
     pub first_bodies: Vec<(String, Range<usize>)>,
-    /// Body, node and heat flow (W; W/m in 2D).
-    pub imposed: Vec<(u32, u32, f64)>,
+    pub imposed: Vec<Imposed>,
 }
 
 /// What nodes of bodies are made from.
@@ -171,7 +171,11 @@ impl Nodes {
                 node.ambient = face.ambient;
             }
             if spec.power != 0.0 {
-                self.imposed.push((body as u32, node, spec.power * share));
+                self.imposed.push(Imposed {
+                    body: Some(body as u32),
+                    node,
+                    flow: spec.power * share,
+                });
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use crate::case::{BodyHeatSpec, Case, MeshHeatSpec, StoreSpec};
 use crate::source::{ValidationError, nearest};
 use fretwork_core::bodies::{Conduction, DynamicalSystem};
 use fretwork_core::geometry::space::Space;
-use fretwork_core::heat::{BodyNodes, Edge, Node, Store};
+use fretwork_core::heat::{BodyNodes, Edge, Imposed, Node, Store};
 use std::f64::consts::PI;
 
 impl Nodes {
@@ -81,8 +81,11 @@ impl Nodes {
             node.ambient = face.ambient;
         }
         if spec.power != 0.0 {
-            self.imposed
-                .push((body.unwrap_or(u32::MAX), first, spec.power));
+            self.imposed.push(Imposed {
+                body,
+                node: first,
+                flow: spec.power,
+            });
         }
         self.list.push(node);
         Ok(BodyNodes::One(first))
@@ -133,7 +136,11 @@ impl Nodes {
         }
         for (name, flux) in &spec.flux {
             for (point, area) in part("flux", name)? {
-                self.imposed.push((u32::MAX, first + point, flux * area));
+                self.imposed.push(Imposed {
+                    body: None,
+                    node: first + point,
+                    flow: flux * area,
+                });
             }
         }
         for (name, temperature) in &spec.fixed {
