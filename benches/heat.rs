@@ -11,7 +11,7 @@ use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// What a process that times one variant is asked for: this word, the case, steps before and in the time, and `--set`s.
@@ -112,13 +112,15 @@ fn compare(
         let mut command = Command::new(&program);
         command.arg(ONE).arg(case);
         command.args(steps.map(|n| n.to_string()));
-        let output = command.args(common.iter().chain(sets)).output();
-        let said = output.unwrap_or_else(|e| panic!("{e}")).stdout;
-        let said = String::from_utf8_lossy(&said).into_owned();
-        let numbers = said
-            .split_whitespace()
-            .map(|x| x.parse().unwrap_or(f64::NAN));
-        numbers.collect::<Vec<f64>>()
+        command
+            .args(common.iter().chain(sets))
+            .stderr(Stdio::inherit());
+        let output = command.output().unwrap_or_else(|e| panic!("{e}"));
+        assert!(output.status.success(), "{command:?}");
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let numbers = said.split_whitespace().map(str::parse);
+        let numbers: Result<Vec<f64>, _> = numbers.collect();
+        numbers.unwrap_or_else(|e| panic!("{e}: {said}"))
     };
     let turns: Vec<Vec<Vec<f64>>> = (0..turns)
         .map(|_| variants.iter().map(one).collect())

@@ -58,18 +58,30 @@ impl<'a> System<'a> {
         let mut ends = places.clone();
         for e in edges.iter().filter(joins) {
             let [a, b] = e.nodes;
-            for (from, to) in [(a, b), (b, a)] {
-                let (first, end) = (places[from as usize], &mut ends[from as usize]);
+            let find = |from: u32, to: u32| {
+                let first = places[from as usize] as usize;
+                let known = &listed[first..ends[from as usize] as usize];
+                // Contacts of one pair follow each other.
+                let place = known.iter().rposition(|(k, _)| *k == to)?;
+                Some(first + place)
+            };
+            // A node may have thousands of neighbours: the other says whether the pair is new.
+            let degree = |k: u32| ends[k as usize] - places[k as usize];
+            let (few, many) = if degree(a) <= degree(b) {
+                (a, b)
+            } else {
+                (b, a)
+            };
+            let found = find(few, many).and_then(|place| Some([place, find(many, few)?]));
+            match found {
                 // Two contacts of one pair add up.
-                let known = &mut listed[first as usize..*end as usize];
-                match known.iter_mut().find(|(k, _)| *k == to) {
-                    Some((_, conductance)) => *conductance += e.conductance,
-                    None => {
-                        listed[*end as usize] = (to, e.conductance);
-                        *end += 1;
-                    }
-                }
-            }
+                Some(both) => both.map(|place| listed[place].1 += e.conductance),
+                None => [(a, b), (b, a)].map(|(from, to)| {
+                    let end = &mut ends[from as usize];
+                    listed[*end as usize] = (to, e.conductance);
+                    *end += 1;
+                }),
+            };
         }
         let (mut starts, mut neighbours) = (Vec::with_capacity(n + 1), Vec::new());
         for (first, end) in places.iter().zip(&ends) {

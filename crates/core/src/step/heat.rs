@@ -142,25 +142,30 @@ impl<S: Space> Simulation<S> {
                 sides,
             }
         };
-        let mut seen = std::mem::take(&mut thermal.seen);
-        let divide = pays(self.options.solver.parallel, contacts.len(), SEES);
-        fill(divide, &mut seen, contacts.len(), |k| {
-            let contact = &contacts[k];
-            let [first, second] = [0, 1].map(|side| end(contact, side));
-            see(contact, [first.0, second.0], [first.1, second.1])
-        });
         let of_mesh = |body: u32| match heat.nodes[body as usize] {
             BodyNodes::Mesh(first, _) => Some(first),
             _ => None,
         };
-        if !heat.elements.is_empty() {
+        let meshes = (heat.nodes.iter()).any(|nodes| matches!(nodes, BodyNodes::Mesh(..)));
+        let mut seen = std::mem::take(&mut thermal.seen);
+        let divide = pays(self.options.solver.parallel, contacts.len(), SEES);
+        fill(divide, &mut seen, contacts.len(), |k| {
+            let contact = &contacts[k];
+            if meshes && contact.bodies.iter().any(|b| of_mesh(*b).is_some()) {
+                // Found below.
+                return ContactTemperature::default();
+            }
+            let [first, second] = [0, 1].map(|side| end(contact, side));
+            see(contact, [first.0, second.0], [first.1, second.1])
+        });
+        if meshes {
             for (contact, seen) in contacts.iter().zip(&mut seen) {
-                let meshes = contact.bodies.map(of_mesh);
-                if meshes == [None; 2] {
+                let own = contact.bodies.map(of_mesh);
+                if own == [None; 2] {
                     continue;
                 }
-                let sides = [0, 1].map(|side| match meshes[side] {
-                    None => seen.sides[side],
+                let sides = [0, 1].map(|side| match own[side] {
+                    None => end(contact, side).0,
                     Some(first) => self.mesh_side(first, (contact, side), &mut thermal.between),
                 });
                 let own = sides.map(|side| thermal.temperature_of(side, temperature));
