@@ -1,6 +1,7 @@
 """Temperatures of the two surfaces of a sliding contact: a run of cases/surface_temperatures.ron beside a one-dimensional reference (docs/heat.md).
 
-Variant B as an example: its options, from the head of the case, go to both runs (none for A). `fretwork` stands for `cargo run --release --` in a clone.
+Variant B as an example, in bash: its options, from the head of the case, go to both runs (none for A). `fretwork` stands for `cargo run --release --` in a clone.
+Other seeds (`--set seed=2` in the first run) go with the second run as it is.
 
     VARIANT="--set interfaces.inside.parameters.contact.mu=0.6 --set interfaces.lower.parameters.contact.mu=0.3"
     fretwork run cases/surface_temperatures.ron --out target/validation/B $VARIANT
@@ -39,6 +40,11 @@ def case_of(folder):
     data = (folder / "results.h5").read_bytes()
     middle = data.index(b"materials: {")
     return re.sub(r"//.*", "", data[data.rindex(b"\0", 0, middle) + 1 : data.index(b"\0", middle)].decode())
+
+
+def scene_of(case):
+    """What of a case is not of its heat or its output, without its seed."""
+    return re.sub(r"\bseed: \d+", "", case[: case.index("heat: (")])
 
 
 def material_of(role, case):
@@ -151,9 +157,12 @@ def main():
     words.add_argument("--source", choices=["measured", "one_surface", "even"], default="measured", help=source)
     given = words.parse_args()
     case, still = case_of(given.run), case_of(given.conduction_run)
-    variant = lambda text: re.findall(r'"mu": [^,}]+|materials: \{[^}]*\}', text)
-    if variant(case) != variant(still) or "clock:" in case:
-        raise SystemExit("the runs are of different variants, or have a clock")
+    if scene_of(case) != scene_of(still):
+        raise SystemExit("the two runs must be of one case but for `seed` and `heat`: give the options of the variant to both")
+    if still.count("store: Fixed") < 2:
+        raise SystemExit("the conduction run must keep the temperatures of both surfaces: see the head of this script")
+    if "clock:" in case + still:
+        raise SystemExit("the runs must be without `heat.clock`")
     names = re.search(r'ThirdBody\([^)]*between: \("([^"]+)", "([^"]+)"\)', case).groups()
     bodies = [material_of(one(rf'name: "{name}",\s*material: "([^"]+)"', case), case) for name in names]
     grain = material_of(one(r'grains: \[\s*\w+\(material: "([^"]+)"', case), case)
@@ -174,6 +183,8 @@ def main():
         measured = rows[f"{name}_temperature"][-1] - rows[f"{name}_temperature"][0]
         print(f"{place + ' surface, above the start (K)':33}{measured:9.1f}{found:12.1f}{measured - found:12.1f}")
     into = [sum(q * (b - a) for q, a, b in zip(rows[f"{name}_heat_flow"], [0.0, *times], times)) for name in names]
+    for place, own, found in zip(("lower", "upper"), into, stored):
+        print(f"{'heat into the ' + place + ' body (J/m)':33}{own:9.2f}{found * period:12.2f}{own - found * period:12.2f}")
     print(f"{'share of heat in the lower body':33}{into[0] / sum(into):9.3f}{stored[0] / sum(stored):12.3f}")
 
 
