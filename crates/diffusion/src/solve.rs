@@ -29,8 +29,8 @@ pub struct System<'a> {
     right: &'a [f64],
     /// The whole diagonal.
     diagonal: Vec<f64>,
-    /// Where the neighbours of each unknown begin, and the end.
-    starts: Vec<u32>,
+    /// Where the neighbours of each unknown begin and end.
+    rows: Vec<[u32; 2]>,
     /// Neighbours of the unknowns in turn, with the sum of the conductances to each.
     neighbours: Vec<(u32, f64)>,
 }
@@ -48,25 +48,24 @@ impl<'a> System<'a> {
                 counts[k as usize] += 1;
             }
         }
-        let mut places = Vec::with_capacity(n + 1);
+        let mut rows = Vec::with_capacity(n);
         let mut total = 0u32;
         for count in &counts {
-            places.push(total);
+            rows.push([total; 2]);
             total += count;
         }
-        let mut listed = vec![(0u32, 0.0); total as usize];
-        let mut ends = places.clone();
+        let mut neighbours = vec![(0u32, 0.0); total as usize];
         for e in edges.iter().filter(joins) {
             let [a, b] = e.nodes;
             let find = |from: u32, to: u32| {
-                let first = places[from as usize] as usize;
-                let known = &listed[first..ends[from as usize] as usize];
+                let [first, end] = rows[from as usize].map(|x| x as usize);
+                let known = &neighbours[first..end];
                 // Contacts of one pair follow each other.
                 let place = known.iter().rposition(|(k, _)| *k == to)?;
                 Some(first + place)
             };
             // A node may have thousands of neighbours: the other says whether the pair is new.
-            let degree = |k: u32| ends[k as usize] - places[k as usize];
+            let degree = |k: u32| rows[k as usize][1] - rows[k as usize][0];
             let (few, many) = if degree(a) <= degree(b) {
                 (a, b)
             } else {
@@ -75,25 +74,19 @@ impl<'a> System<'a> {
             let found = find(few, many).and_then(|place| Some([place, find(many, few)?]));
             match found {
                 // Two contacts of one pair add up.
-                Some(both) => both.map(|place| listed[place].1 += e.conductance),
+                Some(both) => both.map(|place| neighbours[place].1 += e.conductance),
                 None => [(a, b), (b, a)].map(|(from, to)| {
-                    let end = &mut ends[from as usize];
-                    listed[*end as usize] = (to, e.conductance);
+                    let end = &mut rows[from as usize][1];
+                    neighbours[*end as usize] = (to, e.conductance);
                     *end += 1;
                 }),
             };
         }
-        let (mut starts, mut neighbours) = (Vec::with_capacity(n + 1), Vec::new());
-        for (first, end) in places.iter().zip(&ends) {
-            starts.push(neighbours.len() as u32);
-            neighbours.extend_from_slice(&listed[*first as usize..*end as usize]);
-        }
-        starts.push(neighbours.len() as u32);
         Self {
             own,
             right,
             diagonal,
-            starts,
+            rows,
             neighbours,
         }
     }
@@ -144,16 +137,15 @@ impl<'a> System<'a> {
 
     /// The neighbours of an unknown.
     fn around(&self, k: usize) -> &[(u32, f64)] {
-        &self.neighbours[self.starts[k] as usize..self.starts[k + 1] as usize]
+        let [first, end] = self.rows[k].map(|x| x as usize);
+        &self.neighbours[first..end]
     }
 
     /// The product of the matrix with x. Differences are formed first, so that what leaves one unknown arrives in the other to the last bit.
     fn product(&self, x: &[f64], out: &mut [f64]) {
-        let rows = self.starts.windows(2).zip(self.own).zip(x);
-        for (out, ((row, own), here)) in out.iter_mut().zip(rows) {
-            let around = &self.neighbours[row[0] as usize..row[1] as usize];
+        for (k, ((out, own), here)) in out.iter_mut().zip(self.own).zip(x).enumerate() {
             let mut sum = own * here;
-            for (j, g) in around {
+            for (j, g) in self.around(k) {
                 sum += g * (here - x[*j as usize]);
             }
             *out = sum;

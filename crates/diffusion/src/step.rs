@@ -107,7 +107,9 @@ fn solve(
         own[u] += node.surroundings;
         right[u] += sources[k] + node.surroundings * (node.ambient - node.temperature);
     }
-    let mut inner: Vec<Edge> = Vec::with_capacity(graph.edges.len() + graph.elements.len());
+    // Where all nodes are unknowns, edges between nodes are those between unknowns.
+    let all_unknown = list.len() == nodes.len() && graph.elements.is_empty();
+    let mut inner: Vec<Edge> = Vec::new();
     for e in graph.all() {
         let [a, b] = e.nodes.map(|n| n as usize);
         let flow = e.conductance * (nodes[b].temperature - nodes[a].temperature);
@@ -116,6 +118,9 @@ fn solve(
             if u != u32::MAX {
                 right[u as usize] += flow;
             }
+        }
+        if all_unknown {
+            continue;
         }
         match (ua == u32::MAX, ub == u32::MAX) {
             (false, false) if ua != ub => inner.push(Edge {
@@ -129,7 +134,8 @@ fn solve(
     }
     // As in the step before, until a better answer.
     let guess = list.iter().map(|&k| w * nodes[k].rate).collect();
-    let [mut change, left] = System::new(&own, &inner, &right).complete(guess)?;
+    let inner = if all_unknown { &graph.edges } else { &inner };
+    let [mut change, left] = System::new(&own, inner, &right).complete(guess)?;
     change
         .iter_mut()
         .zip(&left)

@@ -110,7 +110,11 @@ impl Cycle {
 impl Cycles {
     /// Time from which on friction is looked at (s).
     pub fn start(&self) -> f64 {
-        self.clock.start
+        match self.clock.period {
+            Some(_) => self.clock.start,
+            // The clock counts the second half alone.
+            None => 2.0 * self.clock.start - self.end,
+        }
     }
 
     /// Cycles of length `period` from `start` on; without a period the second half of the time from `start`

@@ -75,11 +75,12 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
         format!("{name} {what}")
     };
     let bodies: Vec<String> = heat.first_bodies.iter().map(of).collect();
-    let grains = s.state.bodies.grains().count();
-    Some(format!(
-        "{grains} grains of one temperature each; {}",
-        bodies.join(", ")
-    ))
+    let grains = match s.state.bodies.grains().count() {
+        0 => String::new(),
+        1 => "1 grain of one temperature; ".to_owned(),
+        n => format!("{n} grains of one temperature each; "),
+    };
+    Some(grains + &bodies.join(", "))
 }
 
 /// Which bodies expand with their temperature, and which first bodies do not.

@@ -125,7 +125,11 @@ fn bodies_that_cannot_expand() {
     );
     refused(&soft, &["grains that deform do not expand", "rigid grains"]);
     // Walls alone have no size of their own.
-    let case = heat("expansion: ‸true");
+    let case = with(
+        &heat("expansion: ‸true"),
+        "periodic: (x: 0.4),",
+        "detection: (alert: 1e-3, skin: 1e-3),",
+    );
     let first = case.find("    grains: [").expect("grains");
     let last = case.find("    friction: (").expect("friction");
     let walls = format!("{}    grains: [],\n{}", &case[..first], &case[last..]);
