@@ -108,7 +108,7 @@ pub struct MaterialPair {
 /// A heat flow from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imposed {
-    /// The body with which it ends where that is removed; none of a mesh, which stays.
+    /// The body with which it ends where that is removed; none of finite elements, which stay.
     pub body: Option<u32>,
     /// The node.
     pub node: u32,

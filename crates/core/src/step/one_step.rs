@@ -50,7 +50,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Applies the schedule, starts imposed motion, and has processes apply their forces.
+    /// Gives bodies of finite elements the free strain of their temperatures, applies the schedule, starts imposed motion, and has processes apply their
+    /// forces.
     fn begin_step(&mut self) -> Result<(), StepError> {
         self.begin_records();
         self.strain_systems();

@@ -1,5 +1,6 @@
 //! Heat and current: `cases/verification/thermal/`.
 
+mod elements;
 mod expansion;
 mod sources;
 
@@ -30,6 +31,7 @@ pub fn all(table: &mut Table) {
     run_away(table);
     sources::all(table);
     expansion::all(table);
+    elements::all(table);
 }
 
 fn heat<S: Space>(s: &Simulation<S>) -> &HeatState {
