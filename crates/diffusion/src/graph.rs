@@ -43,11 +43,12 @@ impl Graph {
     /// # Errors
     /// The first conductance that is not.
     pub fn check(&self) -> Result<(), DiffusionError> {
-        let wrong = |e: &&Edge| {
-            !e.conductance.is_finite() || e.nodes.iter().any(|n| *n as usize >= self.nodes)
+        let is_valid = |e: &Edge| {
+            e.conductance.is_finite() && e.nodes.iter().all(|n| (*n as usize) < self.nodes)
         };
-        let negative = self.edges.iter().find(|e| e.conductance < 0.0);
-        match negative.or_else(|| self.all().find(wrong)) {
+        let mut edges = self.edges.iter();
+        let wrong = edges.find(|e| !(is_valid(e) && e.conductance >= 0.0));
+        match wrong.or_else(|| self.elements.iter().find(|e| !is_valid(e))) {
             None => Ok(()),
             Some(e) => Err(DiffusionError::Conductance {
                 nodes: e.nodes.map(|n| n as usize),

@@ -35,6 +35,7 @@ pub mod error;
 pub mod flash;
 pub mod graph;
 pub mod half_space;
+mod matrix;
 pub mod node;
 mod solve;
 pub mod steady;

@@ -107,20 +107,24 @@ fn solve(
         own[u] += node.surroundings;
         right[u] += sources[k] + node.surroundings * (node.ambient - node.temperature);
     }
+    // Contiguous, since nodes are large: first at the start of the step, then at theta of it.
+    let mut reached: Vec<f64> = nodes.iter().map(|node| node.temperature).collect();
     // Where all nodes are unknowns, edges between nodes are those between unknowns.
     let all_unknown = list.len() == nodes.len() && graph.elements.is_empty();
     let mut inner: Vec<Edge> = Vec::new();
     for e in graph.all() {
-        let [a, b] = e.nodes.map(|n| n as usize);
-        let flow = e.conductance * (nodes[b].temperature - nodes[a].temperature);
+        let [a, b] = [e.nodes[0] as usize, e.nodes[1] as usize];
+        let flow = e.conductance * (reached[b] - reached[a]);
+        if all_unknown {
+            right[a] += flow;
+            right[b] -= flow;
+            continue;
+        }
         let [ua, ub] = [unknown[a], unknown[b]];
         for (u, flow) in [(ua, flow), (ub, -flow)] {
             if u != u32::MAX {
                 right[u as usize] += flow;
             }
-        }
-        if all_unknown {
-            continue;
         }
         match (ua == u32::MAX, ub == u32::MAX) {
             (false, false) if ua != ub => inner.push(Edge {
@@ -133,21 +137,21 @@ fn solve(
         }
     }
     // As in the step before, until a better answer.
-    let guess = list.iter().map(|&k| w * nodes[k].rate).collect();
+    let guess: Vec<f64> = list.iter().map(|&k| w * nodes[k].rate).collect();
     let inner = if all_unknown { &graph.edges } else { &inner };
-    let [mut change, left] = System::new(&own, inner, &right).complete(guess)?;
-    change
-        .iter_mut()
-        .zip(&left)
-        .for_each(|(x, left)| *x += left);
+    let [mut change, left] = System::new(&own, inner, &right).complete(&guess)?;
+    for ((change, left), k) in change.iter_mut().zip(left).zip(&list) {
+        *change += left;
+        reached[*k] += *change;
+    }
     Ok(advance(
         nodes,
         graph,
         sources,
         &Solved {
-            unknown: &unknown,
             list: &list,
             change: &change,
+            reached: &reached,
             below: &below,
         },
         h,
@@ -155,11 +159,11 @@ fn solve(
     ))
 }
 
-/// The solution of a step: changes of the unknowns at theta of the step.
+/// The solution of a step: changes of the unknowns at theta of the step, and the temperatures of all nodes there.
 struct Solved<'a> {
-    unknown: &'a [u32],
     list: &'a [usize],
     change: &'a [f64],
+    reached: &'a [f64],
     below: &'a [Option<Eliminated>],
 }
 
@@ -171,32 +175,29 @@ fn advance(
     h: f64,
     theta: f64,
 ) -> Balance {
-    let change_of = |k: usize| match solved.unknown[k] {
-        u32::MAX => 0.0,
-        u => solved.change[u as usize],
-    };
+    let reached = solved.reached;
     let mut balance = Balance {
         through: Vec::with_capacity(graph.edges.len()),
         ..Balance::default()
     };
-    for (k, node) in nodes.iter().enumerate() {
-        balance.sources += h * sources[k];
-        let fixed = node.store == Store::Fixed;
-        if fixed {
-            balance.fixed += h * sources[k];
+    for ((node, source), reached) in nodes.iter().zip(sources).zip(reached) {
+        balance.sources += h * source;
+        if node.store == Store::Fixed {
+            balance.fixed += h * source;
         } else {
-            let reached = node.temperature + change_of(k);
             balance.surroundings += h * node.surroundings * (node.ambient - reached);
         }
     }
+    let fixes = solved.list.len() < nodes.len();
     for e in graph.all() {
-        let [a, b] = e.nodes.map(|n| n as usize);
-        let reached = |k: usize| nodes[k].temperature + change_of(k);
-        let flow = h * e.conductance * (reached(b) - reached(a));
+        let [a, b] = [e.nodes[0] as usize, e.nodes[1] as usize];
+        let flow = h * e.conductance * (reached[b] - reached[a]);
         balance.through.push(flow);
-        for (k, flow) in [(a, flow), (b, -flow)] {
-            if nodes[k].store == Store::Fixed {
-                balance.fixed += flow;
+        if fixes {
+            for (k, flow) in [(a, flow), (b, -flow)] {
+                if nodes[k].store == Store::Fixed {
+                    balance.fixed += flow;
+                }
             }
         }
     }
