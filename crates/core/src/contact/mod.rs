@@ -14,4 +14,4 @@ pub use memory::{Bond, BondState, Memory, Slides};
 pub use network::{Contact, Key, Network};
 pub use spring::Spring;
 pub use step_size::StepSizeDiagnostics;
-pub use thermal::{ContactHeat, ContactTemperature, HeatSide};
+pub use thermal::{ContactHeat, ContactTemperature, HeatSide, MaterialPair};

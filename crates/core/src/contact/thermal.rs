@@ -1,6 +1,7 @@
 //! Temperatures and conductances of contacts in a step.
 
 use crate::bodies::Nodes;
+use std::sync::Arc;
 
 /// Where the heat of a contact enters a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,20 +15,31 @@ pub enum HeatSide {
     Between(u32),
 }
 
+/// What two materials have together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialPair {
+    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m).
+    pub material: [f64; 2],
+    /// Share of the first by effusivities, e1/(e1 + e2).
+    pub share: f64,
+}
+
 /// What a contact sees of heat in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactTemperature {
     /// Temperatures (K) at the start of the step: of the contact, the candidate and the antagonist.
     pub temperature: [f64; 3],
-    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m) of the pair.
-    pub material: [f64; 2],
     /// Where heat enters the candidate and the antagonist.
     pub sides: [HeatSide; 2],
+    /// Its materials, by their place in [`ContactHeat::pairs`].
+    pub pair: u32,
 }
 
 /// What laws see of heat at each contact, and what they answer, in the order of the contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHeat {
+    /// All pairs of materials.
+    pub pairs: Arc<[MaterialPair]>,
     /// What they see.
     pub seen: Vec<ContactTemperature>,
     /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws give them; zero without one.

@@ -26,6 +26,6 @@ pub use fretwork_diffusion::{
 };
 pub use ledger::HeatLedger;
 pub use material::ThermalMaterial;
-pub use model::{BodyNodes, Heat, Imposed, MaterialPair, Partition, Shares};
+pub use model::{BodyNodes, Heat, Imposed, Partition, Shares};
 pub use pieces::{PieceAxis, Pieces};
 pub use state::HeatState;

@@ -3,11 +3,12 @@
 use super::circuit::Circuit;
 use super::material::ThermalMaterial;
 use super::pieces::Pieces;
-use crate::contact::ContactDissipation;
+use crate::contact::{ContactDissipation, MaterialPair};
 use crate::geometry::space::Space;
 use fretwork_diffusion::{Columns, Edge};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays elsewhere (new surfaces, sound, plastic work that
 /// is stored).
@@ -96,15 +97,6 @@ impl BodyNodes {
     }
 }
 
-/// What two materials have together.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MaterialPair {
-    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m).
-    pub material: [f64; 2],
-    /// Share of the first by effusivities, e1/(e1 + e2).
-    pub share: f64,
-}
-
 /// A heat flow from outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imposed {
@@ -122,7 +114,7 @@ pub struct Heat {
     /// Properties of the materials, by index.
     pub materials: Vec<ThermalMaterial>,
     /// See [`Heat::pairs`].
-    pub pairs: Vec<MaterialPair>,
+    pub pairs: Arc<[MaterialPair]>,
     /// Material of each body.
     pub material: Vec<u16>,
     /// Nodes of each body.
@@ -163,7 +155,7 @@ impl Heat {
     }
 
     /// All pairs of materials, by the index of the first and then of the second.
-    pub fn pairs(materials: &[ThermalMaterial]) -> Vec<MaterialPair> {
+    pub fn pairs(materials: &[ThermalMaterial]) -> Arc<[MaterialPair]> {
         let of = |a: &ThermalMaterial, b: &ThermalMaterial| MaterialPair {
             material: [a.pair_conductivity(b), a.pair_resistivity(b)],
             share: a.conductor().share(&b.conductor()),
@@ -173,19 +165,20 @@ impl Heat {
             .collect()
     }
 
-    /// What the materials of two bodies have together.
+    /// The place in [`Self::pairs`] of the materials of two bodies.
     #[inline]
-    pub fn pair(&self, bodies: [u32; 2]) -> &MaterialPair {
-        let [a, b] = bodies.map(|b| usize::from(self.material[b as usize]));
-        &self.pairs[a * self.materials.len() + b]
+    pub fn pair(&self, bodies: [u32; 2]) -> usize {
+        let [a, b] = bodies;
+        let of = |body: u32| usize::from(self.material[body as usize]);
+        of(a) * self.materials.len() + of(b)
     }
 
-    /// Share of the heat of a contact that its first body takes.
+    /// Share of the heat of a contact of a pair of materials that its first body takes.
     #[inline]
-    pub fn share(&self, bodies: [u32; 2]) -> f64 {
+    pub fn share(&self, pair: usize) -> f64 {
         match self.partition {
             Partition::Half => 0.5,
-            Partition::Effusivity => self.pair(bodies).share,
+            Partition::Effusivity => self.pairs[pair].share,
         }
     }
 

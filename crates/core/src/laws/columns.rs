@@ -255,7 +255,7 @@ impl Columns {
             for (column, value) in self.temperature.iter_mut().zip(seen.temperature) {
                 column[k] = value;
             }
-            let [conductivity, resistivity] = seen.material;
+            let [conductivity, resistivity] = thermal.pairs[seen.pair as usize].material;
             self.conductivity[k] = conductivity;
             if thermal.current {
                 self.resistivity[k] = resistivity;

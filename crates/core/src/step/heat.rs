@@ -9,6 +9,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Imposed, Store};
 use crate::threads::{fill, pays};
 use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
+use std::sync::Arc;
 
 /// Of a node that is of no first body.
 const NONE: u32 = u32::MAX;
@@ -16,6 +17,19 @@ const NONE: u32 = u32::MAX;
 /// About what it takes to find the temperatures of a contact, and the heat of what it dissipated (ns).
 const SEES: f64 = 20.0;
 const WARMS: f64 = 3.0;
+
+/// Where the heat of a contact enters one of its bodies, and the temperature there (K), without meaning where it is insulated.
+#[derive(Clone, Copy, Default)]
+struct End {
+    side: HeatSide,
+    temperature: f64,
+}
+
+impl End {
+    fn insulated(&self) -> bool {
+        self.side == HeatSide::Insulated
+    }
+}
 
 impl<S: Space> Simulation<S> {
     /// Computes heat, and current where there is a circuit, from here on.
@@ -100,46 +114,51 @@ impl<S: Space> Simulation<S> {
         thermal.conductance.clear();
         thermal.conductance.resize(contacts.len(), [0.0; 2]);
         thermal.between.clear();
+        thermal.pairs = Arc::clone(&heat.pairs);
         let flash = heat.flash.is_some() && self.begun(heat);
         let temperature = |node: usize| state.nodes[node].temperature;
-        // What most bodies are, side by side in memory: of one temperature.
-        let ends: Vec<Option<(HeatSide, Option<f64>)>> = heat
+        let of_node = |node: u32| End {
+            side: HeatSide::Node(node),
+            temperature: temperature(node as usize),
+        };
+        // Ends of bodies of one temperature, contiguous; none of those of several nodes.
+        let ends: Vec<Option<End>> = heat
             .nodes
             .iter()
             .map(|nodes| match nodes {
-                BodyNodes::Insulated => Some((HeatSide::Insulated, None)),
-                BodyNodes::One(node) => {
-                    Some((HeatSide::Node(*node), Some(temperature(*node as usize))))
-                }
+                BodyNodes::Insulated => Some(End::default()),
+                BodyNodes::One(node) => Some(of_node(*node)),
                 BodyNodes::Pieces(..) | BodyNodes::Mesh(..) => None,
             })
             .collect();
         let end = |contact: &Contact<S>, side: usize| {
             let body = contact.bodies[side] as usize;
-            let found = ends[body].or_else(|| {
-                let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
-                let node = heat.nodes[body].at::<S>(place)?;
-                Some((HeatSide::Node(node), Some(temperature(node as usize))))
-            });
-            found.unwrap_or((HeatSide::Insulated, None))
+            if let Some(end) = ends[body] {
+                return end;
+            }
+            let place = || S::unrotate(&self.state.bodies.rotation[body], &contact.arms[side]);
+            heat.nodes[body]
+                .at::<S>(place)
+                .map_or(End::default(), of_node)
         };
-        let see = |contact: &Contact<S>, sides: [HeatSide; 2], own: [Option<f64>; 2]| {
+        let see = |contact: &Contact<S>, first: End, second: End| {
             let pair = heat.pair(contact.bodies);
             // An insulated body has the temperature of what it touches.
-            let [first, second] = match own {
-                [Some(a), Some(b)] => [a, b],
-                [Some(t), None] | [None, Some(t)] => [t, t],
-                [None, None] => [heat.initial; 2],
+            let [a, b] = match (first.insulated(), second.insulated()) {
+                (false, false) => [first.temperature, second.temperature],
+                (false, true) => [first.temperature; 2],
+                (true, false) => [second.temperature; 2],
+                (true, true) => [heat.initial; 2],
             };
             // Two half-spaces of these temperatures meet at this one.
-            let mut mean = second + pair.share * (first - second);
+            let mut mean = b + heat.pairs[pair].share * (a - b);
             if flash {
                 mean += self.flash_rise(heat, contact, self.options.scheme.h);
             }
             ContactTemperature {
-                temperature: [mean, first, second],
-                material: pair.material,
-                sides,
+                temperature: [mean, a, b],
+                sides: [first.side, second.side],
+                pair: pair as u32,
             }
         };
         let of_mesh = |body: u32| match heat.nodes[body as usize] {
@@ -155,8 +174,7 @@ impl<S: Space> Simulation<S> {
                 // Found below.
                 return ContactTemperature::default();
             }
-            let [first, second] = [0, 1].map(|side| end(contact, side));
-            see(contact, [first.0, second.0], [first.1, second.1])
+            see(contact, end(contact, 0), end(contact, 1))
         });
         if meshes {
             for (contact, seen) in contacts.iter().zip(&mut seen) {
@@ -164,12 +182,16 @@ impl<S: Space> Simulation<S> {
                 if own == [None; 2] {
                     continue;
                 }
-                let sides = [0, 1].map(|side| match own[side] {
-                    None => end(contact, side).0,
-                    Some(first) => self.mesh_side(first, (contact, side), &mut thermal.between),
+                let ends = [0, 1].map(|side| match own[side] {
+                    None => end(contact, side),
+                    Some(first) => {
+                        let side = self.mesh_side(first, (contact, side), &mut thermal.between);
+                        let temperature = thermal.temperature_of(side, temperature);
+                        let temperature = temperature.unwrap_or(0.0);
+                        End { side, temperature }
+                    }
                 });
-                let own = sides.map(|side| thermal.temperature_of(side, temperature));
-                *seen = see(contact, sides, own);
+                *seen = see(contact, ends[0], ends[1]);
             }
         }
         thermal.seen = seen;
@@ -250,7 +272,7 @@ impl<S: Space> Simulation<S> {
                 *received += part;
             }
         };
-        for ((contact, seen), source) in contacts.iter().zip(&thermal.seen).zip(&thermal.source) {
+        for (seen, source) in thermal.seen.iter().zip(&thermal.source) {
             if *source == 0.0 {
                 continue;
             }
@@ -261,7 +283,7 @@ impl<S: Space> Simulation<S> {
                 }
                 [_, HeatSide::Insulated] => 1.0,
                 [HeatSide::Insulated, _] => 0.0,
-                _ => heat.share(contact.bodies),
+                _ => heat.share(seen.pair as usize),
             };
             state.ledger.pending += source;
             for (side, part) in seen.sides.iter().zip([share, 1.0 - share]) {

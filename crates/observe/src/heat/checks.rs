@@ -132,7 +132,7 @@ impl ContactShares {
                 let [own, other] = [sides[side], sides[1 - side]].map(temperature);
                 let (share, flow) = match (own, other) {
                     (Some(own), Some(other)) => {
-                        let first = heat.share(contact.bodies);
+                        let first = heat.share(seen.pair as usize);
                         let share = if side == 0 { first } else { 1.0 - first };
                         (share, conductance[0] * (other - own).abs() * span)
                     }
