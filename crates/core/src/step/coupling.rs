@@ -17,9 +17,14 @@ pub enum Coupling {
     Implicit {
         /// Largest change of damage between two iterations at convergence.
         tolerance: f64,
-        /// Maximum number of solves in a step.
+        /// Maximum number of solves in a step; 50 where it is left out.
+        #[serde(default = "default_max_iterations")]
         max_iterations: u32,
     },
+}
+
+fn default_max_iterations() -> u32 {
+    50
 }
 
 /// Report of the coupling in a step.
