@@ -1,6 +1,6 @@
 //! Thermal expansion of rigid bodies.
 
-use super::{Table, heat, plane, until};
+use super::{Table, heat, plane, solid, until};
 use fretwork::geometry::space::Dim2;
 use fretwork::record::code::{decode, encode};
 use fretwork::step::Simulation;
@@ -14,6 +14,8 @@ const HEIGHT: f64 = 6e-3;
 pub fn all(table: &mut Table) {
     lifted(table);
     several_steps(table);
+    settings(table);
+    solids(table);
     held(table);
     bonded(table);
     polygon(table);
@@ -123,6 +125,70 @@ fn several_steps(table: &mut Table) {
     }
 }
 
+/// The rise does not depend on where contacts begin to be seen, and on the tolerance by no more than the error of velocities that it allows, which is
+/// relative to the velocity that the load would reach in a step without contacts.
+fn settings(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let free_velocity = 1e3 * 1e-3 / 0.1;
+    let drift = 1e-9 * free_velocity * 4.0 / (ALPHA * RISE * HEIGHT);
+    for (set, tolerance) in [
+        ("detection.alert=1e-4", 1e-5),
+        ("detection.alert=1e-7", 1e-5),
+        ("solver.tolerance=1e-9", drift),
+    ] {
+        let mut s = plane(case, &[set]);
+        until(&mut s, 4.0, |_| ());
+        let rise = height(&s, "load") - HEIGHT;
+        let quantity = format!("{set}: rise (m)");
+        table.compare(case, &quantity, ALPHA * RISE * HEIGHT, rise, tolerance);
+    }
+}
+
+/// In space a cube, and a cluster of eight balls that is as high, lift the load as the column of disks does.
+fn solids(table: &mut Table) {
+    let case = "thermal/expanding_column";
+    let balls: Vec<String> = (0..8)
+        .map(|k| {
+            let [x, y, z] = [1, 2, 4].map(|bit| if k & bit == 0 { -5e-4 } else { 5e-4 });
+            format!("([{x}, {y}, {z}], 5e-4)")
+        })
+        .collect();
+    let scenes = [
+        ("a cube", "Polyhedra", "size: (2e-3, 2e-3, 2e-3)".to_owned()),
+        (
+            "eight balls",
+            "Clusters",
+            format!("shapes: [Balls([{}])]", balls.join(", ")),
+        ),
+    ];
+    for (what, kind, shape) in scenes {
+        let grains = format!(
+            "grains=[{kind}(material: \"steel\", grains: [(at: [0.0, 0.0, 1e-3], {shape})])]"
+        );
+        let sets = [
+            "dimension=3",
+            "bodies.floor.shapes=[HalfSpace(normal: [0.0, 0.0, 1.0])]",
+            "bodies.load.shapes=[HalfSpace(normal: [0.0, 0.0, -1.0])]",
+            "bodies.load.position=[0.0, 0.0, 2e-3]",
+            "bodies.load.dofs=(z: Force(Constant(-1e3)))",
+            &grains,
+        ];
+        let mut s = solid(case, &sets);
+        let load = s.body_named("load").expect("a load");
+        until(&mut s, 4.0, |_| ());
+        let rise = s.state.bodies.position[load].z - 2e-3;
+        let name = format!("{what}: rise alpha dT a (m)");
+        table.compare(case, &name, ALPHA * RISE * 2e-3, rise, 2e-5);
+        let energy = s.energies();
+        let name = format!("{what}: work of the expansion (J)");
+        table.compare(case, &name, 1e3 * rise, energy.expansion, 1e-5);
+        let name = format!("{what}: energy closes");
+        table.compare(case, &name, 0.0, energy.relative_residual(), 1e-10);
+        let closes = heat(&s).ledger.relative_residual();
+        table.compare(case, &format!("{what}: heat closes"), 0.0, closes, 1e-10);
+    }
+}
+
 fn held(table: &mut Table) {
     let case = "thermal/held_column";
     let mut s = plane(case, &[]);
@@ -163,20 +229,18 @@ fn held(table: &mut Table) {
 
 fn bonded(table: &mut Table) {
     let case = "thermal/expanding_bond";
-    let mut s = plane(case, &[]);
-    let mut most = 0.0f64;
-    until(&mut s, 2.0, |s| most = most.max(s.energies().elastic));
-    let [a, b] = [s.state.bodies.position[0], s.state.bodies.position[1]];
-    let apart = (b - a).norm() - 2e-3;
-    table.compare(
-        case,
-        "centres apart by alpha dT d (m)",
-        ALPHA * RISE * 2e-3,
-        apart,
-        1e-4,
-    );
-    // The bond has 1e11 Pa/m on 2 mm: as stretched by the expansion it would store 5.8e-4 J/m.
-    table.compare(case, "energy of the bond (J/m)", 0.0, most, 1e-9);
+    for coupling in ["Midpoint", "Implicit(tolerance: 1e-6)"] {
+        let mut s = plane(case, &[&format!("coupling={coupling}")]);
+        let mut most = 0.0f64;
+        until(&mut s, 2.0, |s| most = most.max(s.energies().elastic));
+        let [a, b] = [s.state.bodies.position[0], s.state.bodies.position[1]];
+        let apart = (b - a).norm() - 2e-3;
+        let name = format!("{coupling}: centres apart by alpha dT d (m)");
+        table.compare(case, &name, ALPHA * RISE * 2e-3, apart, 1e-4);
+        // The bond has 1e11 Pa/m on 2 mm: as stretched by the expansion it would store 5.8e-4 J/m.
+        let name = format!("{coupling}: energy of the bond (J/m)");
+        table.compare(case, &name, 0.0, most, 1e-9);
+    }
 }
 
 /// A square on springs between a floor and a load, which friction holds: its corners move outwards by alpha dT a, against the tangential stiffness of
