@@ -4,24 +4,27 @@
 //! heat, and with heat and a current, and prints the shares of a step that these take, as in `docs/heat.md`. The steps without
 //! heat have the bits of a case that has never heard of it. With `-- headline` it does the first alone.
 //!
-//! Each variant steps in processes of its own, which take turns: in one process two simulations of the same case differ by up to 9 %, by
-//! where their memory lies. On one thread, as the heat of a step is solved.
+//! Each variant steps in a process of its own. These take turns of ten steps, so that what else the machine does changes all alike: on a
+//! machine that others share the same steps may take 30 % longer a minute later. Where the memory of a process lies changes its times
+//! too, so that all are launched several times. On one thread, as the heat of a step is solved.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
-/// What a process that times one variant is asked for: this word, the case, steps before and in the time, and `--set`s.
+/// What a process that steps one variant is launched with: this word, the case, the steps before those that are timed, and `--set`s.
 const ONE: &str = "--one";
+/// Steps of a turn: a whole number of the rarest steps of heat.
+const TURN: u32 = 10;
 
 fn main() {
     let asked: Vec<String> = std::env::args().collect();
     if let Some(at) = asked.iter().position(|a| a == ONE) {
-        println!("{}", time(&asked[at + 1..]));
-        return;
+        return serve(&asked[at + 1..]);
     }
     println!(
         "| scene | grains | contacts | step without heat | sources only | every 10 steps | with heat | with current |"
@@ -31,8 +34,8 @@ fn main() {
     if asked.iter().any(|a| a == "headline") {
         return;
     }
-    for grains in [1250, 5000, 20000] {
-        boxes(grains);
+    for (grains, first, launches) in [(1250, 100, 3), (5000, 150, 3), (20000, 350, 3)] {
+        boxes(grains, first, launches);
     }
 }
 
@@ -56,15 +59,15 @@ fn headline() {
     compare(
         "third body",
         "wheel_rail_fretting",
-        [1000, 300],
+        [1000, 40],
         [Vec::new(), sources, seldom, warm, current],
         &[],
-        7,
+        5,
     );
 }
 
-/// A random packing between two plates, of another size.
-fn boxes(grains: usize) {
+/// A random packing between two plates, of another size, timed from a first step on at which it has come together.
+fn boxes(grains: usize, first: u32, launches: usize) {
     // The lattice takes 2.4e5 grains a square metre.
     let side = (grains as f64 / 2.3e5).sqrt();
     let common = [
@@ -90,79 +93,152 @@ fn boxes(grains: usize) {
     compare(
         "packing",
         "verification/thermal/network",
-        // A larger box takes longer to come together.
-        [(grains as f64).sqrt() as u32 * 3 / 2, 60],
+        [first, 8],
         [plain, sources, seldom, heat, current],
         &common,
-        3,
+        launches,
     );
 }
 
-/// Times steps of a scene without heat, with heat and with current, in turns, each from its own state after the first steps.
+/// Times steps of a scene without heat, with heat and with current, in turns of a few steps, each from its own state after the first steps.
 fn compare(
     scene: &str,
     case: &str,
-    steps: [u32; 2],
+    [first, turns]: [u32; 2],
     variants: [Vec<String>; 5],
     common: &[String],
-    turns: usize,
+    launches: usize,
 ) {
-    let program = std::env::current_exe().unwrap_or_else(|e| panic!("{e}"));
-    let one = |sets: &Vec<String>| {
-        let mut command = Command::new(&program);
-        command.arg(ONE).arg(case);
-        command.args(steps.map(|n| n.to_string()));
-        command
-            .args(common.iter().chain(sets))
-            .stderr(Stdio::inherit());
-        let output = command.output().unwrap_or_else(|e| panic!("{e}"));
-        assert!(output.status.success(), "{command:?}");
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
-        let numbers = said.split_whitespace().map(str::parse);
-        let numbers: Result<Vec<f64>, _> = numbers.collect();
-        numbers.unwrap_or_else(|e| panic!("{e}: {said}"))
-    };
-    let turns: Vec<Vec<Vec<f64>>> = (0..turns)
-        .map(|_| variants.iter().map(one).collect())
-        .collect();
-    // Of times that lie beside each other, so that what else the machine does changes both.
-    let share = |k: usize| 100.0 * (median(turns.iter().map(|t| t[k][0] / t[0][0])) - 1.0);
-    let plain = 1e3 * median(turns.iter().map(|t| t[0][0]));
-    let of_scene = &turns[0][0];
+    let mut ratios: [Vec<f64>; 5] = Default::default();
+    let mut plain = Vec::new();
+    let mut told = String::new();
+    for _ in 0..launches {
+        let launch = |sets: &Vec<String>| Stepping::launch(case, first, common.iter().chain(sets));
+        let mut processes: Vec<Stepping> = variants.iter().map(launch).collect();
+        // They have made their first steps.
+        for process in &mut processes {
+            process.answer();
+        }
+        // Of times that lie beside each other, so that what else the machine does changes all; another variant begins each time.
+        let times: Vec<[f64; 5]> = (0..turns as usize)
+            .map(|turn| {
+                let mut times = [0.0; 5];
+                for k in (0..5).map(|k| (k + turn) % 5) {
+                    let (time, said) = processes[k].turn();
+                    times[k] = time;
+                    if k == 0 {
+                        told = said;
+                    }
+                }
+                times
+            })
+            .collect();
+        plain.extend(times.iter().map(|t| 1e3 * t[0]));
+        for (k, ratios) in ratios.iter_mut().enumerate() {
+            ratios.push(median(times.iter().map(|t| t[k] / t[0])));
+        }
+    }
+    let share = |k: usize| 100.0 * (median(ratios[k].iter().copied()) - 1.0);
     println!(
-        "| {scene} | {} | {} | {:.2} ms | {:+.1} % | {:+.1} % | {:+.1} % | {:+.1} % |",
-        of_scene[1],
-        of_scene[2],
-        plain,
+        "| {scene} | {told} | {:.2} ms | {:+.1} % | {:+.1} % | {:+.1} % | {:+.1} % |",
+        median(plain.into_iter()),
         share(1),
         share(2),
         share(3),
         share(4)
     );
+    let all = |k: usize| {
+        let each = ratios[k]
+            .iter()
+            .map(|r| format!("{:+.1}", 100.0 * (r - 1.0)));
+        each.collect::<Vec<_>>().join(" ")
+    };
+    eprintln!("launches with heat: {}", all(3));
 }
 
-/// Steps one variant; gives the time of a step (s), grains and contacts.
-fn time(asked: &[String]) -> String {
-    let [case, first, steps, sets @ ..] = asked else {
-        panic!("the case, the steps before and in the time");
+/// A process that steps one variant when it is told to.
+struct Stepping {
+    process: Child,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Stepping {
+    fn launch<'a>(case: &str, first: u32, sets: impl Iterator<Item = &'a String>) -> Self {
+        let program = std::env::current_exe().unwrap_or_else(|e| panic!("{e}"));
+        let mut command = Command::new(program);
+        command.args([ONE, case, &first.to_string()]).args(sets);
+        let process = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+        let mut process = process.unwrap_or_else(|e| panic!("{e}"));
+        let Some(answers) = process.stdout.take() else {
+            panic!("the output of a process is no pipe");
+        };
+        Self {
+            process,
+            answers: BufReader::new(answers),
+        }
+    }
+
+    /// The next line that it says.
+    fn answer(&mut self) -> String {
+        let mut line = String::new();
+        let read = self.answers.read_line(&mut line);
+        assert_ne!(
+            read.unwrap_or_else(|e| panic!("{e}")),
+            0,
+            "a process has ended"
+        );
+        line.trim().to_owned()
+    }
+
+    /// Time of a step (s), over a turn of steps, and what it says of its grains and contacts.
+    fn turn(&mut self) -> (f64, String) {
+        let Some(orders) = &mut self.process.stdin else {
+            panic!("the input of a process is no pipe");
+        };
+        writeln!(orders).unwrap_or_else(|e| panic!("{e}"));
+        let said = self.answer();
+        let (time, scene) = said.split_once(' ').unwrap_or((&said, ""));
+        let time = time.parse().unwrap_or_else(|e| panic!("{e}: {said}"));
+        (time, scene.to_owned())
+    }
+}
+
+impl Drop for Stepping {
+    fn drop(&mut self) {
+        // Its input ends, and so does it.
+        drop(self.process.stdin.take());
+        let _ = self.process.wait();
+    }
+}
+
+/// Steps one variant: says when it has made the first steps, and then the time of a step (s), its grains and its contacts after each turn that a line asks for.
+fn serve(asked: &[String]) {
+    let [case, first, sets @ ..] = asked else {
+        panic!("the case, and the steps before the time");
     };
-    let [first, steps] = [first, steps].map(|n| n.parse::<u32>().unwrap_or_else(|e| panic!("{e}")));
+    let first = first.parse::<u32>().unwrap_or_else(|e| panic!("{e}"));
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.options.solver.parallel = false;
+    let grains = s.state.bodies.grains().count();
     let mut make = |steps: u32| {
         let clock = Instant::now();
         for _ in 0..steps {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }
-        clock.elapsed().as_secs_f64() / f64::from(steps)
+        let each = clock.elapsed().as_secs_f64() / f64::from(steps);
+        (each, s.state.network.contacts.len())
     };
     make(first);
-    let each = make(steps);
-    let grains = s.state.bodies.grains().count();
-    format!("{each:e} {grains} {}", s.state.network.contacts.len())
+    println!("ready");
+    for _ in std::io::stdin().lines() {
+        // Others have had the caches.
+        make(1);
+        let (each, contacts) = make(TURN);
+        println!("{each:e} {grains} | {contacts}");
+    }
 }
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
