@@ -15,7 +15,7 @@ pub enum HeatSide {
     Between(u32),
 }
 
-/// What two materials have together.
+/// What two materials in contact have together, of the first on the candidate and the second on the antagonist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPair {
     /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m).
@@ -31,7 +31,7 @@ pub struct ContactTemperature {
     pub temperature: [f64; 3],
     /// Where heat enters the candidate and the antagonist.
     pub sides: [HeatSide; 2],
-    /// Its materials, by their place in [`ContactHeat::pairs`].
+    /// Index of its materials in [`ContactHeat::pairs`].
     pub pair: u32,
 }
 

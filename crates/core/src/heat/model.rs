@@ -165,7 +165,7 @@ impl Heat {
             .collect()
     }
 
-    /// The place in [`Self::pairs`] of the materials of two bodies.
+    /// Index in [`Self::pairs`] of the materials of two bodies.
     #[inline]
     pub fn pair(&self, bodies: [u32; 2]) -> usize {
         let [a, b] = bodies;
@@ -173,7 +173,7 @@ impl Heat {
         of(a) * self.materials.len() + of(b)
     }
 
-    /// Share of the heat of a contact of a pair of materials that its first body takes.
+    /// Share of the heat of a contact that its first body takes, by the index of its materials in [`Self::pairs`].
     #[inline]
     pub fn share(&self, pair: usize) -> f64 {
         match self.partition {
