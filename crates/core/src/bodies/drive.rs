@@ -65,7 +65,7 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the derivative at a time, from the left at a kink.
+    /// Returns the derivative at a time, from the left at a kink of a ramp or a table, from the right at the start of a sine.
     pub fn rate(&self, t: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -319,6 +319,31 @@ mod tests {
             }
             assert!(f.fault().is_none());
         }
+    }
+
+    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on with.
+    #[test]
+    fn rates_at_kinks_are_those_of_the_documented_side() {
+        let ramp = TimeFunction::Ramp {
+            from: 1.0,
+            to: 3.0,
+            start: 0.5,
+            end: 1.5,
+        };
+        let table = TimeFunction::Table(vec![(0.5, 1.0), (1.5, 3.0)]);
+        for f in [ramp, table] {
+            let rates = [0.4, 0.5, 0.6, 1.5, 1.6].map(|t| f.rate(t));
+            assert_eq!(rates, [0.0, 0.0, 2.0, 2.0, 0.0], "{f:?}");
+        }
+        let sine = TimeFunction::Sine {
+            amplitude: 2.0,
+            frequency: 1.0 / TAU,
+            phase: 0.0,
+            offset: 1.0,
+            start: 0.5,
+        };
+        assert_eq!([0.4, 0.5].map(|t| sine.rate(t)), [0.0, 2.0]);
+        assert_eq!([0.4, 0.5].map(|t| sine.value(t)), [1.0, 1.0]);
     }
 
     #[test]

@@ -82,15 +82,16 @@ impl TimeFunction {
 
     /// Returns the derivative at a time from the right; times that differ by rounding count as equal.
     pub fn rate_after(&self, t: f64) -> f64 {
-        self.rate_beside(t, t + rounding(t))
+        self.rate_beside(t, t + rounding(t), false)
     }
 
     /// Returns the derivative at a time from the left; times that differ by rounding count as equal.
     pub fn rate_before(&self, t: f64) -> f64 {
-        self.rate_beside(t, t - rounding(t))
+        self.rate_beside(t, t - rounding(t), true)
     }
 
-    fn rate_beside(&self, t: f64, beside: f64) -> f64 {
+    /// The derivative at a time, by a time that is that or differs from it by rounding, from the left or from the right.
+    fn rate_beside(&self, t: f64, beside: f64, from_left: bool) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
             Self::Sine {
@@ -99,12 +100,12 @@ impl TimeFunction {
                 start,
                 ..
             } => {
-                if beside < *start || (beside < t && beside <= *start) {
+                if beside < *start || (from_left && beside == *start) {
                     return 0.0;
                 }
                 TAU * frequency * amplitude * self.angle(t).cos()
             }
-            pieces if beside < t => pieces.with_points(|p| slope(p, beside)),
+            pieces if from_left => pieces.with_points(|p| slope(p, beside)),
             pieces => pieces.with_points(|p| slope_after(p, beside)),
         }
     }
@@ -348,5 +349,35 @@ mod tests {
         let sine = &functions()[2];
         assert_eq!(sine.rate_before(0.1), 0.0);
         assert!(sine.rate_after(0.1) > 1.0);
+    }
+
+    /// Constant outside, with the slope between: at both ends, also at time zero, which is exact.
+    #[test]
+    fn a_function_is_at_rest_before_its_start_and_after_its_end() {
+        for start in [-1.0, 0.0, 0.3] {
+            let end = start + 0.5;
+            let ramp = TimeFunction::Ramp {
+                from: 1.0,
+                to: 3.0,
+                start,
+                end,
+            };
+            let table = TimeFunction::Table(vec![(start, 1.0), (end, 3.0)]);
+            for f in [ramp, table] {
+                assert_eq!(f.rate_before(start), 0.0, "{f:?}");
+                assert!((f.rate_after(start) - 4.0).abs() < 1e-13, "{f:?}");
+                assert!((f.rate_before(end) - 4.0).abs() < 1e-13, "{f:?}");
+                assert_eq!(f.rate_after(end), 0.0, "{f:?}");
+            }
+            let sine = TimeFunction::Sine {
+                amplitude: 2.0,
+                frequency: 1.0 / TAU,
+                phase: 0.0,
+                offset: 0.0,
+                start,
+            };
+            assert_eq!(sine.rate_before(start), 0.0);
+            assert_eq!(sine.rate_after(start), 2.0);
+        }
     }
 }

@@ -244,6 +244,25 @@ mod tests {
         }
     }
 
+    /// Linear between points that are the ends of steps: each step has the slope of its segment at both ends, the first one too.
+    #[test]
+    fn a_table_has_the_slopes_of_its_segments() {
+        let h = 0.125;
+        let dof = Dof::Displacement(TimeFunction::Table(vec![
+            (0.0, 1.0),
+            (2.0 * h, 1.5),
+            (4.0 * h, 0.5),
+        ]));
+        for theta in [0.5, 0.7, 1.0] {
+            for (k, slope) in [2.0, 2.0, -4.0, -4.0, 0.0].into_iter().enumerate() {
+                let s = dof.speeds(k as f64 * h, h, theta).unwrap_or_default();
+                for v in [s.start, s.end] {
+                    assert!((v - slope).abs() < 1e-13, "step {k}, theta {theta}: {s:?}");
+                }
+            }
+        }
+    }
+
     /// Wherever a kink lies in a step, velocities stay between the slopes, and the mean is that of the path.
     #[test]
     fn corners_do_not_overshoot() {
