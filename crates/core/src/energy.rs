@@ -220,3 +220,124 @@ impl Energy {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is supplied goes into all of the other entries in equal parts, so that none of them is as large: the residual is zero, and the
+    /// scale is what was supplied.
+    #[test]
+    fn the_scale_is_the_largest_energy_and_what_adds_up_has_no_residual() {
+        let totals = Totals {
+            friction: 1.0,
+            impact: 1.0,
+            adhesion: 1.0,
+            viscous: 0.5,
+            fracture: 1.0,
+            correction: -1.0,
+            ..Totals::default()
+        };
+        // Sinks: friction, impact, adhesion, fracture, viscous 1 each, the correction and the scheme -1 and 1.
+        let spent = BodyWork {
+            potential: 1.0,
+            damping: 0.5,
+            scheme: 1.0,
+            ..BodyWork::default()
+        };
+        let all = 5.0 + 3.0;
+        let by_forces = BodyWork {
+            external: all,
+            ..spent
+        };
+        let by_expansion = BodyWork {
+            expansion: all,
+            ..spent
+        };
+        for (work, at_start) in [(by_forces, 0.0), (by_expansion, 0.0), (spent, all)] {
+            let mut energy = Energy {
+                initial_kinetic: at_start,
+                ..Energy::default()
+            };
+            energy.book(&totals, &work, 1.0, 1.0);
+            assert_eq!((energy.residual, energy.scale), (0.0, all), "{work:?}");
+            assert_eq!(energy.dissipated(), 4.0);
+            // The entries before expansion add up to what was supplied.
+            let sum: f64 = energy.entries()[..11].iter().map(|e| e.2).sum();
+            assert_eq!(sum, energy.external_work + energy.expansion + at_start);
+            // A smaller energy leaves the scale as it is, a larger one raises it.
+            energy.see(-1.0);
+            assert_eq!(energy.scale, all);
+            energy.see(-16.0);
+            energy.residual = -4.0;
+            assert_eq!(energy.relative_residual(), 0.25);
+        }
+    }
+
+    /// Each of the energies that may stand alone is a scale by itself; without any there is nothing that could be wrong.
+    #[test]
+    fn every_energy_raises_the_scale() {
+        let scale = |given: Energy| {
+            let mut energy = given;
+            let (kinetic, elastic) = (energy.kinetic, energy.elastic);
+            energy.book(&Totals::default(), &BodyWork::default(), kinetic, elastic);
+            energy.scale
+        };
+        let zero = Energy::default();
+        assert_eq!((scale(zero), zero.relative_residual()), (0.0, 0.0));
+        for sign in [1.0, -1.0] {
+            let x = 3.0 * sign;
+            for given in [
+                Energy {
+                    external_work: x,
+                    ..zero
+                },
+                Energy {
+                    expansion: x,
+                    ..zero
+                },
+                Energy {
+                    potential: x,
+                    ..zero
+                },
+                Energy { kinetic: x, ..zero },
+                Energy {
+                    initial_kinetic: x,
+                    ..zero
+                },
+                Energy {
+                    fracture: x,
+                    ..zero
+                },
+                Energy {
+                    friction: x,
+                    ..zero
+                },
+                Energy { impact: x, ..zero },
+                Energy {
+                    adhesion: x,
+                    ..zero
+                },
+                Energy { viscous: x, ..zero },
+                Energy {
+                    correction: x,
+                    ..zero
+                },
+                Energy { scheme: x, ..zero },
+                Energy { carried: x, ..zero },
+            ] {
+                assert_eq!(scale(given), 3.0, "{given:?}");
+            }
+        }
+    }
+
+    /// A body that is lifted by h at constant velocity against its weight, by a force of that weight: no energy is missing.
+    #[test]
+    fn a_projection_takes_its_work_from_the_correction() {
+        let mut energy = Energy::default();
+        energy.book_projection(2.0, 0.5);
+        energy.book(&Totals::default(), &BodyWork::default(), 0.0, 0.0);
+        assert_eq!((energy.potential, energy.external_work), (2.0, 0.5));
+        assert_eq!((energy.correction, energy.residual), (-1.5, 0.0));
+    }
+}

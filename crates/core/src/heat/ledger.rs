@@ -113,3 +113,39 @@ impl HeatLedger {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is put in is stored, gone into fixed temperatures, or pending; the scale is the largest of all, and does not fall.
+    #[test]
+    fn heat_that_is_accounted_for_leaves_no_residual() {
+        let mut ledger = HeatLedger {
+            dissipated: 3.0,
+            joule: 2.0,
+            imposed: 1.0,
+            expansion: 0.5,
+            pending: 5.5,
+            ..HeatLedger::default()
+        };
+        ledger.close(&[]);
+        assert_eq!((ledger.residual, ledger.scale), (0.0, 3.0));
+        let balance = Balance {
+            surroundings: -1.5,
+            stored: 1.0,
+            fixed: 3.0,
+            ..Balance::default()
+        };
+        ledger.book(&balance, 7.0);
+        ledger.close(&[]);
+        assert_eq!((ledger.pending, ledger.residual), (0.0, 0.0));
+        assert_eq!(ledger.scale, 7.0);
+        ledger.close(&[1.0, -8.0]);
+        ledger.close(&[]);
+        assert_eq!(ledger.scale, 8.0);
+        ledger.residual = -2.0;
+        assert_eq!(ledger.relative_residual(), 0.25);
+        assert_eq!(HeatLedger::default().relative_residual(), 0.0);
+    }
+}

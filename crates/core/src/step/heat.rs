@@ -433,3 +433,32 @@ fn nodes_of_first_bodies(heat: &Heat, nodes: usize) -> Vec<u32> {
     }
     of
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use fretwork_diffusion::Node;
+
+    /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where there is nothing else.
+    #[test]
+    fn the_mean_temperature_is_that_of_the_heat_that_is_stored() {
+        let mut s = Simulation::<Dim2>::of_disks(&[]);
+        let lumped = |t, c| Node::new(t, Store::Lumped(c));
+        let fixed = |t| Node::new(t, Store::Fixed);
+        let nodes = vec![
+            fixed(900.0),
+            fixed(100.0),
+            lumped(300.0, 1.0),
+            lumped(400.0, 3.0),
+        ];
+        s.state.heat = Some(HeatState::new(nodes, 0));
+        let mean = |range| s.mean_temperature(range);
+        assert_eq!(mean(2..4), Some(375.0));
+        assert_eq!(mean(1..3), Some(300.0));
+        assert_eq!(mean(0..4), Some(375.0));
+        assert!((mean(0..2).unwrap() - 500.0).abs() < 1e-9);
+        assert_eq!(mean(0..1), Some(900.0));
+        assert_eq!((mean(1..1), mean(3..5)), (None, None));
+    }
+}

@@ -251,3 +251,49 @@ impl<S: Space> Simulation<S> {
         received
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::network::{Contact, ContactGeometry, Key};
+    use crate::geometry::space::Dim2;
+    use nalgebra::{Vector1, Vector2};
+
+    /// A driven candidate receives impulse and moment of its contact, a driven antagonist the opposite: r x p + M about its own centre. About a
+    /// common point both cancel.
+    #[test]
+    fn driven_bodies_receive_the_moments_of_their_contacts() {
+        let centres = [[0.0, 2.0], [1.0, -1.0]];
+        let mut s = Simulation::of_disks(&centres.map(|at| (at, 0.5)));
+        s.drive(1, Default::default());
+        s.drive(0, Default::default());
+        let place = Vector2::new(0.5, 0.25);
+        let centres = centres.map(Vector2::from);
+        let arms = centres.map(|c| place - c);
+        let geometry = ContactGeometry {
+            gap: 0.0,
+            normal: Vector2::new(0.0, 1.0),
+            arms,
+            radius: 0.25,
+        };
+        let key = Key {
+            candidate: 0,
+            antagonist: 1,
+            feature: 0,
+        };
+        let mut contact = Contact::<Dim2>::new(key, [0, 1], 0, geometry, 0.0);
+        contact.impulse = Vector2::new(3.0, 5.0);
+        contact.moment = Vector1::new(7.0);
+        s.state.network.contacts = vec![contact.clone(), contact.clone()];
+        let cross = |a: Vector2<f64>, b: Vector2<f64>| a.x * b.y - a.y * b.x;
+        let [antagonist, candidate] = s.received()[..] else {
+            panic!("two driven bodies")
+        };
+        let p = contact.impulse;
+        assert_eq!((candidate.0, antagonist.0), (2.0 * p, -2.0 * p));
+        assert_eq!(candidate.1.x, 2.0 * (cross(arms[0], p) + 7.0));
+        assert_eq!(antagonist.1.x, -2.0 * (cross(arms[1], p) + 7.0));
+        let of = |(p, m): (Vector2<f64>, Vector1<f64>), at| cross(at, p) + m.x;
+        assert_eq!(of(candidate, centres[0]) + of(antagonist, centres[1]), 0.0);
+    }
+}

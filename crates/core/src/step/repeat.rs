@@ -122,3 +122,43 @@ pub(super) fn save<S: Space>(s: &Simulation<S>) -> Result<Saved<S>, RepeatError>
         laws: s.laws.clone(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polyline::Polyline;
+    use crate::geometry::space::Dim2;
+    use crate::wear::Scar;
+    use nalgebra::Vector2;
+
+    /// A surface that a trial wears is as before afterwards, worn as it was.
+    #[test]
+    fn a_trial_leaves_no_wear() {
+        let chain = [0.0, 1.0, 2.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+        let mut s = Simulation::<Dim2>::of_disks(&[]);
+        s.add_surface(Polyline::new(chain, None).unwrap());
+        let scar = Scar::new("rail".into(), 0, &s.shapes.surfaces[0], 1.0, 1).unwrap();
+        s.state.scars.push(scar);
+        let wear = |s: &mut Simulation<Dim2>, x: f64| {
+            let scar = &mut s.state.scars[0];
+            scar.put(&s.shapes, &Vector2::new(x, 0.0), 0.1).unwrap();
+            scar.show(&mut s.shapes, 1.0);
+        };
+        let outline = |s: &Simulation<Dim2>| s.shapes.surfaces[0].shape.outline();
+        wear(&mut s, 0.5);
+        let before = outline(&s);
+        let trial = |s: &mut Simulation<Dim2>| {
+            wear(s, 1.5);
+            assert_ne!(outline(s), before);
+        };
+        s.repeat(trial).unwrap();
+        assert_eq!(outline(&s), before);
+        let failed = s.attempt(|s| {
+            trial(s);
+            Err::<(), _>("no")
+        });
+        assert_eq!(failed.unwrap(), Err("no"));
+        assert_eq!(outline(&s), before);
+        assert!((s.state.scars[0].volume() - 0.1).abs() < 1e-15);
+    }
+}

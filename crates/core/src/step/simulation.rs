@@ -96,3 +96,54 @@ impl<S: Space> Simulation<S> {
         }
     }
 }
+
+/// Scenes of unit tests in the plane: no laws, so that what is in contact is what the test puts there.
+#[cfg(test)]
+impl Simulation<crate::geometry::space::Dim2> {
+    /// Disks at rest by centre and radius (m), of 1 kg/m^3 and the material 0.
+    pub(crate) fn of_disks(disks: &[([f64; 2], f64)]) -> Self {
+        use crate::geometry::periodic::Periodic;
+        use crate::geometry::shape::Ball;
+        use nalgebra::Vector2;
+        let mut bodies = Bodies::default();
+        let ball = |([x, y], radius): &([f64; 2], f64)| Ball {
+            body: bodies.add_ball(Vector2::new(*x, *y), *radius, 1.0),
+            radius: *radius,
+            offset: Vector2::zeros(),
+            material: 0,
+            area: Vector2::zeros(),
+        };
+        let shapes = Shapes {
+            balls: disks.iter().map(ball).collect(),
+            pieces: Vec::new(),
+            surfaces: Vec::new(),
+            periodic: Periodic { period: [None; 3] },
+        };
+        Self::new(bodies, shapes, Vec::new(), LawTable::new(1), 1e-3, 1e-3)
+    }
+
+    /// Has a body driven, with these drives of x, y and the rotation.
+    pub(crate) fn drive(&mut self, body: u32, dofs: [crate::bodies::Dof; 3]) {
+        let name = format!("body {body}");
+        let dofs = dofs.to_vec();
+        (self.state.bodies).drive(crate::bodies::Driven { name, body, dofs });
+        let driven = self.state.bodies.driven.len();
+        self.state.received.resize(driven, Default::default());
+        self.state.started = self.state.bodies.motion_of_driven();
+    }
+
+    /// Adds a fixed body that carries a surface at the origin, of the material 0; returns its index.
+    pub(crate) fn add_surface(&mut self, shape: crate::geometry::polyline::Polyline) -> u32 {
+        use crate::bodies::Dof;
+        let zero = nalgebra::Vector2::zeros();
+        let body = self.state.bodies.add(zero, 1.0, 1.0, 1.0);
+        self.drive(body, [Dof::Fixed, Dof::Fixed, Dof::Fixed]);
+        self.shapes.surfaces.push(crate::geometry::shape::Carried {
+            body,
+            offset: zero,
+            shape: Box::new(shape),
+            material: 0,
+        });
+        body
+    }
+}

@@ -327,4 +327,36 @@ mod tests {
             assert!(shape.near(&Vector2::new(1.5, 0.1 - depth), 0.11));
         }
     }
+
+    /// The displacement of the surface adds up until the neighbour list is built again, and then from zero.
+    #[test]
+    fn displacements_add_up_between_two_lists() {
+        let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
+        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
+        let step = 1.0 / 1024.0;
+        let far: Vec<bool> = (0..9)
+            .map(|_| {
+                scar.put(&shapes, &Vector2::new(1.0, 0.0), step).unwrap();
+                scar.show(&mut shapes, 2.5 * step)
+            })
+            .collect();
+        let third = [false, false, true];
+        assert_eq!(far, [third; 3].concat());
+        assert!(!scar.show(&mut shapes, 0.0), "nothing is worn since");
+    }
+
+    /// Two states have the surface at the same depths as long as what was worn since was not applied to it.
+    #[test]
+    fn states_of_a_scar_are_told_apart_by_the_depths_of_the_surface() {
+        let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
+        let scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1e3, 1).unwrap();
+        let mut later = scar.clone();
+        later.put(&shapes, &Vector2::new(1.0, 0.0), 0.1).unwrap();
+        assert!(later.same_depths(&scar));
+        later.show(&mut shapes, 1.0);
+        assert!(!later.same_depths(&scar));
+        let before = under(&shapes);
+        scar.show_again(&mut shapes);
+        assert!((under(&shapes) - before - 0.1).abs() < 1e-15);
+    }
 }
