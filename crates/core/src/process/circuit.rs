@@ -471,3 +471,6 @@ fn bonds<'a, S: Space>(
     };
     network.contacts.iter().filter(holds).map(|c| c.bodies)
 }
+
+#[cfg(test)]
+mod tests;

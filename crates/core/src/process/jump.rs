@@ -465,3 +465,6 @@ fn add(sum: &mut Amounts, more: &Amounts) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

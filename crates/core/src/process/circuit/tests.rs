@@ -1,0 +1,231 @@
+//! Debris of bonds that break in a given way, between disks that do not move.
+
+use super::*;
+use crate::contact::events::{Break, Life};
+use crate::contact::memory::Memory;
+use crate::contact::network::{Contact, ContactGeometry, Key};
+use crate::geometry::space::Dim2;
+use nalgebra::Vector2;
+
+/// A first body, of index 0, and two grains beside it.
+fn scene() -> Simulation<Dim2> {
+    let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5), ([2.0, 0.0], 0.5)]);
+    s.drive(0, Default::default());
+    s.state.network.memory = vec![Memory::new(0)];
+    s
+}
+
+fn key([candidate, antagonist]: [u32; 2]) -> Key {
+    Key {
+        candidate,
+        antagonist,
+        feature: 0,
+    }
+}
+
+/// Bonds these bodies.
+fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
+    let geometry = ContactGeometry {
+        gap: 0.0,
+        normal: Vector2::new(-1.0, 0.0),
+        arms: [Vector2::zeros(); 2],
+        radius: 0.25,
+    };
+    let network = &mut s.state.network;
+    let slot = network.memory[0].allocate(true, 0.0, 1.0, &[]);
+    let contact = Contact::new(key(bodies), bodies, 0, geometry, 0.0);
+    network.contacts.push(Contact { slot, ..contact });
+}
+
+fn circuit(s: &Simulation<Dim2>) -> Circuit<Dim2> {
+    let spec = Spec {
+        bases: vec![0],
+        interfaces: vec![0],
+        zones: Vec::new(),
+        scaling: 1.0,
+    };
+    Circuit::new(spec, s)
+}
+
+/// Has the account see a step in which bonds formed and broke, these with so much work of opening and sliding and fracture energy (J/m).
+fn step(
+    circuit: &mut Circuit<Dim2>,
+    s: &mut Simulation<Dim2>,
+    formed: &[[u32; 2]],
+    broken: &[([u32; 2], [f64; 2], f64)],
+) {
+    let network = &mut s.state.network;
+    network.bonds_formed = formed.iter().map(|bodies| (*bodies, 0)).collect();
+    let broken = broken
+        .iter()
+        .map(|(bodies, [open, slide], fracture)| Break {
+            key: key(*bodies),
+            bodies: *bodies,
+            law: 0,
+            place: Vector2::zeros(),
+            opening: [0.0; 2],
+            area: 1.0,
+            torn: 0.0,
+            damaged: true,
+            damage_before: 0.0,
+            life: Life {
+                work: [*open, *slide, 100.0],
+                fracture: *fracture,
+                ..Life::default()
+            },
+        });
+    network.bond_breaks = broken.collect();
+    circuit.note(s);
+    circuit.update(s);
+}
+
+/// Of the bonds to other bodies: the share of sliding in their work, their energy and number. Work that a bond gave back does not count, nor
+/// does one of two bonds inside the debris.
+#[test]
+fn debris_has_the_work_of_the_bonds_that_held_it() {
+    let mut s = scene();
+    for bodies in [[0, 1], [0, 2], [1, 2], [1, 2]] {
+        bond(&mut s, bodies);
+    }
+    let mut circuit = circuit(&s);
+    assert_eq!(circuit.tied_to(0), 2);
+    step(&mut circuit, &mut s, &[], &[([1, 2], [0.0, 32.0], 64.0)]);
+    step(&mut circuit, &mut s, &[], &[([0, 1], [6.0, 1.0], 0.5)]);
+    assert!(circuit.debris.is_empty());
+    step(&mut circuit, &mut s, &[], &[([0, 2], [-9.0, 1.0], 0.25)]);
+    let [debris] = &circuit.debris[..] else {
+        panic!("{:?}", circuit.debris)
+    };
+    assert_eq!((debris.base, debris.bonds), (0, 2));
+    assert_eq!(debris.grains, [1, 2]);
+    assert_eq!((debris.mode_mix, debris.energy), (0.25, 0.75));
+    // Between two equal disks.
+    assert!((debris.place - Vector2::new(1.5, 0.0)).norm() < 1e-15);
+    assert_eq!(debris.mass, s.state.bodies.mass[1] + s.state.bodies.mass[2]);
+}
+
+/// Pure opening is mode I, pure sliding mode II; without work there is no mixture.
+#[test]
+fn debris_of_one_mode() {
+    for (work, mix) in [([2.0, 0.0], 0.0), ([0.0, 2.0], 1.0), ([0.0, 0.0], 0.0)] {
+        let mut s = scene();
+        bond(&mut s, [0, 1]);
+        let mut circuit = circuit(&s);
+        step(&mut circuit, &mut s, &[], &[([0, 1], work, 1.0)]);
+        assert_eq!(circuit.debris[0].mode_mix, mix, "{work:?}");
+        let life = Life {
+            work: [work[0], work[1], 5.0],
+            ..Life::default()
+        };
+        assert_eq!(life.mode_mix(), mix);
+    }
+}
+
+/// A grain that was bonded again and breaks away again costs the new bond only, and stays bonded between: what was booked is not booked
+/// again.
+#[test]
+fn bonds_of_earlier_debris_do_not_count_again() {
+    let mut s = scene();
+    bond(&mut s, [0, 1]);
+    let mut circuit = circuit(&s);
+    for (work, energy) in [([1.0, 3.0], 2.0), ([1.0, 0.0], 5.0), ([0.0, 1.0], 7.0)] {
+        step(&mut circuit, &mut s, &[], &[([0, 1], work, energy)]);
+        let debris = &circuit.debris[0];
+        assert_eq!((debris.bonds, debris.energy), (1, energy));
+        assert_eq!(debris.mode_mix, work[1] / (work[0] + work[1]));
+        assert_eq!(circuit.place(1), Some(Place::Contact));
+        step(&mut circuit, &mut s, &[], &[]);
+        assert!(circuit.debris.is_empty());
+        step(&mut circuit, &mut s, &[[0, 1]], &[]);
+        assert_eq!(circuit.place(1), Some(Place::Tied(0)));
+        assert_eq!(circuit.tied_to(0), 1);
+    }
+    // Source and reattachment, three times each.
+    let flows = circuit.ledger.flows;
+    assert_eq!((flows.source.grains, flows.attached.grains), (3, 3));
+}
+
+/// A bond that broke while its grain was held by another counts only for the debris that it held.
+#[test]
+fn a_grain_that_is_tied_anew_forgets_what_broke_before() {
+    let mut s = scene();
+    bond(&mut s, [1, 2]);
+    let mut circuit = circuit(&s);
+    // Two loose grains part; one is tied later, and breaks away.
+    step(&mut circuit, &mut s, &[], &[([1, 2], [1.0, 1.0], 3.0)]);
+    assert!(circuit.debris.is_empty());
+    step(&mut circuit, &mut s, &[[0, 1]], &[]);
+    step(&mut circuit, &mut s, &[], &[([0, 1], [1.0, 0.0], 4.0)]);
+    let debris = &circuit.debris[0];
+    assert_eq!(
+        (debris.bonds, debris.energy, debris.mode_mix),
+        (1, 4.0, 0.0)
+    );
+}
+
+/// Bonds of interfaces that are not the circuit's, and of first bodies that are not its bases, tie nothing.
+#[test]
+fn other_bonds_do_not_tie() {
+    let mut s = scene();
+    s.drive(2, Default::default());
+    bond(&mut s, [0, 1]);
+    bond(&mut s, [1, 2]);
+    s.state.network.contacts[0].law = 1;
+    s.state
+        .network
+        .memory
+        .push(s.state.network.memory[0].clone());
+    let mut circuit = circuit(&s);
+    assert_eq!(circuit.place(1), Some(Place::Contact));
+    assert_eq!(circuit.place(2), None);
+    step(&mut circuit, &mut s, &[[1, 2]], &[]);
+    assert_eq!(circuit.place(1), Some(Place::Contact));
+    s.state.network.bonds_formed = vec![([0, 1], 1)];
+    circuit.note(&s);
+    circuit.update(&mut s);
+    assert_eq!(circuit.place(1), Some(Place::Contact));
+}
+
+/// A zone of x from 0.5 to 1.5 m, which holds the first grain at first: after a time there the grain is lost, not before; one that left and
+/// came back begins anew.
+#[test]
+fn a_grain_is_lost_after_its_time_in_the_zone() {
+    let mut s = scene();
+    let infinity = f64::INFINITY;
+    let zone = Zone {
+        name: "drain".into(),
+        low: Vector2::new(0.5, -infinity),
+        high: Vector2::new(1.5, infinity),
+        carrier: None,
+        fate: Fate::LostAfter(2.0),
+    };
+    let spec = Spec {
+        bases: vec![0],
+        interfaces: vec![0],
+        zones: vec![zone],
+        scaling: 4.0,
+    };
+    let mut circuit = Circuit::new(spec, &s);
+    assert_eq!(circuit.place(1), Some(Place::Ejected(0)));
+    assert_eq!(circuit.place(2), Some(Place::Contact));
+    let mass = circuit.ledger.contents.ejected.mass;
+    assert_eq!(mass, 0.25 * s.state.bodies.mass[1]);
+    let times = [1.0, 1.5, 2.0, 3.5, 4.0];
+    let places = [1.0, 9.0, 1.0, 1.0, 1.0];
+    let (zone, loose) = (Place::Ejected(0), Place::Contact);
+    for ((time, x), place) in times
+        .iter()
+        .zip(places)
+        .zip([zone, loose, zone, zone, Place::Lost])
+    {
+        s.state.time = *time;
+        s.state.bodies.position[1].x = x;
+        circuit.update(&mut s);
+        assert_eq!(circuit.place(1), Some(place), "{time} s");
+        assert_eq!(s.state.bodies.removed[1], place == Place::Lost);
+    }
+    let flows = circuit.ledger.flows;
+    let grains = [flows.ejected, flows.recirculated, flows.wear].map(|a| a.grains);
+    assert_eq!(grains, [1, 1, 1]);
+    assert_eq!(flows.wear.mass, mass);
+}
