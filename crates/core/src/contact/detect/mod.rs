@@ -243,3 +243,6 @@ fn drop_contact<S: Space>(network: &mut Network<S>, contact: &Contact<S>) {
 fn held<S: Space>(network: &Network<S>, old: Option<&Contact<S>>) -> bool {
     old.is_some_and(|c| network.bond(c).is_some_and(|b| b.intact()))
 }
+
+#[cfg(test)]
+mod tests;

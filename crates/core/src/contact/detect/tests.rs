@@ -1,0 +1,105 @@
+//! Detection of disks and points, by the public functions.
+
+use super::*;
+use crate::contact::network::Key;
+use crate::geometry::polyline::Polyline;
+use crate::geometry::space::Dim2;
+use crate::step::Simulation;
+use nalgebra::{Vector1, Vector2};
+
+const H: f64 = 1e-3;
+
+/// Makes all materials touch by the first law.
+fn touching(mut s: Simulation<Dim2>) -> Simulation<Dim2> {
+    s.table.set(0, 0, 0);
+    let Network {
+        alert, skin, fast, ..
+    } = s.state.network;
+    s.state.network = Network::new(alert, skin, &[0]);
+    s.state.network.fast = fast;
+    s
+}
+
+fn find(s: &mut Simulation<Dim2>) {
+    let times = [s.state.time, H];
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    detect(network, &s.shapes, bodies, &s.table, times, false);
+}
+
+/// A pair whose bond broke is known as such in each new contact: when it has separated and meets again, and in a contact that is predicted.
+#[test]
+fn a_broken_pair_is_remembered_when_it_meets_again() {
+    let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5), ([2.0, 0.0], 0.5)];
+    let mut s = touching(Simulation::of_disks(&disks));
+    find(&mut s);
+    assert_eq!(s.state.network.contacts.len(), 2);
+    // A bond of the second pair breaks.
+    let slot = s.state.network.memory[0].allocate(true, 0.0, 1.0, &[]);
+    s.state.network.contacts[1].slot = slot;
+    let contact = s.state.network.contacts[1].clone();
+    drop_contact(&mut s.state.network, &contact);
+    s.state.network.contacts[1].slot = crate::contact::Contact::<Dim2>::NO_MEMORY;
+    for apart in [0.1, 0.0] {
+        s.state.bodies.position[2].x = 2.0 + apart;
+        find(&mut s);
+    }
+    let broken: Vec<bool> = s.state.network.contacts.iter().map(|c| c.broken).collect();
+    assert_eq!(broken, [false, true]);
+    // Beyond the alert distance, and fast.
+    s.state.bodies.position[2].x = 2.1;
+    s.state.bodies.position[1].x = 1.0 + 1e-6;
+    find(&mut s);
+    assert_eq!(s.state.network.contacts.len(), 1);
+    let zero = Vector1::zeros();
+    let mut velocities = vec![(Vector2::zeros(), zero); 3];
+    velocities[2].0.x = -0.2 / H;
+    let motion = Motion {
+        velocities: &velocities,
+        time: 0.0,
+        h: H,
+        parallel: false,
+    };
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    add_predicted(network, &s.shapes, bodies, &s.table, &motion);
+    let predicted: Vec<_> = network.contacts.iter().filter(|c| c.closing).collect();
+    assert_eq!(predicted.len(), 1);
+    assert_eq!(predicted[0].bodies, [1, 2]);
+    assert!(predicted[0].broken);
+}
+
+/// A point of a body of 1 m goes fast towards a chain, which it sees from behind within the alert distance of 1 mm only: it is followed in parts
+/// of that, however large its body is, and meets the chain when it has made its way to it.
+#[test]
+fn a_point_is_followed_in_parts_of_the_alert_distance() {
+    for (height, depth) in [(0.02, 0.5), (0.3, 0.01), (0.7, 2.0)] {
+        let mut s = Simulation::of_disks(&[([0.25, height], 1.0)]);
+        s.shapes.balls[0].radius = 0.0;
+        let chain = [-1.0, 0.0, 1.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+        s.add_surface(Polyline::new(chain, None).unwrap());
+        let mut s = touching(s);
+        find(&mut s);
+        assert!(s.state.network.contacts.is_empty());
+        let zero = Vector1::zeros();
+        let down = Vector2::new(0.0, -(height + depth) / H);
+        let velocities = [(down, zero), (Vector2::zeros(), zero)];
+        let motion = Motion {
+            velocities: &velocities,
+            time: 0.0,
+            h: H,
+            parallel: false,
+        };
+        let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+        add_predicted(network, &s.shapes, bodies, &s.table, &motion);
+        let [contact] = &network.contacts[..] else {
+            panic!("{:?}", network.contacts)
+        };
+        assert_eq!(contact.key.pair(), (0, Key::SURFACE));
+        assert!(contact.closing && contact.beyond);
+        assert_eq!(contact.normal, Vector2::new(0.0, 1.0));
+        assert!(
+            (contact.gap - height).abs() < 1e-12,
+            "{height}: {}",
+            contact.gap
+        );
+    }
+}
