@@ -502,3 +502,6 @@ fn degradation_factor(damage: f64, m: f64) -> f64 {
         intact.powf(m)
     }
 }
+
+#[cfg(test)]
+mod tests;

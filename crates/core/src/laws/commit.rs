@@ -408,3 +408,6 @@ impl<S: Space> SlotCommit<'_, S> {
         self.outputs
     }
 }
+
+#[cfg(test)]
+mod tests;

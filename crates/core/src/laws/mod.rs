@@ -21,6 +21,8 @@ mod outputs;
 mod plugin_table;
 mod prepare;
 mod range;
+#[cfg(test)]
+mod sample_laws;
 pub mod search;
 mod spring;
 pub mod static_memory;

@@ -1,0 +1,105 @@
+//! The energies of a bond over a step whose motion and impulses are given.
+
+use super::*;
+use crate::contact::network::{ContactGeometry, Key};
+use crate::geometry::space::Dim2;
+use crate::laws::sample_laws::{bond, interface};
+use crate::laws::step_result::ContactStep;
+use crate::solve::MomentSolution;
+use crate::solve::form::ContactSolution;
+use nalgebra::{Vector1, Vector2};
+
+const INFO: StepInfo = StepInfo {
+    dimension: 2,
+    time: 0.0,
+    h: 0.5,
+    theta: 0.5,
+};
+
+/// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 over a step at half of the final forces, k A x/2,
+/// while the contact presses, slides and rolls with friction: what the bond stores is k A x^2/2 of each, and the work of friction is
+/// none of its own.
+#[test]
+fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
+    let (k, area) = (2.0, 1.5);
+    let x = [1.0, 2.0, 3.0];
+    let law = interface([bond()]);
+    let mut network = Network::<Dim2>::new(1.0, 1.0, &[0]);
+    network.memory[0].rotates = true;
+    network.dissipation = Some(Vec::new());
+    let key = Key {
+        candidate: 0,
+        antagonist: 1,
+        feature: 0,
+    };
+    let geometry = ContactGeometry {
+        gap: 0.0,
+        normal: Vector2::new(0.0, 1.0),
+        arms: [Vector2::zeros(); 2],
+        radius: 1.0,
+    };
+    let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+    let slot = network.memory[0].allocate(true, 0.0, area, &[]);
+    network.contacts.push(Contact { slot, ..contact });
+
+    let h = INFO.h;
+    // Impulses of the bond, against its openings, and those of the contact beside them.
+    let elastic = x.map(|x| -h * k * area * 0.5 * x);
+    let (pressed, friction, rolling) = (0.25, -0.5, -0.75);
+    let normal = Vector2::new(0.0, 1.0);
+    let tangent = Dim2::tangent_vector(&normal, &Vector1::new(1.0));
+    let along = |n: f64, t: f64| normal * n + tangent * t;
+    let average = along(x[0] / h, x[1] / h);
+    let contact_step = ContactStep {
+        before: average,
+        average,
+        adheres: false,
+        lost: None,
+        corrected: 0.0,
+        slides: true,
+        solution: ContactSolution {
+            impulse: along(elastic[0] + pressed, elastic[1] + friction),
+            unilateral_n: pressed,
+            unilateral_t: Vector1::new(friction),
+        },
+    };
+    let spin = x[2] / h;
+    let moment_step = MomentStep {
+        moment: MomentSolution {
+            contact: 0,
+            moment: Vector1::new(elastic[2] + rolling),
+            friction: Vector1::new(rolling),
+        },
+        spin: Vector1::new(spin),
+        lost: 0.0,
+    };
+    let step = SolvedStep {
+        contacts: &[contact_step],
+        springs: &[],
+        moments: &[moment_step],
+        info: &INFO,
+        predicted: false,
+    };
+    let laws = [law];
+    let mut evaluator = LawEvaluator::default();
+    evaluator.select(&laws, &network);
+    let history = &mut LawHistory::default();
+    let totals = evaluator
+        .commit(&laws, history, &mut network, &step)
+        .unwrap();
+
+    let stored = x.map(|x| 0.5 * k * area * x * x);
+    let bond = &network.memory[0].bonds[0];
+    assert_eq!((bond.opening_n, bond.opening_t.x), (x[0], x[1]));
+    assert_eq!(network.memory[0].rotations[0].x, x[2]);
+    assert_eq!(bond.life.work, stored);
+    assert_eq!(bond.energy, stored.iter().sum::<f64>());
+    assert_eq!((bond.life.viscous, bond.life.fracture), (0.0, 0.0));
+    // Friction acts against the motion: -p u.
+    let rubbed = -friction * x[1] / h - rolling * spin;
+    assert_eq!(bond.life.friction, rubbed);
+    assert_eq!(totals.friction, rubbed);
+    assert_eq!(network.contacts[0].friction_work, rubbed);
+    assert_eq!(network.dissipation.as_ref().unwrap()[0].friction, rubbed);
+    assert_eq!(network.contacts[0].moment.x, elastic[2] + rolling);
+}

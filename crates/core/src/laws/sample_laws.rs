@@ -1,0 +1,172 @@
+//! Laws of unit tests: simple enough that what they give is known in closed form.
+
+use super::interface::{Interface, Loaded};
+use super::library::Plugin;
+use fretwork_law::{
+    CohesionLaw, Conductance, ContactLaw, Friction, Law, Site, Traction, TransportLaw, Variable,
+    abi, parameters,
+};
+use std::path::Path;
+
+parameters! {
+    /// Coulomb friction.
+    pub struct Coulomb {
+        mu: "" = 0.5, 0.0, 10.0, "friction coefficient";
+    }
+}
+
+impl Law for Coulomb {
+    const NAME: &'static str = "coulomb";
+    const DOC: &'static str = "friction";
+    const REFERENCE: &'static str = "a test";
+}
+
+impl ContactLaw for Coulomb {
+    fn friction(&self, _: &Site, _: &[f64]) -> Friction {
+        Friction {
+            mu: self.mu,
+            ..Friction::default()
+        }
+    }
+}
+
+parameters! {
+    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension only.
+    pub struct Bond {
+        k: "Pa/m" = 2.0, 0.0, 1e30, "stiffness";
+    }
+}
+
+impl Law for Bond {
+    const NAME: &'static str = "bond";
+    const DOC: &'static str = "a linear bond that resists rotation";
+    const REFERENCE: &'static str = "a test";
+    const FLAGS: u64 =
+        abi::FLAG_OPENING | abi::FLAG_TENSION_ONLY | abi::FLAG_MOMENT | abi::FLAG_FORMS;
+}
+
+impl CohesionLaw for Bond {
+    const DEGRADATION: f64 = 1.0;
+
+    fn traction(&self, site: &Site, _: &[f64]) -> Traction {
+        Traction {
+            moment: site.rotation.map(|x| self.k * x),
+            stiffness_twist: self.k,
+            stiffness_bend: self.k,
+            ..Traction::linear(site, self.k, self.k)
+        }
+    }
+
+    fn energy(&self, site: &Site, _: &[f64]) -> f64 {
+        let tension = site.opening[0].max(0.0);
+        let [_, t1, t2] = site.opening;
+        let squares = [tension, t1, t2].into_iter().chain(site.rotation);
+        0.5 * self.k * squares.map(|x| x * x).sum::<f64>()
+    }
+}
+
+parameters! {
+    /// Conducts 1 W/K for each second that the contact has had, which it counts itself.
+    pub struct Growing {
+        per_time: "W/K/s" = 1.0, 0.0, 1e30, "conductance per time";
+    }
+}
+
+impl Law for Growing {
+    const NAME: &'static str = "growing";
+    const DOC: &'static str = "a conductance that grows with time";
+    const REFERENCE: &'static str = "a test";
+    const VARIABLES: &'static [Variable] = &[Variable {
+        name: c"time",
+        unit: c"s",
+        doc: c"time so far",
+        initial: 0.0,
+        output: false,
+    }];
+}
+
+impl TransportLaw for Growing {
+    fn conductance(
+        &self,
+        site: &Site,
+        _slip: f64,
+        _work: f64,
+        state: &[f64],
+        next: &mut [f64],
+    ) -> Conductance {
+        next[0] = state[0] + site.h;
+        Conductance {
+            thermal: self.per_time * next[0],
+            electric: 0.0,
+        }
+    }
+}
+
+parameters! {
+    /// Conducts 3 W/K, and remembers nothing.
+    pub struct Constant {
+        conductance: "W/K" = 3.0, 0.0, 1e30, "conductance";
+    }
+}
+
+impl Law for Constant {
+    const NAME: &'static str = "constant";
+    const DOC: &'static str = "a constant conductance";
+    const REFERENCE: &'static str = "a test";
+}
+
+impl TransportLaw for Constant {
+    fn conductance(
+        &self,
+        _: &Site,
+        _slip: f64,
+        _work: f64,
+        _: &[f64],
+        _: &mut [f64],
+    ) -> Conductance {
+        Conductance {
+            thermal: self.conductance,
+            electric: 0.0,
+        }
+    }
+}
+
+/// The law of a table of the wrapper, with the defaults of its parameters.
+fn loaded(table: *const abi::FwPlugin) -> Loaded {
+    // SAFETY: a static table of the wrapper.
+    let plugin = unsafe { Plugin::from_table(table, Path::new("a test"), "", true) };
+    Loaded::with_defaults(plugin.unwrap())
+}
+
+macro_rules! law {
+    ($kind:ident $law:ty) => {{
+        fretwork_law::plugin_table!($kind $law);
+        loaded(&TABLE.0)
+    }};
+}
+
+/// The laws of the tests, each with the defaults of its parameters.
+pub(super) fn coulomb() -> Loaded {
+    law!(contact Coulomb)
+}
+
+/// See [`coulomb`].
+pub(super) fn bond() -> Loaded {
+    law!(cohesion Bond)
+}
+
+/// See [`coulomb`].
+pub(super) fn growing() -> Loaded {
+    law!(transport Growing)
+}
+
+/// See [`coulomb`].
+pub(super) fn constant() -> Loaded {
+    law!(transport Constant)
+}
+
+/// An interface of friction and other laws.
+pub(super) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
+    let laws = std::iter::once(coulomb()).chain(laws);
+    Interface::new("test", laws).unwrap()
+}
