@@ -425,3 +425,31 @@ impl<S: Space> Network<S> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The kind of each side is in its number; a pair is both without the feature.
+    #[test]
+    fn a_key_tells_what_touches() {
+        let (piece, surface) = (Key::PIECE | 3, Key::SURFACE | 4);
+        let key = |candidate, antagonist| Key {
+            candidate,
+            antagonist,
+            feature: 7,
+        };
+        for (key, ball, other, plane) in [
+            (key(3, 4), Some(3), Some(4), None),
+            (key(3, piece), Some(3), None, None),
+            (key(3, surface), Some(3), None, Some(4)),
+            (key(piece, piece), None, None, None),
+            (key(piece, surface), None, None, Some(4)),
+            (key(0, 0), Some(0), Some(0), None),
+        ] {
+            let found = (key.ball(), key.antagonist_ball(), key.surface());
+            assert_eq!(found, (ball, other, plane), "{key:?}");
+            assert_eq!(key.pair(), (key.candidate, key.antagonist));
+        }
+    }
+}

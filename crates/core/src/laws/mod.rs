@@ -22,7 +22,7 @@ mod plugin_table;
 mod prepare;
 mod range;
 #[cfg(test)]
-mod sample_laws;
+pub(crate) mod sample_laws;
 pub mod search;
 mod spring;
 pub mod static_memory;

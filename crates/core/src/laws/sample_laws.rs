@@ -146,27 +146,27 @@ macro_rules! law {
 }
 
 /// The laws of the tests, each with the defaults of its parameters.
-pub(super) fn coulomb() -> Loaded {
+pub(crate) fn coulomb() -> Loaded {
     law!(contact Coulomb)
 }
 
 /// See [`coulomb`].
-pub(super) fn bond() -> Loaded {
+pub(crate) fn bond() -> Loaded {
     law!(cohesion Bond)
 }
 
 /// See [`coulomb`].
-pub(super) fn growing() -> Loaded {
+pub(crate) fn growing() -> Loaded {
     law!(transport Growing)
 }
 
 /// See [`coulomb`].
-pub(super) fn constant() -> Loaded {
+pub(crate) fn constant() -> Loaded {
     law!(transport Constant)
 }
 
 /// An interface of friction and other laws.
-pub(super) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
+pub(crate) fn interface(laws: impl IntoIterator<Item = Loaded>) -> Interface {
     let laws = std::iter::once(coulomb()).chain(laws);
     Interface::new("test", laws).unwrap()
 }

@@ -63,3 +63,6 @@ pub use repeat::{RepeatError, Saved};
 pub use report::{StepReport, Timing};
 pub use simulation::Simulation;
 pub use state::State;
+
+#[cfg(test)]
+mod tests;

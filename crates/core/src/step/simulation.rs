@@ -97,7 +97,7 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Scenes of unit tests in the plane: no laws, so that what is in contact is what the test puts there.
+/// Scenes of unit tests in the plane. Without a law what is in contact is what the test puts there.
 #[cfg(test)]
 impl Simulation<crate::geometry::space::Dim2> {
     /// Disks at rest by centre and radius (m), of 1 kg/m^3 and the material 0.
@@ -120,6 +120,13 @@ impl Simulation<crate::geometry::space::Dim2> {
             periodic: Periodic { period: [None; 3] },
         };
         Self::new(bodies, shapes, Vec::new(), LawTable::new(1), 1e-3, 1e-3)
+    }
+
+    /// The same bodies and shapes, which touch by a law.
+    pub(crate) fn with_law(self, law: Interface) -> Self {
+        let mut table = LawTable::new(1);
+        table.set(0, 0, 0);
+        Self::new(self.state.bodies, self.shapes, vec![law], table, 1e-3, 1e-3)
     }
 
     /// Has a body driven, with these drives of x, y and the rotation.

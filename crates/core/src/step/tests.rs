@@ -1,0 +1,332 @@
+//! Whole steps of scenes that have a closed form, with laws of unit tests.
+
+use super::control::{Changes, Phase, Until};
+use super::*;
+use crate::bodies::Dof;
+use crate::geometry::polyline::Polyline;
+use crate::geometry::space::Dim2;
+use crate::heat::{
+    BodyNodes, Heat, HeatState, Imposed, Node, Partition, Shares, Store, ThermalMaterial,
+};
+use crate::laws::sample_laws::{bond, constant, interface};
+use nalgebra::Vector2;
+
+const H: f64 = 1.0 / 64.0;
+
+/// Same as far as rounding goes.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * a.abs().max(b.abs()).max(1.0)
+}
+
+/// A disk that does not turn lies on a chain of 20 m, and slides at 3 m/s; index 0, and 1 of the body of the chain.
+fn slider() -> Simulation<Dim2> {
+    let mut s = Simulation::of_disks(&[([0.0, 0.5], 0.5)]);
+    s.drive(0, [Dof::Free, Dof::Free, Dof::Fixed]);
+    let chain = [-10.0, 10.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+    s.add_surface(Polyline::new(chain, None).unwrap());
+    s.state.bodies.velocity[0].x = 3.0;
+    let mut s = s.with_law(interface([]));
+    s.state.gravity = Vector2::new(0.0, -10.0);
+    s.options.scheme = Scheme { h: H, theta: 0.5 };
+    s
+}
+
+/// Under g = 10 m/s^2 with friction of 0.5 it slows down by 5 m/s^2: v = 3 - 5 t and x = 3 t - 5 t^2/2, exactly at theta = 1/2, and stops; its
+/// energy goes into friction. The chain gets the weight and the friction, and the moment of the weight about its origin.
+#[test]
+fn a_disk_slides_and_stops() {
+    let mut s = slider();
+    let m = s.state.bodies.mass[0];
+    let before = 0.5 * m * 9.0;
+    // 0.6 s are 38.4 steps.
+    for k in 1..=38 {
+        let x_mean = s.state.bodies.position[0].x + 0.5 * H * s.state.bodies.velocity[0].x;
+        s.step().unwrap();
+        let t = f64::from(k) * H;
+        let (x, v) = (s.state.bodies.position[0], s.state.bodies.velocity[0]);
+        assert!(same(s.state.time, t));
+        assert!(same(v.x, 3.0 - 5.0 * t) && same(v.y, 0.0), "{t}: {v}");
+        assert!(
+            same(x.x, 3.0 * t - 2.5 * t * t) && same(x.y, 0.5),
+            "{t}: {x}"
+        );
+        let energy = &s.state.energy;
+        assert!(same(energy.friction, before - 0.5 * m * v.x * v.x));
+        assert!(same(energy.kinetic + energy.friction, before));
+        assert!(energy.residual.abs() < 1e-12);
+        let (p, moment) = s.state.received[1];
+        assert!(same(p.x, 5.0 * m * H) && same(p.y, -10.0 * m * H), "{p}");
+        assert!(same(moment.x, -10.0 * m * H * x_mean), "{moment}");
+        assert_eq!(s.state.received[0].0, -p);
+    }
+    for _ in 0..10 {
+        s.step().unwrap();
+    }
+    assert!(s.state.bodies.velocity[0].norm() < 1e-12);
+    let energy = s.state.energy;
+    assert!(same(energy.friction, before) && energy.impact.abs() < 1e-12);
+}
+
+/// A disk that falls is exact at any theta in its velocity, and at theta = 1/2 in its place; the scheme takes (theta - 1/2) m (g h)^2 in each
+/// step.
+#[test]
+fn a_disk_falls() {
+    for theta in [0.5, 0.75, 1.0] {
+        let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5)]);
+        s.state.gravity = Vector2::new(0.0, -10.0);
+        s.options.scheme = Scheme { h: H, theta };
+        let m = s.state.bodies.mass[0];
+        for k in 1..=20 {
+            s.step().unwrap();
+            let (n, t) = (f64::from(k), f64::from(k) * H);
+            assert!(same(s.state.bodies.velocity[0].y, -10.0 * t));
+            // The sum of -g h^2 (j + theta) over j = 0 to n - 1.
+            let y = -10.0 * H * H * (0.5 * n * (n - 1.0) + theta * n);
+            assert!(same(s.state.bodies.position[0].y, y));
+            let energy = &s.state.energy;
+            assert!(same(energy.potential, 10.0 * m * y));
+            assert!(same(
+                energy.scheme,
+                n * (theta - 0.5) * m * (10.0 * H).powi(2)
+            ));
+            assert!(energy.residual.abs() < 1e-12);
+        }
+    }
+}
+
+/// Two disks that a bond of k A = 0.5 N/m holds fly apart at v: by the midpoint rule the opening is v/w sin(n phi) after n steps and its rate
+/// v cos(n phi), with tan(phi/2) = w h/2 and w^2 = 2 k A/m, and no energy is lost.
+#[test]
+fn a_bond_swings_as_the_midpoint_rule_says() {
+    let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
+    s.state.bodies.velocity[0].x = -0.0125;
+    s.state.bodies.velocity[1].x = 0.0125;
+    let mut s = s.with_law(interface([bond()]));
+    s.options.scheme = Scheme { h: H, theta: 0.5 };
+    let m = s.state.bodies.mass[0];
+    // An area of half of the radius.
+    let stiffness = 2.0 * 0.25;
+    let w = (2.0 * stiffness / m).sqrt();
+    let phi = 2.0 * (0.5 * w * H).atan();
+    let (v, all) = (0.025, m * 0.0125 * 0.0125);
+    // Half a swing is 178 steps.
+    for k in 1..=150 {
+        s.step().unwrap();
+        let angle = f64::from(k) * phi;
+        let bodies = &s.state.bodies;
+        let opening = bodies.position[1].x - bodies.position[0].x - 1.0;
+        let speed = bodies.velocity[1].x - bodies.velocity[0].x;
+        assert!((opening - v / w * angle.sin()).abs() < 1e-12, "{k}");
+        assert!((speed - v * angle.cos()).abs() < 1e-12, "{k}");
+        let energy = &s.state.energy;
+        let stored = 0.5 * stiffness * opening * opening;
+        assert!((energy.elastic - stored).abs() < 1e-14, "{k}");
+        assert!((energy.kinetic + energy.elastic - all).abs() < 1e-14, "{k}");
+        assert!(energy.residual.abs() < 1e-14 && energy.viscous.abs() < 1e-14);
+        let network = &s.state.network;
+        let kept = &network.memory[0].bonds[0];
+        assert!((kept.opening_n - opening).abs() < 1e-14 && kept.intact());
+        assert!((kept.life.work[0] - stored).abs() < 1e-14);
+        assert_eq!((network.bonds_made(), network.bonds_broken()), (1, 0));
+    }
+}
+
+/// Phases of 8, 4 and 2 steps: friction of 0.5, then none, then 0.25 under twice the weight, which is the same force as at first. The run has
+/// ended with the last.
+#[test]
+fn phases_change_gravity_and_friction() {
+    let mut s = slider();
+    let phase = |name: &str, steps, friction, gravity: f64| Phase {
+        name: name.into(),
+        until: Some(Until::Steps(steps)),
+        changes: Changes {
+            contact: vec![(0, 0, friction)],
+            gravity: Some(Vector2::new(0.0, -gravity)),
+            drives: Vec::new(),
+            holders: Vec::new(),
+            gravity_drive: None,
+            open: Vec::new(),
+            tolerance: None,
+        },
+        recurs: false,
+    };
+    s.phases = vec![
+        phase("rub", 8, 0.5, 10.0),
+        phase("glide", 4, 0.0, 10.0),
+        phase("press", 2, 0.25, 20.0),
+    ];
+    for k in 1..=14 {
+        assert!(!s.finished());
+        s.step().unwrap();
+        let rubbed = f64::from(k.min(8) + (k - 12).max(0)) * H;
+        let v = s.state.bodies.velocity[0].x;
+        assert!(same(v, 3.0 - 5.0 * rubbed), "step {k}: {v}");
+        assert_eq!(
+            s.laws[0].contact().parameters,
+            [[0.5, 0.0, 0.25][usize::from(k > 8) + usize::from(k > 12)]]
+        );
+    }
+    assert!(s.finished());
+}
+
+const STEEL: ThermalMaterial = ThermalMaterial {
+    conductivity: 50.0,
+    heat_capacity: 500.0,
+    density: 8000.0,
+    resistivity: None,
+};
+
+/// Heat of two bodies of one node each.
+fn heat() -> Heat {
+    Heat {
+        materials: vec![STEEL],
+        pairs: Heat::pairs(&[STEEL]),
+        material: vec![0; 2],
+        nodes: vec![BodyNodes::One(0), BodyNodes::One(1)],
+        columns: Vec::new(),
+        elements: Vec::new(),
+        first_bodies: vec![("second".into(), 1..2)],
+        imposed: Vec::new(),
+        initial: 300.0,
+        shares: Shares::default(),
+        partition: Partition::default(),
+        theta: 1.0,
+        clock: 1.0,
+        every: 1,
+        start: 0.0,
+        flash: None,
+        circuit: None,
+    }
+}
+
+fn nodes(list: [(f64, f64); 2]) -> HeatState {
+    let node = |(t, c)| Node::new(t, Store::Lumped(c));
+    HeatState::new(list.map(node).to_vec(), 1)
+}
+
+/// Two disks of 1 and 2 J/K at 400 and 300 K, joined by 3 W/K, of which the first is heated by 5 W: with implicit Euler over a time t the
+/// difference d goes to (d + 5 t/1)/(1 + 3 t (1/1 + 1/2)), and 3 W/K times it goes over. A step of the heat is of so many steps of the mechanics,
+/// each of the clock times h. Heat begins to flow at its time.
+#[test]
+fn two_disks_come_to_one_temperature() {
+    for (every, clock, start) in [
+        (1, 1.0, 0.0),
+        (3, 1.0, 0.0),
+        (2, 4.0, 0.0),
+        (2, 1.0, 4.0 * H),
+    ] {
+        let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
+        let mut s = Simulation::of_disks(&disks).with_law(interface([constant()]));
+        s.options.scheme = Scheme { h: H, theta: 0.5 };
+        let imposed = vec![Imposed {
+            body: None,
+            node: 0,
+            flow: 5.0,
+        }];
+        let heat = Heat {
+            every,
+            clock,
+            start,
+            imposed,
+            ..heat()
+        };
+        s.set_heat(heat, nodes([(400.0, 1.0), (300.0, 2.0)]));
+        let begun = (start / H) as u64;
+        let span = every as f64 * clock * H;
+        let (mut differ, mut put) = (100.0, 0.0);
+        let mut flown = 0.0;
+        for k in 1..=24 {
+            s.step().unwrap();
+            if k > begun {
+                put += 5.0 * clock * H;
+            }
+            if k > begun && (k - begun).is_multiple_of(every) {
+                differ = (differ + 5.0 * span) / (1.0 + 4.5 * span);
+                flown += 3.0 * differ * span;
+            }
+            let state = s.state.heat.as_ref().unwrap();
+            let [a, b] = [0, 1].map(|n| s.temperature(n).unwrap());
+            assert!(same(a - b, differ), "{every} {clock} {k}: {a} {b} {differ}");
+            assert!(same(b, 300.0 + flown / 2.0), "{every} {clock} {k}");
+            assert!(same(state.received[0], flown));
+            let ledger = &state.ledger;
+            assert!(same(ledger.imposed, put));
+            assert!(same(ledger.stored + ledger.pending, put));
+            assert!(ledger.residual.abs() < 1e-12 && ledger.fixed == 0.0);
+        }
+    }
+}
+
+/// The friction of a disk that slides warms it and the chain by half each, since they are of one material; or by the shares of the case, all of
+/// it on one side where the other is insulated, and into nothing where both are.
+#[test]
+fn friction_warms_both_sides() {
+    let (one, two) = (BodyNodes::One(0), BodyNodes::One(1));
+    let none = BodyNodes::Insulated;
+    for (nodes_of, share, parts) in [
+        ([one.clone(), two.clone()], 1.0, [0.5, 0.5]),
+        ([one.clone(), two.clone()], 0.75, [0.375, 0.375]),
+        ([none.clone(), two], 1.0, [0.0, 1.0]),
+        ([one, none.clone()], 1.0, [1.0, 0.0]),
+        ([none.clone(), none], 1.0, [0.0, 0.0]),
+    ] {
+        let mut s = slider();
+        let shares = Shares {
+            friction: share,
+            ..Shares::default()
+        };
+        let heat = Heat {
+            nodes: nodes_of.to_vec(),
+            shares,
+            ..heat()
+        };
+        s.set_heat(heat, nodes([(300.0, 0.5), (310.0, 2.0)]));
+        for _ in 0..30 {
+            s.step().unwrap();
+        }
+        let friction = s.state.energy.friction;
+        let state = s.state.heat.as_ref().unwrap();
+        let [a, b] = [0, 1].map(|n: usize| state.nodes[n].temperature);
+        assert!(same(a, 300.0 + parts[0] * friction / 0.5), "{a}");
+        assert!(same(b, 310.0 + parts[1] * friction / 2.0), "{b}");
+        assert!(same(state.received[0], parts[1] * friction));
+        let ledger = &state.ledger;
+        assert!(same(ledger.dissipated, share * friction));
+        let into_nothing = share - parts[0] - parts[1];
+        assert!(same(ledger.fixed, into_nothing * friction));
+        assert!(ledger.residual.abs() < 1e-12);
+    }
+}
+
+/// Where a hardness is given a contact is warmer than its bodies by the rise that its force, speed and friction give, in thermal time, from the
+/// second step on.
+#[test]
+fn a_sliding_contact_flashes() {
+    for clock in [1.0, 4.0] {
+        let mut s = slider();
+        let m = s.state.bodies.mass[0];
+        let heat = Heat {
+            flash: Some(1e9),
+            clock,
+            ..heat()
+        };
+        s.set_heat(heat.clone(), nodes([(300.0, 1e300), (300.0, 1e300)]));
+        for k in 0..10 {
+            s.step().unwrap();
+            let seen = &s.state.network.thermal.as_ref().unwrap().seen[0];
+            let [mean, a, b] = seen.temperature;
+            assert_eq!((a, b), (300.0, 300.0));
+            // The force of the last step, and the speed at the start of this one.
+            let (force, v) = (10.0 * m, (3.0 - 5.0 * f64::from(k) * H) / clock);
+            let rise = match k {
+                0 => 0.0,
+                _ => heat.flash_rise::<Dim2>([0, 1], force, v, 0.5 * force * v),
+            };
+            assert!(k == 0 || rise > 1e-9, "{rise}");
+            assert!(
+                (mean - 300.0 - rise).abs() < 1e-9 * (1.0 + rise),
+                "{mean} {rise}"
+            );
+        }
+    }
+}
