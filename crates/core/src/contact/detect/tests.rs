@@ -103,3 +103,65 @@ fn a_point_is_followed_in_parts_of_the_alert_distance() {
         );
     }
 }
+
+/// A disk above a chain with two flanks, its centre over the edge between them.
+fn disk_between_flanks() -> Simulation<Dim2> {
+    let mut s = Simulation::of_disks(&[([0.0, 0.5 * 2f64.sqrt()], 0.5)]);
+    let chain = [(-2.0, 2.0), (0.0, 0.0), (2.0, 2.0)];
+    let chain = chain.map(|(x, y)| Vector2::new(x, y)).to_vec();
+    s.add_surface(Polyline::new(chain, None).unwrap());
+    touching(s)
+}
+
+/// A disk lies on both flanks of a groove of a right angle, on each of them on a face.
+#[test]
+fn a_disk_in_a_groove_touches_two_faces() {
+    let mut s = disk_between_flanks();
+    find(&mut s);
+    let contacts = &s.state.network.contacts;
+    assert_eq!(contacts.len(), 2);
+    let half = 0.5f64.sqrt();
+    for (contact, side) in contacts.iter().zip([1.0, -1.0]) {
+        assert!((contact.normal - Vector2::new(side * half, half)).norm() < 1e-15);
+        assert!(contact.gap.abs() < 1e-15 && !contact.vertex_contact);
+        assert_eq!((contact.radius, contact.bodies), (0.5, [0, 1]));
+        // From either centre to the same point of the flank.
+        let place = Vector2::new(-side * 0.5 * half, 0.5 * half);
+        let from_disk = place - s.state.bodies.position[0];
+        assert!((contact.arms[0] - from_disk).norm() < 1e-15);
+        assert!((contact.arms[1] - place).norm() < 1e-15);
+    }
+}
+
+/// A bond holds its contact however far its bodies move apart in a step, whichever of the two moves; without a bond the contact ends at the
+/// alert distance.
+#[test]
+fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
+    for bonded in [true, false] {
+        for (moves, way) in [(0, 0.02), (1, -0.02)] {
+            let mut s = Simulation::of_disks(&[([0.25, 0.5], 0.5)]);
+            let chain = [-2.0, 0.0, 2.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+            s.add_surface(Polyline::new(chain, None).unwrap());
+            let mut s = touching(s);
+            find(&mut s);
+            assert_eq!(s.state.network.contacts.len(), 1);
+            if bonded {
+                let slot = s.state.network.memory[0].allocate(true, 0.0, 1.0, &[]);
+                s.state.network.contacts[0].slot = slot;
+            }
+            for k in 1..=3 {
+                s.state.bodies.velocity[moves].y = way / H;
+                s.state.bodies.position[moves].y += way;
+                find(&mut s);
+                let contacts = &s.state.network.contacts;
+                assert_eq!(contacts.len(), usize::from(bonded), "{moves} {k}");
+                for contact in contacts {
+                    assert!((contact.gap - 0.02 * f64::from(k)).abs() < 1e-15);
+                    assert!(s.state.network.bond(contact).unwrap().intact());
+                }
+            }
+            let network = &s.state.network;
+            assert_eq!((network.bonds_broken(), network.torn_energy), (0, 0.0));
+        }
+    }
+}
