@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::contact::network::Key;
+use crate::geometry::convex::polygon::Polygon;
 use crate::geometry::polyline::Polyline;
 use crate::geometry::space::Dim2;
 use crate::step::Simulation;
@@ -163,5 +164,43 @@ fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
             let network = &s.state.network;
             assert_eq!((network.bonds_broken(), network.torn_energy), (0, 0.0));
         }
+    }
+}
+
+/// Two disks, then two squares on bodies whose centres are beside theirs, in a row along x: neighbours touch, each square at its own place.
+#[test]
+fn disks_and_squares_touch_where_they_stand() {
+    let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
+    let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)];
+    for (x, offset) in [(2.0, [0.25, 0.0]), (3.0, [0.0, -0.5])] {
+        let offset = Vector2::from(offset);
+        let at = Vector2::new(x, 0.0) - offset;
+        let corners = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
+        s.shapes.pieces.push(ConvexCollider {
+            body: s.state.bodies.add(at, 1.0, 1.0, 0.5),
+            core: Polygon::new(corners).unwrap(),
+            offset,
+            rounding: 0.0,
+            bound: 0.5f64.sqrt(),
+            size: 0.5,
+            material: 0,
+        });
+    }
+    let mut s = touching(s);
+    find(&mut s);
+    let contacts = &s.state.network.contacts;
+    let mut pairs: Vec<[u32; 2]> = contacts.iter().map(|c| c.bodies).collect();
+    pairs.dedup();
+    assert_eq!(pairs, [[0, 1], [1, 2], [2, 3]]);
+    // Faces touch at both ends.
+    assert_eq!(contacts.len(), 4);
+    for contact in contacts {
+        assert!(contact.gap.abs() < 1e-15);
+        assert_eq!(contact.normal.x.abs(), 1.0);
+        let [i, j] = contact.bodies.map(|b| s.state.bodies.position[b as usize]);
+        let places = [i + contact.arms[0], j + contact.arms[1]];
+        assert!((places[0] - places[1]).norm() < 1e-15);
+        let between = 0.5 + f64::from(contact.bodies[0]);
+        assert!((places[0].x - between).abs() < 1e-15);
     }
 }
