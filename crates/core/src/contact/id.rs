@@ -147,3 +147,49 @@ impl ContactNames {
         .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::polyline::Polyline;
+    use crate::geometry::space::Dim2;
+    use crate::step::Simulation;
+    use nalgebra::Vector2;
+
+    /// Disks of the bodies 0, 1 and 0 again, and a surface of the body 2; listed the other way round contacts have the same names.
+    #[test]
+    fn names_do_not_depend_on_the_order_of_the_shapes() {
+        let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
+        let again = s.shapes.balls[0].clone();
+        s.shapes.balls.push(again);
+        let chain = [-1.0, 1.0].map(|x| Vector2::new(x, 0.0)).to_vec();
+        s.add_surface(Polyline::new(chain, None).unwrap());
+        let names = ContactNames::of(&s.shapes, &s.state.bodies);
+        s.shapes.balls.swap(0, 1);
+        let swapped = ContactNames::of(&s.shapes, &s.state.bodies);
+        let key = |candidate, antagonist| Key {
+            candidate,
+            antagonist,
+            feature: 3,
+        };
+        let name = |kind, body, number| ContactorId { kind, body, number };
+        let [ball, second, other] =
+            [(0, 0), (0, 1), (1, 0)].map(|(b, n)| name(ContactorKind::Ball, b, n));
+        let surface = name(ContactorKind::Surface, 2, 0);
+        let on_surface = Key::SURFACE;
+        for (mine, theirs, sides) in [
+            (key(0, 1), key(0, 1), [ball, other]),
+            (key(0, 2), key(1, 2), [ball, second]),
+            (key(1, 2), key(0, 2), [second, other]),
+            (key(1, on_surface), key(0, on_surface), [other, surface]),
+        ] {
+            let id = ContactId { sides, feature: 3 };
+            assert_eq!(names.id::<Dim2>(&mine), Some(id));
+            assert_eq!(swapped.id::<Dim2>(&theirs), Some(id));
+        }
+        assert_eq!(names.sides(&key(1, 0)), Some([other, ball]));
+        for missing in [3, Key::PIECE, Key::SURFACE | 1] {
+            assert_eq!(names.id::<Dim2>(&key(0, missing)), None);
+        }
+    }
+}

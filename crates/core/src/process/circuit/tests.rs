@@ -37,14 +37,17 @@ fn bond(s: &mut Simulation<Dim2>, bodies: [u32; 2]) {
     network.contacts.push(Contact { slot, ..contact });
 }
 
-fn circuit(s: &Simulation<Dim2>) -> Circuit<Dim2> {
-    let spec = Spec {
+fn spec() -> Spec<Dim2> {
+    Spec {
         bases: vec![0],
         interfaces: vec![0],
         zones: Vec::new(),
         scaling: 1.0,
-    };
-    Circuit::new(spec, s)
+    }
+}
+
+fn circuit(s: &Simulation<Dim2>) -> Circuit<Dim2> {
+    Circuit::new(spec(), s)
 }
 
 /// Has the account see a step in which bonds formed and broke, these with so much work of opening and sliding and fracture energy (J/m).
@@ -228,4 +231,90 @@ fn a_grain_is_lost_after_its_time_in_the_zone() {
     let grains = [flows.ejected, flows.recirculated, flows.wear].map(|a| a.grains);
     assert_eq!(grains, [1, 1, 1]);
     assert_eq!(flows.wear.mass, mass);
+}
+
+/// An account begins at its time, where a bond has to tie a grain, is brought up to date every so many steps and at the end, and goes on from its
+/// bytes.
+#[test]
+fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
+    let intervals = Intervals {
+        every: 2,
+        rows: Some(3),
+    };
+    let new = || CircuitProcess::new(spec(), 1.0, intervals);
+    let mut s = scene();
+    s.options.scheme.h = 0.5;
+    let mut account = new();
+    assert_eq!(account.start(), 1.0);
+    let pass = |account: &mut CircuitProcess<Dim2>, s: &mut Simulation<Dim2>, step: u64| {
+        (s.state.steps, s.state.time) = (step, 0.5 * step as f64);
+        account.between_steps(s)
+    };
+    pass(&mut account, &mut s, 1).unwrap();
+    assert!(account.circuit().is_none());
+    assert!(pass(&mut account, &mut s, 2).is_err(), "nothing is tied");
+    bond(&mut s, [0, 1]);
+    let mut account = new();
+    let mut due = Vec::new();
+    for k in 2..=9 {
+        pass(&mut account, &mut s, k).unwrap();
+        due.push(account.is_up_to_date(&s));
+    }
+    // Begun in the first of these; then at 3, 4, 6, 8 and 9.
+    assert_eq!(due[1..], [true, true, false, true, false, true, true]);
+    assert_eq!(account.circuit().unwrap().tied_to(0), 1);
+    let bytes = account.save().unwrap();
+    let mut again = new();
+    again.restore(&bytes).unwrap();
+    assert!(again.is_up_to_date(&s));
+    assert_eq!(again.circuit().unwrap().tied_to(0), 1);
+    assert_eq!(again.save().unwrap(), bytes);
+    // An update that is not due is made at the end, once.
+    for account in [&mut account, &mut again] {
+        pass(account, &mut s, 11).unwrap();
+        assert!(!account.is_up_to_date(&s));
+        account.at_end(&mut s).unwrap();
+        assert!(account.is_up_to_date(&s));
+        assert!(account.repeats());
+    }
+    assert!(new().restore(&bytes[..1]).is_err());
+}
+
+/// A zone from 0.5 to 1.5 m, in the frame of its carrier, holds what is in it or a period away; along a period without borders it holds all.
+#[test]
+fn a_zone_holds_images_and_follows_its_carrier() {
+    let mut s = scene();
+    let mut zone = Zone::<Dim2> {
+        name: "drain".into(),
+        low: Vector2::new(0.5, f64::NEG_INFINITY),
+        high: Vector2::new(1.5, f64::INFINITY),
+        carrier: None,
+        fate: Fate::Stays,
+    };
+    let open = Periodic { period: [None; 3] };
+    let periodic = Periodic {
+        period: [Some(4.0), None, None],
+    };
+    for carrier in [None, Some(2)] {
+        zone.carrier = carrier;
+        s.state.bodies.position[2].x = 10.0;
+        let origin = carrier.map_or(0.0, |_| 10.0);
+        for (x, inside, image) in [
+            (0.5, true, true),
+            (1.4, true, true),
+            (1.5, false, false),
+            (0.4, false, false),
+            (4.6, false, true),
+            (-3.4, false, true),
+            (5.6, false, false),
+            (-2.4, false, false),
+        ] {
+            let at = Vector2::new(x + origin, 7.0);
+            let holds = |periodic, at| zone.holds(&s.state.bodies, periodic, at);
+            assert_eq!(holds(&open, &at), inside, "{x}");
+            assert_eq!(holds(&periodic, &at), image, "{x}");
+        }
+    }
+    zone.low.x = f64::NEG_INFINITY;
+    assert!(zone.holds(&s.state.bodies, &periodic, &Vector2::new(99.0, 0.0)));
 }
