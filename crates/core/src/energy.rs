@@ -53,6 +53,9 @@ pub struct Energy {
     pub initial_kinetic: f64,
     /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
+    /// Energy that friction gave back, summed over the steps in which contacts together dissipated less than nothing by it. A law of friction
+    /// cannot make energy; at theta = 1/2 rigid contacts give back a little in a step in which sliding turns.
+    pub given_by_friction: f64,
 }
 
 /// Work of the bodies over one step (J).
@@ -81,6 +84,7 @@ impl Energy {
         self.scheme += work.scheme;
         self.fracture += totals.fracture;
         self.friction += totals.friction;
+        self.given_by_friction += (-totals.friction).max(0.0);
         self.impact += totals.impact;
         self.adhesion += totals.adhesion;
         self.viscous += totals.viscous + work.damping;
@@ -136,6 +140,7 @@ impl Energy {
             initial_kinetic,
             residual,
             scale: _,
+            given_by_friction: _,
         } = *self;
         [
             ("kinetic", "kinetic energy", kinetic),

@@ -112,6 +112,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious(ended, stopped(summary));
     serious("NOT FINITE", infinite(summary));
     serious("ENERGY DOES NOT ADD UP", ledger(summary));
+    serious("FRICTION GIVES ENERGY", friction(summary));
     let heat = summary.heat.as_ref();
     let account = heat.and_then(|h| h.account(LEDGER));
     serious("HEAT DOES NOT ADD UP", account);
@@ -139,6 +140,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
         .iter()
         .flat_map(fretwork_observe::jump::warnings);
     list.extend(jumps.filter(|w| reached || w.of != NOT_REACHED));
+    list.extend(scheme(summary));
     list.extend(notes(summary));
     list.sort_by_key(|w| !w.serious);
     list
@@ -257,6 +259,46 @@ fn correction(summary: &Summary) -> Option<String> {
             "{:.0} % of the energy comes from taking overlaps out, not from the drives: take a smaller solver.tolerance or time.step, or \
              compliant contacts (docs/compliant.md)",
             100.0 * share
+        )
+    })
+}
+
+/// Share of the energy that the time integration may add before the run is not to be trusted.
+const ADDED: f64 = 0.2;
+
+/// The time integration, where what it takes or adds is a large share of the energy.
+fn scheme(summary: &Summary) -> Option<Warning> {
+    let share = summary.uncertainty.repeats.shares.scheme?;
+    let percent = format!("{:.0} %", 100.0 * share.abs());
+    let text = if share > LARGE_ERROR {
+        format!(
+            "the time integration takes {percent} of the energy (`scheme`), as if contacts had damping that no law gives: take a smaller \
+             time.step, to which this loss is proportional (docs/compliant.md)"
+        )
+    } else if share < -LARGE_ERROR {
+        format!(
+            "the time integration adds {percent} to the energy (`scheme`): springs of contacts that are found with an overlap bring energy. Take \
+             a smaller time.step; between bodies with corners, whose points of contact come and go, that does not help, but rigid contacts do \
+             (docs/compliant.md)"
+        )
+    } else {
+        return None;
+    };
+    Some(match share < -ADDED {
+        true => Warning::serious("TIME INTEGRATION", text),
+        false => Warning::note("TIME INTEGRATION", text),
+    })
+}
+
+/// Friction that gives energy.
+fn friction(summary: &Summary) -> Option<String> {
+    let e = &summary.energy;
+    let taken = e.friction + e.given_by_friction;
+    (e.given_by_friction > LARGE_ERROR * taken.max(0.0) && e.given_by_friction > LEDGER * e.scale).then(|| {
+        format!(
+            "friction gave {:.1e} J in steps in which it dissipated less than nothing, and took {taken:.1e} J in the others: take a \
+             smaller time.step; if it stays, a contact law makes energy by friction (fretwork law certify)",
+            e.given_by_friction
         )
     })
 }

@@ -128,6 +128,39 @@ fn errors_above_five_per_cent_are_notes_that_say_whether_they_are_known() {
 }
 
 #[test]
+fn energy_of_the_time_integration_is_a_note_and_much_of_it_added_a_reason() {
+    let of = |share| of_run(|s| s.uncertainty.repeats.shares.scheme = Some(share));
+    assert_eq!(of(0.04), []);
+    assert_eq!(of(-0.04), []);
+    for (share, starts, serious) in [
+        (0.16, "the time integration takes 16 %", false),
+        (-0.17, "the time integration adds 17 %", false),
+        (-0.7, "the time integration adds 70 %", true),
+    ] {
+        let list = of(share);
+        assert!(
+            list.len() == 1 && list[0].of == "TIME INTEGRATION",
+            "{list:?}"
+        );
+        assert!(list[0].serious == serious && list[0].text.starts_with(starts));
+    }
+}
+
+#[test]
+fn friction_that_gives_energy_is_a_reason() {
+    let of = |given: f64| {
+        of_run(|s| {
+            s.energy.friction = 1.0 - given;
+            s.energy.given_by_friction = given;
+            s.energy.scale = 2.0;
+        })
+    };
+    assert_eq!(of(0.01), []);
+    let list = of(0.2);
+    assert!(list.len() == 1 && list[0].serious && list[0].of == "FRICTION GIVES ENERGY");
+}
+
+#[test]
 fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
     let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
     assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);

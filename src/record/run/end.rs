@@ -24,7 +24,12 @@ impl<S: Observed> Recorder<'_, S> {
         self.observers.summarise(&self.end(wall), &mut summary);
         let solver = &mut summary.solver;
         (solver.fclib_written, solver.fclib_skipped) = self.problems;
-        summary.repeats = self.estimate.report(&self.simulation.state.energy);
+        let state = &self.simulation.state;
+        let driven = state.bodies.driven.iter();
+        let driven = driven
+            .map(|d| state.bodies.energy_of(d.body as usize))
+            .sum();
+        summary.repeats = self.estimate.report(&state.energy, driven);
         summary.accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));
         summary.complete();
         self.summary = summary;

@@ -3,6 +3,7 @@
 //! What a method says of its error is never believed: `made` computes it anew, from its formula.
 
 mod cycles;
+mod held;
 mod limits;
 mod made;
 

@@ -139,7 +139,7 @@ fn slide_to_a_stop(length: u32) {
         let report = s.step().unwrap();
         estimate.after_step(&s, &report);
     }
-    let found: Repeats = estimate.report(&s.state.energy);
+    let found: Repeats = estimate.report(&s.state.energy, 0.0);
     assert_eq!((found.places, found.failed, found.steps), (8, 0, length));
     // The later half of the steps, from the velocity that is left after the earlier ones.
     let earlier = f64::from(length / 2);

@@ -402,7 +402,8 @@ impl Batch {
                 (area, network.open_gap(contact))
             };
             if compliant {
-                let spring = self.spring(k, contact);
+                let mut spring = self.spring(k, contact);
+                spring.limit_to(contact.spring.energy[1] + contact.friction_work.max(0.0));
                 spring.apply(info.h, form);
                 // A spring rebounds by its damping.
                 (friction.e_n, friction.e_t) = (0.0, 0.0);

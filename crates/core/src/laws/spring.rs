@@ -31,7 +31,7 @@ pub struct SpringForm<S: Space> {
     pub force_t: S::Tangent,
     /// Its slope k_t (N/m); 0 for a rigid tangential contact.
     pub stiffness_t: f64,
-    /// Slope of the tangential force when it unloads (N/m).
+    /// Slope of the tangential force when it unloads (N/m): T_0^2/(2 unloading_t) is the energy that it holds.
     pub unloading_t: f64,
     /// Tangential damping d_t (N s/m).
     pub damping_t: f64,
@@ -50,7 +50,7 @@ pub struct SpringStep<S: Space> {
     pub viscous: f64,
     /// Work against an attraction that has no opening (J).
     pub adhesion: f64,
-    /// Tangential force of the spring at the start of the step (N).
+    /// Tangential force of the spring at the end of the step before (N).
     pub force_before: S::Tangent,
 }
 
@@ -70,6 +70,36 @@ impl<S: Space> SpringForm<S> {
         if slope > 0.0 {
             form.shift_t = self.force_t * (1.0 / slope);
             form.compliance[1] = 1.0 / (h * slope);
+        }
+    }
+
+    /// Reduces the tangential force to one that holds no more energy than is there: what the spring held, and what friction of the contact has
+    /// taken so far (J). A law that raises the force, or keeps it while the spring grows softer, would make energy by friction.
+    pub fn limit_to(&mut self, energy: f64) {
+        /// Share of the energy that rounding may add, where the force turned with its pair.
+        const ROUNDING: f64 = 1e-9;
+        let held = self.tangential_energy(&self.force_t);
+        if held > energy * (1.0 + ROUNDING) {
+            self.force_t = self.force_t * (energy / held).sqrt();
+        }
+    }
+
+    /// The slope of the tangential force when it unloads (N/m).
+    fn unloading(&self) -> f64 {
+        if self.unloading_t > 0.0 {
+            self.unloading_t
+        } else {
+            self.stiffness_t
+        }
+    }
+
+    /// The energy of a tangential force (J).
+    fn tangential_energy(&self, force: &S::Tangent) -> f64 {
+        let slope = self.unloading();
+        if slope > 0.0 {
+            0.5 * force.dot(force) / slope
+        } else {
+            0.0
         }
     }
 
@@ -104,7 +134,7 @@ impl<S: Space> SpringForm<S> {
         let un = n.dot(end);
         let pressed = solution.unilateral_n + form.tension > 0.0;
         let adhesion = form.tension * n.dot(average);
-        let force_before = self.force_t;
+        let force_before = before.force_t;
         spring.overlap = (-(self.gap + h * un)).max(0.0);
         if spring.overlap > 0.0 {
             let change = self.stiffness_n * (spring.overlap - self.overlap);
@@ -155,27 +185,28 @@ impl<S: Space> SpringForm<S> {
         let slip = ut + form.shift_t + p * form.compliance[1];
         let stretch = ut - slip;
         let force = p * (-1.0 / h) - stretch * self.damping_t;
-        let unloading = if self.unloading_t > 0.0 {
-            self.unloading_t
-        } else {
-            self.stiffness_t
-        };
+        let unloading = self.unloading();
         spring.force_t = force;
-        spring.energy[1] = 0.5 * force.dot(&force) / unloading;
-        // A law of lower slope than that of unloading slips within the contact area.
-        let micro = stretch * h - (force - self.force_t) * (1.0 / unloading);
+        let held = self.tangential_energy(&self.force_t);
+        // A law of another slope than that of unloading slips within the contact area: what that takes of the work shows in the energy which
+        // the law gives for the next step.
+        spring.energy[1] = if self.stiffness_t == unloading {
+            self.tangential_energy(&force)
+        } else {
+            (held + 0.5 * h * (self.force_t + force).dot(&stretch)).max(0.0)
+        };
         let micro = if self.stiffness_t < unloading {
-            micro
+            stretch * h - (force - self.force_t) * (1.0 / unloading)
         } else {
             S::Tangent::zero()
         };
         // Where the law changed force or stiffness of the spring between two steps.
-        let changed = before.energy[1] - 0.5 * self.force_t.dot(&self.force_t) / unloading;
+        let changed = before.energy[1] - held;
         viscous += h * self.damping_t * stretch.dot(&stretch);
         SpringStep {
             spring,
             slip: slip * h + micro,
-            friction: changed - p.dot(&slip) - p.dot(&micro) * (1.0 / h),
+            friction: changed - p.dot(&slip),
             viscous,
             adhesion,
             force_before,

@@ -75,6 +75,7 @@ pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> 
         };
     }
     sort(problem);
+    problem.solve_held();
     judge(problem, options)
 }
 
@@ -260,6 +261,13 @@ fn take<S: Space, R: Row<S>>(
     }
 }
 
+/// Solves a contact that moves nothing.
+fn solve_if_held<S: Space, R: Row<S>>(row: &mut R, solver_bodies: &mut [SolverBody<S>]) {
+    if row.rho() == 0.0 {
+        take(row, &None, solver_bodies);
+    }
+}
+
 impl<S: Space> Problem<S> {
     /// Stores the components of all impulses and moments, in the order of the iteration.
     pub(super) fn store(&self, out: &mut Vec<f64>) {
@@ -308,18 +316,48 @@ impl<S: Space> Problem<S> {
             }
         }
         for (k, moment) in moments.iter().enumerate() {
-            let pn = self.normal(self.moments[k].place);
-            let row = &mut self.moments[k];
             match moment {
-                Some(moment) => row.set(moment),
-                None => {
-                    let [i, j] = row.bodies.map(|b| b as usize);
-                    let (mut a, mut b) = (self.solver_bodies[i], self.solver_bodies[j]);
-                    row.update(pn, &mut a, &mut b, &mut self.systems, 1.0);
-                }
+                Some(moment) => self.moments[k].set(moment),
+                None => self.solve_moment(k),
             }
         }
         self.reload(false);
+    }
+
+    /// Solves the contacts and moments that move nothing: their impulses follow from velocities that are given, and methods that judge
+    /// first would leave them as they start.
+    fn solve_held(&mut self) {
+        let solver_bodies = &mut self.solver_bodies;
+        for place in &self.places {
+            match *place {
+                Place::Plain(r) => solve_if_held(self.plain.row_mut(r), solver_bodies),
+                Place::Full(r) => solve_if_held(self.full.row_mut(r), solver_bodies),
+                Place::Lever(r) => solve_if_held(self.levers.row_mut(r), solver_bodies),
+                Place::BondedLever(r) => {
+                    solve_if_held(self.bonded_levers.row_mut(r), solver_bodies);
+                }
+                Place::System(r) => {
+                    let row = &mut self.of_systems[r as usize];
+                    if row.rho() == 0.0 {
+                        row.update(solver_bodies, &mut self.systems, 1.0);
+                    }
+                }
+            }
+        }
+        for k in 0..self.moments.len() {
+            if !self.moments[k].turns() {
+                self.solve_moment(k);
+            }
+        }
+    }
+
+    /// Solves a moment for the current velocities, which it does not change.
+    fn solve_moment(&mut self, k: usize) {
+        let pn = self.normal(self.moments[k].place);
+        let row = &mut self.moments[k];
+        let [i, j] = row.bodies.map(|b| b as usize);
+        let (mut a, mut b) = (self.solver_bodies[i], self.solver_bodies[j]);
+        row.update(pn, &mut a, &mut b, &mut self.systems, 1.0);
     }
 
     /// Computes v = v_free + M^-1 H p.

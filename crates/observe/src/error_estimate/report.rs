@@ -43,6 +43,10 @@ pub struct Shares {
     /// Energy that the position correction supplies over the external work, or over the energy dissipated where that is more; null where
     /// there is neither.
     pub correction: Option<f64>,
+    /// Energy that the time integration takes (negative where it adds some) over the energy of the run: the largest of the external work, the
+    /// energy dissipated, the change of potential energy, and the kinetic energy at the start but for that of driven bodies; null where there
+    /// is none of these.
+    pub scheme: Option<f64>,
     /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
     pub unconverged: Option<f64>,
 }
@@ -78,8 +82,8 @@ pub struct Repeats {
 }
 
 impl ErrorEstimate {
-    /// What it has found.
-    pub fn report(&self, energy: &Energy) -> Repeats {
+    /// What it has found, by the ledger at the end and the kinetic energy of driven bodies then (J).
+    pub fn report(&self, energy: &Energy, driven: f64) -> Repeats {
         let pairs = |fine: fn(&Place) -> Option<Increments>| {
             let pairs = self.places.iter().filter_map(|p| Some((p.base, fine(p)?)));
             pairs.collect::<Vec<_>>()
@@ -91,6 +95,14 @@ impl ErrorEstimate {
         let correction = (-energy.correction).max(0.0);
         // What corrections supply is dissipated elsewhere.
         let dissipated = energy.dissipated() - energy.correction;
+        let turned_over = [
+            dissipated + energy.scheme.max(0.0),
+            energy.potential.abs(),
+            energy.initial_kinetic - driven,
+        ];
+        let turned_over = turned_over
+            .into_iter()
+            .fold(energy.external_work.abs(), f64::max);
         Repeats {
             places: self.places.len(),
             steps: self.length,
@@ -105,6 +117,7 @@ impl ErrorEstimate {
             coupling: (!coupled.is_empty()).then(|| Effects::of(&coupled, 1.0)),
             shares: Shares {
                 correction: share(correction, energy.external_work.abs().max(dissipated)),
+                scheme: share(energy.scheme, turned_over),
                 unconverged: share(self.supplied[1], self.supplied[0]),
             },
         }

@@ -1,15 +1,19 @@
 //! Elastic spheres in contact: Hertz' normal force, Mindlin and Deresiewicz' tangential force with partial slip. In two
 //! dimensions elastic cylinders, whose normal stiffness is nearly constant.
 #![forbid(unsafe_code)]
+
+mod profile;
+
 use fretwork_law::{
     ContactLaw, Friction, Law, Site, Spring, Variable, abi, damping_ratio, export, parameters,
 };
+use profile::{KEPT, Pair, Profile, dot, minus, norm};
 use std::f64::consts::FRAC_PI_4;
 
 parameters! {
     /// With 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2, contact radius a = sqrt(R d):
-    /// F = 4/3 E* sqrt(R) d^(3/2); tangential stiffness k_0 (1 - x)^(1/3), k_0 = 8 G* a, x the share of the contact's friction that the
-    /// tangential force takes up since it last turned. In 2D F = pi/4 E* d and k_t/k_n = 4 G*/E*, as for spheres.
+    /// F = 4/3 E* sqrt(R) d^(3/2); tangential stiffness without slip k_0 = 8 G* a; slip from the rim inwards, annulus by annulus, for any
+    /// history of load and displacement. In 2D F = pi/4 E* d and k_t/k_n = 4 G*/E*, as for spheres.
     pub struct HertzMindlin {
         young_1: "Pa" = 2.1e11, 1e-300, 1e300, "Young's modulus of the first material";
         poisson_1: "" = 0.3, -0.99, 0.5, "Poisson's ratio of the first material";
@@ -20,6 +24,7 @@ parameters! {
     }
 }
 
+/// A corner of the displacement, see [`profile`].
 const fn variable(
     name: &'static core::ffi::CStr,
     unit: &'static core::ffi::CStr,
@@ -34,32 +39,72 @@ const fn variable(
     }
 }
 
+const fn overlap(name: &'static core::ffi::CStr) -> Variable {
+    variable(
+        name,
+        c"m",
+        c"overlap, or that of a rim at a corner of the tangential displacement",
+    )
+}
+
+const fn along(name: &'static core::ffi::CStr) -> Variable {
+    variable(
+        name,
+        c"m",
+        c"tangential displacement at a corner, along the tangential force",
+    )
+}
+
+const fn across(name: &'static core::ffi::CStr) -> Variable {
+    variable(
+        name,
+        c"m",
+        c"tangential displacement at a corner, across the tangential force",
+    )
+}
+
 impl Law for HertzMindlin {
     const NAME: &'static str = "hertz-mindlin";
-    const DOC: &'static str = "elastic spheres (in 2D cylinders): Hertz' force, Mindlin's tangential stiffness with partial slip, Coulomb friction";
-    const REFERENCE: &'static str = "R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327-344; K. L. Johnson, Contact Mechanics (1985) 4.2, 7.4";
+    const DOC: &'static str = "elastic spheres (in 2D cylinders): Hertz' force, Mindlin's tangential force with partial slip, Coulomb friction";
+    const REFERENCE: &'static str = "R. D. Mindlin, H. Deresiewicz, J. Appl. Mech. 20 (1953) 327-344; K. L. Johnson, Contact Mechanics (1985) 4.2, 7.4; V. L. Popov, M. Hess, Method of Dimensionality Reduction (2015) 5.4";
     const FLAGS: u64 = abi::FLAG_COMPLIANT;
     const VARIABLES: &'static [Variable] = &[
-        variable(c"contact_radius", c"m", c"contact radius a"),
-        variable(
-            c"turn_along",
-            c"N",
-            c"force where it last turned, along the tangential force",
-        ),
-        variable(
-            c"turn_across",
-            c"N",
-            c"force where it last turned, across the tangential force",
-        ),
-        variable(c"turned", c"", c"1 after the tangential force has turned"),
+        overlap(c"edge"),
+        along(c"along_0"),
+        across(c"across_0"),
+        overlap(c"at_1"),
+        along(c"along_1"),
+        across(c"across_1"),
+        overlap(c"at_2"),
+        along(c"along_2"),
+        across(c"across_2"),
+        overlap(c"at_3"),
+        along(c"along_3"),
+        across(c"across_3"),
+        overlap(c"at_4"),
+        along(c"along_4"),
+        across(c"across_4"),
+        overlap(c"overlap"),
     ];
 }
 
-/// Change of the force, over mu F, from which it turns.
-const SMALL: f64 = 1e-6;
-
-/// Slope below which a contact is taken to slip as a whole, over k_0.
+/// Place of the overlap among the variables.
+const OVERLAP: usize = 15;
+/// Least slope of the tangential force, over k_0.
 const LEAST_SLOPE: f64 = 1e-3;
+/// The same of what tells the energy: a contact without force may hold some, which forces of both signs lock in.
+const LEAST_UNLOADING: f64 = 1e-12;
+/// Share of the friction bound from which a contact is taken to slip as a whole.
+const WHOLE: f64 = 1.0 - 1e-3;
+
+/// What the geometry of a contact of spheres makes of its profile.
+struct Sphere {
+    /// k_0 (N/m), 8 G* sqrt(R), the factor of [`Profile::sums`] (N/m^1.5), and beta for a friction coefficient of 1.
+    k_0: f64,
+    scale: f64,
+    beta: f64,
+    force_n: f64,
+}
 
 impl HertzMindlin {
     /// E*, 8 G* (Pa).
@@ -76,45 +121,52 @@ impl HertzMindlin {
         [1.0 / normal, 8.0 / shear]
     }
 
-    /// The contact radius (m), and the normal force (N) with its slope (N/m).
-    fn normal(&self, site: &Site, modulus: f64) -> (f64, f64, f64) {
-        let d = site.overlap;
-        if site.dimension == 2 {
-            let k = FRAC_PI_4 * modulus;
-            return (1.0, k * d, k);
+    /// The normal force (N) with its slope (N/m) in 2D.
+    fn cylinder(overlap: f64, modulus: f64) -> [f64; 2] {
+        let k = FRAC_PI_4 * modulus;
+        [k * overlap, k]
+    }
+
+    fn sphere(&self, site: &Site) -> Sphere {
+        let [modulus, shear] = self.moduli();
+        let a = (site.radius * site.overlap).sqrt();
+        Sphere {
+            k_0: shear * a,
+            scale: shear * site.radius.sqrt(),
+            beta: 2.0 * modulus / shear,
+            force_n: 4.0 / 3.0 * modulus * a * site.overlap,
         }
-        let a = (site.radius * d).sqrt();
-        (a, 4.0 / 3.0 * modulus * a * d, 2.0 * modulus * a)
     }
+}
 
-    /// The tangential force and the force where it last turned, if it did: a contact that has become smaller carries less, a larger one the
-    /// same. The turning point is kept by its parts along and across the force, which the host turns with the pair.
-    fn history(force: [f64; 2], state: &[f64], a: f64) -> ([f64; 2], Option<[f64; 2]>) {
-        let [radius, along, across, turned] = [state[0], state[1], state[2], state[3]];
-        let share = if radius > a { a / radius } else { 1.0 };
-        let [x, y] = unit(force);
-        let turn = [along * x - across * y, along * y + across * x];
-        let turn = (turned > 0.0).then(|| turn.map(|t| t * share));
-        (force.map(|t| t * share), turn)
+/// The profile that a contact remembers. Its parts are along and across the tangential force, which the host turns with the pair.
+fn remembered(state: &[f64], force: Pair) -> Profile {
+    let [x, y] = unit(force);
+    let mut corners = [(0.0, [0.0; 2]); KEPT - 1];
+    for (k, corner) in corners.iter_mut().enumerate() {
+        let at = if k == 0 { 0.0 } else { state[3 * k] };
+        let [along, across] = [state[3 * k + 1], state[3 * k + 2]];
+        *corner = (at, [along * x - across * y, along * y + across * x]);
     }
+    Profile::new(&corners, state[0])
+}
 
-    /// The turning point after a change of the force: a change backwards by more than rounding makes one.
-    fn turned(
-        force: [f64; 2],
-        change: [f64; 2],
-        turn: Option<[f64; 2]>,
-        limit: f64,
-    ) -> Option<[f64; 2]> {
-        let since = minus(force, turn.unwrap_or_default());
-        let (length, size) = (dot(since, since).sqrt(), dot(change, change).sqrt());
-        let back = dot(since, change) < 0.0 && size > SMALL * limit && length > 0.0;
-        if back { Some(force) } else { turn }
+/// Writes the profile for [`remembered`], with the overlap.
+fn remember(profile: &Profile, overlap: f64, force: Pair, next: &mut [f64]) {
+    let [x, y] = unit(force);
+    next.fill(0.0);
+    (next[0], next[OVERLAP]) = (profile.edge(), overlap);
+    for (k, (at, [u, v])) in profile.corners().iter().take(KEPT - 1).enumerate() {
+        if k > 0 {
+            next[3 * k] = *at;
+        }
+        (next[3 * k + 1], next[3 * k + 2]) = (u * x + v * y, v * x - u * y);
     }
 }
 
 /// Direction of a force; the first axis for none.
-fn unit(force: [f64; 2]) -> [f64; 2] {
-    let length = dot(force, force).sqrt();
+fn unit(force: Pair) -> Pair {
+    let length = norm(force);
     if length > 0.0 {
         force.map(|t| t / length)
     } else {
@@ -122,17 +174,100 @@ fn unit(force: [f64; 2]) -> [f64; 2] {
     }
 }
 
-fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] - b[0], a[1] - b[1]]
-}
+impl Sphere {
+    /// The force of a profile (N).
+    fn force(&self, profile: &Profile) -> Pair {
+        profile.sums().0.map(|t| t * self.scale)
+    }
 
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
+    /// The tangential part of a spring that carries `force_n` with its damping (N).
+    fn tangential(&self, law: &HertzMindlin, site: &Site, state: &[f64], force_n: f64) -> Spring {
+        let (d, bound) = (site.overlap, law.mu * force_n);
+        let beta = if self.force_n > 0.0 {
+            self.beta * bound / self.force_n
+        } else {
+            0.0
+        };
+        let mut profile = remembered(state, site.spring_t);
+        profile.slip(d, beta);
+        let (sum, squares) = profile.sums();
+        let before = sum.map(|t| t * self.scale);
+        // The energy that is stored is that of a spring of this stiffness: more than T^2/(2 k_0), because displacements differ.
+        let stored = self.scale * squares;
+        let unloading = if stored > 0.0 {
+            dot(before, before) / stored
+        } else {
+            self.k_0
+        };
+        let by = [site.h * site.velocity[1], site.h * site.velocity[2]];
+        profile.shift(by);
+        profile.slip(d, beta);
+        let after = self.force(&profile);
+        let expected = self.k_0 * dot(by, by);
+        let share = dot(minus(after, before), by) / expected;
+        // Where all of it slips the host holds the force at its bound, which the damping of the step decides.
+        let slope = if norm(after) >= WHOLE * bound || !share.is_finite() {
+            1.0
+        } else {
+            share
+        };
+        Spring {
+            force_t: before,
+            stiffness_t: self.k_0 * slope.clamp(LEAST_SLOPE, 1.0),
+            unloading_t: unloading.clamp(LEAST_UNLOADING * self.k_0, self.k_0),
+            ..Spring::default()
+        }
+    }
 
-/// Whether a force that turned is past the turning point's opposite, on the curve of the first loading again.
-fn is_back(force: [f64; 2], turn: [f64; 2]) -> bool {
-    dot(force, turn) < 0.0 && dot(force, force) >= dot(turn, turn)
+    /// The profile after a step that ended with this force, of which the displacement by the mean velocity is a guess.
+    fn follow(&self, law: &HertzMindlin, site: &Site, state: &[f64]) -> Profile {
+        /// Rounds, the share of the force to which it is met, and the least slope between two rounds over k_0.
+        const ROUNDS: usize = 12;
+        const CLOSE: f64 = 1e-6;
+        const FLATTEST: f64 = 0.1;
+        // The force is that of the overlap at the start of the step where it decreases: the next step takes what parts.
+        let (d, bound) = (site.overlap.max(state[OVERLAP]), law.mu * self.force_n);
+        let wanted = site.spring_t;
+        let size = norm(wanted);
+        let mut start = remembered(state, site.spring_before_t);
+        let beta = law.mu * self.beta;
+        if size >= WHOLE * bound {
+            let beta = if bound > 0.0 {
+                beta * size / bound
+            } else {
+                0.0
+            };
+            let middle = unit(wanted).map(|t| t * beta * site.overlap);
+            return Profile::new(&[(0.0, middle)], site.overlap);
+        }
+        start.slip(d, beta);
+        let mut by = [site.h * site.velocity[1], site.h * site.velocity[2]];
+        let (mut slope, mut last) = (self.k_0, None::<(Pair, Pair)>);
+        let mut best = (f64::INFINITY, start);
+        for _ in 0..ROUNDS {
+            let mut profile = start;
+            profile.shift(by);
+            profile.slip(d, beta);
+            let force = self.force(&profile);
+            let left = minus(wanted, force);
+            if norm(left) < best.0 {
+                best = (norm(left), profile);
+            }
+            if norm(left) <= CLOSE * size.max(LEAST_SLOPE * bound) {
+                break;
+            }
+            if let Some((by_last, force_last)) = last {
+                let (step, change) = (minus(by, by_last), minus(force, force_last));
+                let secant = dot(step, change) / dot(step, step);
+                if secant.is_finite() {
+                    slope = secant.clamp(FLATTEST * self.k_0, self.k_0);
+                }
+            }
+            last = Some((by, force));
+            by = [by[0] + left[0] / slope, by[1] + left[1] / slope];
+        }
+        best.1
+    }
 }
 
 impl ContactLaw for HertzMindlin {
@@ -145,61 +280,29 @@ impl ContactLaw for HertzMindlin {
 
     fn spring(&self, site: &Site, state: &[f64], damping: f64) -> Spring {
         let [modulus, shear] = self.moduli();
-        let (a, force_n, k) = self.normal(site, modulus);
-        // sqrt(5/6) of Hertz' spring is 1 for a linear one.
-        let hertz = if site.dimension == 2 {
-            1.0
-        } else {
-            (5.0f64 / 6.0).sqrt()
-        };
-        let damping_n = 2.0 * damping * hertz * (k * site.effective_mass).sqrt();
         if site.dimension == 2 {
+            let [force_n, k] = Self::cylinder(site.overlap, modulus);
             let k_t = k * 0.5 * shear / modulus;
             return Spring {
                 force_n,
                 stiffness_n: k,
-                damping_n,
+                damping_n: 2.0 * damping * (k * site.effective_mass).sqrt(),
                 force_t: site.spring_t,
                 stiffness_t: k_t,
                 unloading_t: k_t,
                 damping_t: 0.0,
             };
         }
-        let k_0 = shear * a;
-        let (force, turn) = Self::history(site.spring_t, state, a);
-        let shift = [site.h * site.velocity[1], site.h * site.velocity[2]];
-        let bound = self.mu * force_n;
-        let turn = Self::turned(force, shift.map(|x| k_0 * x), turn, bound);
-        // The slope to where the force would be after the displacement that is expected.
-        let limit = if turn.is_some() { 2.0 } else { 1.0 } * bound;
-        let since = minus(force, turn.unwrap_or_default());
-        let x = if limit > 0.0 {
-            dot(since, since).sqrt() / limit
-        } else {
-            1.0
-        };
-        let (from, step) = (x.min(1.0), k_0 * dot(shift, shift).sqrt());
-        // 1 - x = (1 - y)^(3/2) over the displacement y in units of 3 limit/(2 k_0).
-        let y = 1.0 - (1.0 - from).cbrt().powi(2);
-        let share = if limit > 0.0 {
-            step / (1.5 * limit)
-        } else {
-            0.0
-        };
-        let slope = if share > 1e-6 {
-            let to = 1.0 - (1.0 - (y + share).min(1.0)).powf(1.5);
-            (to - from) / (1.5 * share)
-        } else {
-            (1.0 - from).cbrt()
-        };
+        let sphere = self.sphere(site);
+        let k = 2.0 * modulus * (site.radius * site.overlap).sqrt();
+        // sqrt(5/6) of Hertz' spring is 1 for a linear one.
+        let damping_n = 2.0 * damping * (5.0f64 / 6.0).sqrt() * (k * site.effective_mass).sqrt();
+        let force_n = (sphere.force_n - damping_n * site.velocity[0]).max(0.0);
         Spring {
-            force_n,
+            force_n: sphere.force_n,
             stiffness_n: k,
             damping_n,
-            force_t: force,
-            stiffness_t: k_0 * slope.clamp(LEAST_SLOPE, 1.0),
-            unloading_t: k_0,
-            damping_t: 0.0,
+            ..sphere.tangential(self, site, state, force_n)
         }
     }
 
@@ -208,26 +311,12 @@ impl ContactLaw for HertzMindlin {
     }
 
     fn commit(&self, site: &Site, state: &[f64], next: &mut [f64]) {
-        if site.dimension == 2 {
-            return;
-        }
-        let [modulus, _] = self.moduli();
-        let (a, force_n, _) = self.normal(site, modulus);
-        if a == 0.0 {
+        if site.dimension == 2 || site.overlap <= 0.0 {
             next.fill(0.0);
             return;
         }
-        // The force at the start of the step is the one that `spring` returned, which is scaled already.
-        let (before, force) = (site.spring_before_t, site.spring_t);
-        let (_, turn) = Self::history(before, state, a);
-        let change = minus(force, before);
-        let mut turn = Self::turned(before, change, turn, self.mu * force_n);
-        if turn.is_some_and(|t| is_back(force, t)) {
-            turn = None;
-        }
-        let ([x, y], [p, q]) = (unit(force), turn.unwrap_or_default());
-        let turned = if turn.is_some() { 1.0 } else { 0.0 };
-        next.copy_from_slice(&[a, p * x + q * y, q * x - p * y, turned]);
+        let profile = self.sphere(site).follow(self, site, state);
+        remember(&profile, site.overlap, site.spring_t, next);
     }
 }
 
@@ -262,10 +351,10 @@ mod tests {
     fn force_is_that_of_hertz() {
         let [modulus, _] = STEEL.moduli();
         assert!((modulus - 2.1e11 / (2.0 * 0.91)).abs() < 1e-3 * modulus);
-        let s = STEEL.spring(&site(1e-6), &[0.0; 4], 0.0);
+        let s = STEEL.spring(&site(1e-6), &[0.0; 16], 0.0);
         let a = (0.75 * s.force_n * 0.01 / modulus).cbrt();
         assert!((a * a / 0.01 - 1e-6).abs() < 1e-15);
-        let more = STEEL.spring(&site(1.0001e-6), &[0.0; 4], 0.0).force_n;
+        let more = STEEL.spring(&site(1.0001e-6), &[0.0; 16], 0.0).force_n;
         assert!(((more - s.force_n) / 1e-10 / s.stiffness_n - 1.0).abs() < 1e-4);
     }
 
@@ -278,7 +367,7 @@ mod tests {
                     dimension,
                     ..site(1e-6)
                 },
-                &[0.0; 4],
+                &[0.0; 16],
                 0.0,
             );
             let ratio = s.stiffness_t / s.stiffness_n;
@@ -297,11 +386,11 @@ mod tests {
                         spring_t: [1e3, -1e3],
                         ..site(overlap)
                     };
-                    let s = law.spring(&at, &[1e-4, 1.0, 0.5, 1.0], 0.5);
+                    let s = law.spring(&at, &[1e-4; 16], 0.5);
                     assert!(s.force_n.is_finite() && s.stiffness_t.is_finite(), "{s:?}");
                     assert!(s.force_t.iter().all(|t| t.is_finite()), "{s:?}");
-                    let mut next = [0.0; 4];
-                    law.commit(&at, &[1e-4, 1.0, 0.5, 1.0], &mut next);
+                    let mut next = [0.0; 16];
+                    law.commit(&at, &[1e-4; 16], &mut next);
                     assert!(next.iter().all(|x| x.is_finite()), "{next:?}");
                 }
             }

@@ -1,7 +1,7 @@
 //! The unilateral law of a contact on a full block of W, in the frame (n, t1, t2) of the contact: Coulomb's friction with tensile
 //! strength and shear cohesion. In the plane it is solved in closed form, in space by Newton's method where it slides.
 
-use super::{inverse, inverse_along};
+use super::{answer_to_slip, inverse, inverse_along, shift_along};
 use crate::geometry::space::{MatrixLike, Space, VectorLike, greatest, least};
 use crate::solve::form::ContactForm;
 use crate::solve::local::contact::Local;
@@ -16,7 +16,7 @@ pub(in crate::solve) struct Limits<S: Space> {
     pub tension: f64,
     /// Shear cohesion (N s).
     pub cohesion: f64,
-    /// rho of the natural map: the smaller of 1/W' along n and across; 0 where nothing moves along n.
+    /// rho of the natural map: the smaller of 1/W' along n and across; 0 where nothing moves.
     pub rho: f64,
     pub shift_n: f64,
     /// Compliance of the unilateral part (1/kg), normal and tangential.
@@ -28,12 +28,19 @@ impl<S: Space> Limits<S> {
     /// Of a form whose block, with a bond that acts and the compliance, is `compliant` in the frame of the contact.
     pub fn new(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
         let (w_n, w_t) = (compliant.entry(0, 0), quickest::<S>(compliant));
+        let rho = if w_n > 0.0 {
+            least(inverse(w_n), inverse_along(w_t, w_n))
+        } else {
+            inverse(w_t)
+        };
+        // Of a contact that nothing moves: it is right after one visit.
+        let held = [w_n, w_t] == contact.compliance;
         Self {
             mu: contact.friction,
             tension: contact.tension,
             cohesion: contact.cohesion,
-            rho: least(inverse(w_n), inverse_along(w_t, w_n)),
-            shift_n: contact.shift_n,
+            rho: if held { 0.0 } else { rho },
+            shift_n: shift_along(contact, w_n),
             compliance: contact.compliance,
             shift_t: contact.shift_t,
         }
@@ -49,11 +56,19 @@ fn quickest<S: Space>(w: &S::Matrix) -> f64 {
     0.5 * (a + c) + (0.25 * (a - c) * (a - c) + cross * cross).sqrt()
 }
 
+/// Response along the normal, as a share of that across, up to which it is rounding: bodies that turn about a place on the normal are held
+/// along it.
+pub(in crate::solve) const HELD: f64 = 1e-14;
+
 /// The components of a matrix, given in world axes, in the frame of a contact.
 pub(super) fn in_frame<S: Space>(n: &S::Vector, w: &S::Matrix) -> S::Matrix {
     let [t1, t2] = S::tangents(n);
     let axes = [*n, t1, t2];
-    S::Matrix::from_entries(|i, j| axes[i].dot(&w.apply(&axes[j])))
+    let w = S::Matrix::from_entries(|i, j| axes[i].dot(&w.apply(&axes[j])));
+    if w.entry(0, 0) > HELD * quickest::<S>(&w) {
+        return w;
+    }
+    S::Matrix::from_entries(|i, j| if i == 0 || j == 0 { 0.0 } else { w.entry(i, j) })
 }
 
 /// A vector of the frame, from its normal component and its tangential part.
@@ -109,7 +124,8 @@ impl<S: Space> Cone<S> {
     pub fn new(w: S::Matrix, contact: &ContactForm<S>) -> Self {
         let compliant = compliant::<S>(&w, contact.compliance);
         let (w_nn, w_nt) = (compliant.entry(0, 0), compliant.entry(0, 1));
-        let mut offset = framed::<S>(&contact.normal, contact.shift_n, &contact.shift_t);
+        let shift_n = shift_along(contact, w_nn);
+        let mut offset = framed::<S>(&contact.normal, shift_n, &contact.shift_t);
         for k in 0..S::D {
             offset[k] -= compliant.entry(k, 0) * contact.tension;
         }
@@ -118,7 +134,7 @@ impl<S: Space> Cone<S> {
             let block = std::array::from_fn(|i| std::array::from_fn(|j| compliant.entry(i, j)));
             let held = Local::<2>::new(&block, contact.friction).held();
             let slides = [contact.friction, -contact.friction].map(|mu| 1.0 / (w_nn - mu * w_nt));
-            let open = inverse_along(compliant.entry(1, 1), w_nn);
+            let open = answer_to_slip(compliant.entry(1, 1), w_nn, contact.cohesion);
             let [forth, back] = if w_nn > 0.0 { slides } else { [0.0; 2] };
             let inverse = S::Matrix::from_entries(|i, j| held[i][j]);
             (inverse, [forth, back, open])
@@ -208,7 +224,8 @@ impl<S: Space> Cone<S> {
         const ALTERNATIONS: usize = 2;
         let w = compliant::<S>(&self.w, limits.compliance);
         let w_nn = w.entry(0, 0);
-        let (iwn, iwt) = (inverse(w_nn), inverse_along(quickest::<S>(&w), w_nn));
+        let iwn = inverse(w_nn);
+        let iwt = answer_to_slip(quickest::<S>(&w), w_nn, limits.cohesion);
         let mut p = *start;
         p[0] += limits.tension;
         for _ in 0..ALTERNATIONS {

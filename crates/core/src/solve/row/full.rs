@@ -1,7 +1,8 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed form.
 
 use super::{
-    LocalImpulse, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
+    LocalImpulse, Residual, Row, SolverBody, answer_to_slip, natural_map, push, relative,
+    shift_along,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
@@ -61,19 +62,37 @@ impl<S: Space> FullRow<S> {
         let n = contact.normal;
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
-        let (iwn, iwt) = (inverse(w_n), inverse_along(w_t, w_n));
-        // Between two immovable bodies there is no contact impulse; their bond still acts.
-        let movable = f64::from(u8::from(w_n > 0.0));
         let [cn, ct] = contact.compliance;
+        let shift_n = shift_along(contact, w_n);
+        // Where both bodies are held in a direction its compliance alone answers; any answer leaves an open contact open.
+        let along = if w_n > 0.0 { w_n } else { cn };
+        let iwn = if along > 0.0 { 1.0 / along } else { 1.0 };
+        let iwt = if w_t == 0.0 && ct > 0.0 {
+            1.0 / ct
+        } else {
+            answer_to_slip(w_t, along, contact.cohesion)
+        };
         // What a compliance leaves of 1/w, where the bond multiplies w by 1/d; 1 for a rigid contact.
-        let share = |w: f64, c: f64, d: f64| if c > 0.0 { w / (w + c * d) } else { 1.0 };
+        let share = |w: f64, c: f64, d: f64| {
+            if c > 0.0 && w > 0.0 {
+                w / (w + c * d)
+            } else {
+                1.0
+            }
+        };
         let (share_n, share_t) = (share(w_n, cn, dn), share(w_t, ct, dt));
         let share_slack = share(w_n, cn, 1.0);
         // 1/W' of a direction is (1 + w b)/w.
-        let rho = least(
-            iwn * share_n + e.b_n * share_n,
-            iwt * share_t + e.b_t * share_t,
-        );
+        let rho_t = iwt * share_t + e.b_t * share_t;
+        let rho = match (w_n > 0.0, w_t > 0.0) {
+            (true, _) => least(iwn * share_n + e.b_n * share_n, rho_t),
+            (false, true) if cn > 0.0 => least(iwn, rho_t),
+            (false, true) => rho_t,
+            // The impulse does not depend on any motion: it is right after one visit, and is not tested.
+            (false, false) => 0.0,
+        };
+        // A bond and what is beside it share a direction where something moves.
+        let shared = |w: f64| if w > 0.0 { 1.0 } else { 0.0 };
         Self {
             bodies: contact.bodies,
             n,
@@ -82,37 +101,29 @@ impl<S: Space> FullRow<S> {
             normal: Direction {
                 w: w_n,
                 iw: iwn * share_n,
-                q: if w_n > 0.0 {
-                    (e.a_n - contact.shift_n * dn * iwn) * share_n
-                } else {
-                    0.0
-                },
+                q: (e.a_n * shared(w_n) - shift_n * dn * iwn) * share_n,
                 k: e.a_n / dn,
                 c: e.b_n / dn,
             },
             tangent: Direction {
                 w: w_t,
                 iw: iwt * share_t,
-                q: (e.a_t * movable - contact.shift_t * (dt * iwt)) * share_t,
+                q: (e.a_t * shared(w_t) - contact.shift_t * (dt * iwt)) * share_t,
                 k: e.a_t * (1.0 / dt),
                 c: e.b_t / dt,
             },
-            q_slack: if w_n > 0.0 {
-                -contact.shift_n * iwn * share_slack
-            } else {
-                0.0
-            },
+            q_slack: -shift_n * iwn * share_slack,
             iw_slack: iwn * share_slack,
             limit: if e.tension_only { 0.0 } else { f64::INFINITY },
             mu: contact.friction,
             tension: contact.tension,
             grip: contact.friction * contact.tension + contact.cohesion,
             cohesion: contact.cohesion,
-            rho: if iwn == 0.0 { 0.0 } else { rho },
+            rho,
             bond_n: Bond {
                 a: e.a_n,
                 b: e.b_n,
-                shift: contact.shift_n,
+                shift: shift_n,
                 compliance: cn,
             },
             bond_t: Bond {

@@ -16,6 +16,7 @@ mod system;
 mod visit;
 
 pub(super) use block::{Bonded, Loose, OnBlock};
+pub(super) use cone::HELD;
 pub(super) use full::FullRow;
 pub(super) use lever::LeverRow;
 pub use moment::{MomentForm, MomentSolution};
@@ -25,7 +26,7 @@ pub(super) use solver_bodies::SolverBodies;
 pub(super) use system::{SystemRow, Term};
 pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
 
-use super::form::ContactSolution;
+use super::form::{ContactForm, ContactSolution};
 use super::{cone as cones, error};
 use crate::geometry::space::{Space, VectorLike, greatest};
 
@@ -92,7 +93,7 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     fn set(&mut self, impulse: &S::Vector);
     /// Returns |u|^2 at the current velocities.
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64;
-    /// Returns rho of the natural map; 0 for a contact between immovable bodies.
+    /// Returns rho of the natural map; 0 for a contact that moves nothing, whose impulse follows from given velocities.
     fn rho(&self) -> f64;
     /// Returns the friction coefficient.
     fn friction(&self) -> f64;
@@ -170,7 +171,7 @@ fn natural_map<T: VectorLike>(
     }
 }
 
-/// Returns 1/w; zero between two immovable bodies, whose impulse is zero.
+/// Returns 1/w; zero where nothing moves.
 fn inverse(w: f64) -> f64 {
     if w > 0.0 { 1.0 / w } else { 0.0 }
 }
@@ -180,4 +181,24 @@ fn inverse(w: f64) -> f64 {
 fn inverse_along(w_t: f64, w_n: f64) -> f64 {
     const MIN_RATIO: f64 = 1e-12;
     inverse(w_t.max(MIN_RATIO * w_n))
+}
+
+/// As [`inverse_along`]; where nothing moves at all, a shear cohesion (N s) takes its bound from a slip of 1e-12 m/s on.
+fn answer_to_slip(w_t: f64, w_n: f64, cohesion: f64) -> f64 {
+    const LEAST_SLIP: f64 = 1e-12;
+    if w_t > 0.0 || w_n > 0.0 {
+        inverse_along(w_t, w_n)
+    } else {
+        cohesion / LEAST_SLIP
+    }
+}
+
+/// The shift along the normal of a contact with this W_nn. Where both bodies are held along the normal, the velocity is given, and the
+/// impulse of a rigid contact is not determined: it is open, and its bond, cohesion or damping alone acts. A compliance determines it.
+fn shift_along<S: Space>(contact: &ContactForm<S>, w_n: f64) -> f64 {
+    if w_n + contact.compliance[0] > 0.0 {
+        contact.shift_n
+    } else {
+        f64::INFINITY
+    }
 }

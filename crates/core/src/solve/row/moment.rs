@@ -161,7 +161,8 @@ impl<S: Space> MomentRow<S> {
         b.s -= self.inverse_spins[1].apply(moment);
     }
 
-    /// Solves for the current spins under the normal impulse `pn`.
+    /// Solves for the current spins under the normal impulse `pn`. Where nothing can turn the spin is given: friction is at its bound against
+    /// it.
     pub fn update(
         &mut self,
         pn: f64,
@@ -176,10 +177,19 @@ impl<S: Space> MomentRow<S> {
         let (f_twist, f_bend) = S::split_spin(&self.n, &f);
         let (a_twist, a_bend) = S::split_spin(&self.n, &form.a);
         let bound = form.spinning * pn;
-        let twist = (a_twist - f_twist * self.iw).clamp(-bound, bound);
+        let twist = if self.turns() {
+            (a_twist - f_twist * self.iw).clamp(-bound, bound)
+        } else {
+            -bound * sign(f_twist)
+        };
         let pull = a_twist + form.b_twist * (self.w * twist + f_twist);
         let twist = twist - pull / (1.0 + self.w * form.b_twist);
-        let bend = (a_bend - f_bend * self.iw).limited(form.rolling * pn);
+        let bound = form.rolling * pn;
+        let bend = if self.turns() {
+            (a_bend - f_bend * self.iw).limited(bound)
+        } else {
+            against(&f_bend, bound)
+        };
         let pull = a_bend + (bend * self.w + f_bend) * form.b_bend;
         let bend = bend - pull * (1.0 / (1.0 + self.w * form.b_bend));
         let change = (S::spin_about(&self.n, twist) + bend - self.moment) * relaxation;
@@ -269,6 +279,21 @@ impl<S: Space> MomentRow<S> {
             moment: self.moment,
             friction: self.moment - self.bond(&self.relative(a, b, systems)),
         }
+    }
+}
+
+/// The sign of a spin, 0 without one.
+fn sign(spin: f64) -> f64 {
+    if spin == 0.0 { 0.0 } else { spin.signum() }
+}
+
+/// The moment at its bound against a spin that is given; none where nothing turns.
+fn against<T: VectorLike>(spin: &T, bound: f64) -> T {
+    let size = spin.norm();
+    if size > 0.0 {
+        *spin * (-bound / size)
+    } else {
+        T::zero()
     }
 }
 

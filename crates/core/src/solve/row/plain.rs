@@ -2,6 +2,7 @@
 
 use super::{
     LocalImpulse, Residual, Row, SolverBody, inverse, inverse_along, natural_map, push, relative,
+    shift_along,
 };
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution};
@@ -29,8 +30,12 @@ impl<S: Space> PlainRow<S> {
             pn: n.dot(&contact.impulse),
             // A frictionless contact never has a tangential impulse.
             pt: grip::<S>(&n, &contact.impulse, contact.friction),
-            shift: contact.shift_n,
-            iwn: inverse(w_n),
+            shift: shift_along(contact, w_n),
+            // Any answer opens a contact of bodies that are held along the normal.
+            iwn: [w_n, w_t]
+                .into_iter()
+                .find(|w| *w > 0.0)
+                .map_or(1.0, inverse),
             iwt: inverse_along(w_t, w_n),
             mu: contact.friction,
         }

@@ -160,6 +160,11 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
+    /// See [`super::Row::rho`].
+    pub fn rho(&self) -> f64 {
+        self.contact.limits().rho
+    }
+
     /// The nodes that it acts on.
     pub fn terms(&self) -> &[Term] {
         &self.terms

@@ -10,7 +10,7 @@ mod bodies;
 mod motion;
 
 use super::error::Norm;
-use super::form::{ContactForm, Place, Problem};
+use super::form::{ContactForm, Mobility, Place, Problem};
 use super::local::csr::Csr;
 #[cfg(test)]
 use super::local::form::Delassus;
@@ -19,7 +19,7 @@ use super::local::law::Law;
 use super::local::solver::Method;
 use super::local::state::{Budget, State};
 use super::nodal::NodalSystem;
-use super::row::{MomentForm, SystemRow, Term, turning};
+use super::row::{HELD, MomentForm, SystemRow, Term, turning};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use bodies::{Axis, Bodies, Motions, Unknown};
 
@@ -44,6 +44,8 @@ pub struct Standard<'a, S: Space, const D: usize> {
     places: Vec<Places>,
     /// Blocks of friction and bond of each moment.
     moments: Vec<Places>,
+    /// Whether a contact carries nothing along its normal at any velocity, see [`open`].
+    open: Vec<bool>,
     /// Constant parts of the impulses, in world axes, and of the moments.
     constant: Vec<S::Vector>,
     constant_moments: Vec<S::Spin>,
@@ -80,6 +82,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
             q: Vec::new(),
             places: Vec::with_capacity(forms.len()),
             moments: Vec::with_capacity(moments.len()),
+            open: vec![false; forms.len()],
             constant: vec![S::Vector::zero(); forms.len()],
             constant_moments: vec![S::Spin::zero(); moments.len()],
         };
@@ -156,15 +159,17 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         for (d, axis) in own.iter_mut().enumerate() {
             axis.compliance = form.compliance[usize::from(d > 0)];
         }
-        if open(form) {
+        self.open[k] = open(problem, form, row);
+        if self.open[k] {
             // It carries no normal impulse at any velocity: w p = 0, without coupling to the bodies.
             let mobility = |b: &u32| {
                 form.normal
                     .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
             };
             let along = |row: &SystemRow<S>| form.normal.dot(&row.block().apply(&form.normal));
+            let w_n = row.map_or_else(|| form.bodies.iter().map(mobility).sum(), along);
             own[0] = Axis {
-                compliance: row.map_or_else(|| form.bodies.iter().map(mobility).sum(), along),
+                compliance: if w_n > 0.0 { w_n } else { 1.0 },
                 ..axes[0].bonded(0.0)
             };
         }
@@ -299,12 +304,12 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         self.q = (0..self.laws.len())
             .map(|c| self.w.relative(c, &motions))
             .collect();
-        for (form, places) in forms.iter().zip(&self.places) {
+        for ((form, places), open) in forms.iter().zip(&self.places).zip(&self.open) {
             let n = &form.normal;
             if let Some(c) = places.contact {
                 let shift = S::components(n, &form.shift_t);
                 let q = &mut self.q[c as usize];
-                if !open(form) {
+                if !open {
                     q[0] += form.shift_n - form.compliance[0] * form.tension;
                 }
                 for k in 1..D {
@@ -348,7 +353,7 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
                     }
                 }
             }
-            if open(form) {
+            if self.open[k] {
                 all[0] = 0.0;
             }
             p[c as usize] = all;
@@ -429,9 +434,23 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 }
 
-/// Returns whether a contact has a gap and may close freely; its impact follows when it closes.
-fn open<S: Space>(form: &ContactForm<S>) -> bool {
-    form.shift_n == f64::INFINITY
+/// Returns whether a contact carries nothing along its normal: it has a gap and may close freely, and its impact follows when it closes; or it
+/// is rigid, and both bodies are held along the normal.
+fn open<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, row: Option<&SystemRow<S>>) -> bool {
+    let n = &form.normal;
+    let held = || {
+        let sides = form.bodies.iter().zip(&form.arms);
+        let of_bodies = || {
+            sides.fold(S::Matrix::uniform(0.0), |sum, (body, arm)| {
+                let Mobility { mass, inertia } = &problem.masses[*body as usize];
+                sum + S::Matrix::diagonal(mass) + S::rotation_block(arm, inertia)
+            })
+        };
+        let w = row.map_or_else(of_bodies, |row| *row.block());
+        let largest = (0..S::D).map(|k| w.entry(k, k)).fold(0.0, f64::max);
+        n.dot(&w.apply(n)) <= HELD * largest
+    };
+    form.shift_n == f64::INFINITY || form.compliance[0] == 0.0 && held()
 }
 
 fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<'_, S, D>, a: &[f64; D]) {

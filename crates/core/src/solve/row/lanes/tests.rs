@@ -12,14 +12,19 @@ fn wave(k: usize, of: u32) -> f64 {
     (1.7 * k as f64 + 0.9 * f64::from(of * of % 101)).sin()
 }
 
-/// Bodies with velocities and masses; every fourteenth is fixed.
+/// Bodies with velocities and masses; every fourteenth is fixed, some pairs are, and some can only turn.
 fn solver_bodies<S: Space>(count: u32) -> Vec<SolverBody<S>> {
     let body = |at: u32| {
-        let fixed = at % 14 == 1;
+        let fixed = at % 14 == 1 || at / 2 % 23 == 5;
+        let turns = at / 2 % 29 == 7;
         let mut body = SolverBody::<S> {
             v: S::Vector::zero(),
             s: S::Spin::zero(),
-            im: if fixed { 0.0 } else { 1.0 + 0.3 * wave(9, at) },
+            im: if fixed || turns {
+                0.0
+            } else {
+                1.0 + 0.3 * wave(9, at)
+            },
             is: if fixed { 0.0 } else { 2.0 + 0.5 * wave(10, at) },
         };
         for k in 0..S::D {
