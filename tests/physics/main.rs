@@ -18,6 +18,7 @@ mod extremes;
 mod library;
 mod masonry;
 mod midpoint;
+mod midpoint_load;
 mod packing;
 mod peer_traps;
 mod periodic_cell;
