@@ -382,6 +382,7 @@ mod tests {
                 tension_only: case % 3 == 0,
                 damped: false,
                 loss_n: 0.0,
+                curved: false,
                 loss_t: 0.0,
             };
             let form = ContactForm {

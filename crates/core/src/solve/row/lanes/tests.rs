@@ -78,6 +78,7 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
         tension_only: pair.is_multiple_of(2),
         damped: false,
         loss_n: 0.0,
+        curved: false,
         loss_t: 0.0,
     };
     ContactForm {
