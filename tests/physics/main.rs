@@ -19,6 +19,7 @@ mod library;
 mod masonry;
 mod midpoint;
 mod midpoint_load;
+mod momentum;
 mod packing;
 mod peer_traps;
 mod periodic_cell;

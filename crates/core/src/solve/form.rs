@@ -20,6 +20,9 @@ pub struct ContactForm<S: Space> {
     pub arms: [S::Vector; 2],
     /// Both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
+    /// Of a central contact, whether its arms are not the lengths of its bodies: it acts in the gap between two balls, or in their
+    /// overlap.
+    pub apart: bool,
     /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
     pub shift_n: f64,
     /// s_t: e_t u_t^- (m/s).
@@ -48,6 +51,7 @@ impl<S: Space> ContactForm<S> {
             normal: S::Vector::zero(),
             arms: [S::Vector::zero(); 2],
             central: true,
+            apart: false,
             shift_n: 0.0,
             shift_t: S::Tangent::zero(),
             friction: 0.0,
@@ -230,6 +234,7 @@ pub(super) enum Place {
 ///     normal: Vector2::new(0.0, 1.0),
 ///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
 ///     central: true,
+///     apart: false,
 ///     shift_n: 0.0,
 ///     shift_t: <Dim2 as Space>::Tangent::zero(),
 ///     friction: 0.5,

@@ -333,6 +333,7 @@ mod tests {
             normal,
             arms: [S::Vector::zero(); 2],
             central: false,
+            apart: false,
             shift_n: 0.0,
             shift_t: S::Tangent::zero(),
             friction: 0.0,
