@@ -449,6 +449,7 @@ fn contact<S: Space>(a: u32, b: u32, normal: S::Vector, push: f64) -> ContactFor
         normal,
         arms: [-normal, normal],
         central: true,
+        apart: false,
         shift_n: 0.0,
         shift_t: S::Tangent::zero(),
         friction: 0.3,

@@ -65,6 +65,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
             normal,
             arms: [normal * -RADIUS + lever, normal * RADIUS + lever],
             central: !blocks,
+            apart: false,
             shift_n: 0.0,
             shift_t: S::Tangent::zero(),
             friction: 0.1,

@@ -20,6 +20,8 @@ mod library;
 mod masonry;
 mod midpoint;
 mod mindlin;
+mod midpoint_load;
+mod momentum;
 mod packing;
 mod peer_traps;
 mod periodic_cell;

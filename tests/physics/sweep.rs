@@ -46,6 +46,7 @@ fn contact<S: Space>(bodies: [u32; 2], normal: S::Vector) -> ContactForm<S> {
         normal,
         arms: [-normal, normal],
         central: true,
+        apart: false,
         shift_n: 0.0,
         shift_t: S::Tangent::zero(),
         friction: 0.3,

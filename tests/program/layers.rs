@@ -163,7 +163,7 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 15] = [
+const MODULES: [&str; 16] = [
     "huge_pages",
     "threads",
     "code",
@@ -175,6 +175,7 @@ const MODULES: [&str; 15] = [
     "laws",
     "certify",
     "energy",
+    "momentum",
     "wear",
     "heat",
     "step",

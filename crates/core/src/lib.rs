@@ -3,7 +3,7 @@
 //!
 //! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra, shapes, distances), [`bodies`],
 //! [`contact`] (detection and what each contact remembers), [`solve`] (the contact problem and its solvers), [`laws`] (the
-//! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] (the ledger of a step), [`heat`] (temperatures and current), [`step`] (the time
+//! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`] (temperatures and current), [`step`] (the time
 //! step), and [`process`] (what acts on a simulation at the named moments of a step). State goes to bytes and back by [`code`].
 //!
 //! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the [`Options`](step::Options) of the
@@ -57,6 +57,7 @@ pub mod geometry;
 pub mod heat;
 pub mod huge_pages;
 pub mod laws;
+pub mod momentum;
 pub mod process;
 pub mod program;
 pub mod solve;

@@ -13,6 +13,7 @@ use super::tractions::{SurfaceState, loaded, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::laws::AreaRule;
 use fretwork_core::step::Simulation;
 use fretwork_scene::case::Case;
 use serde::Serialize;
@@ -435,10 +436,9 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
             place: bodies.position[contact.bodies[side] as usize] + contact.arms[side],
             force: acting.force,
             parts: [acting.normal, signed::<S>(&acting.along)],
-            area: point.filter(|_| even).map(|_| match S::D {
-                2 => 2.0 * contact.radius,
-                _ => std::f64::consts::PI * contact.radius * contact.radius,
-            }),
+            area: point
+                .filter(|_| even)
+                .map(|_| AreaRule::default().area(S::D, contact.radius)),
             slips: contact.slides,
         });
     }

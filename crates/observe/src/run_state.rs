@@ -5,11 +5,12 @@ use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::solving::SolverSummary;
 use super::statistics::Column;
-use super::summary::Summary;
+use super::summary::{MomentumSummary, Summary};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
 use fretwork_core::geometry::space::Space;
+use fretwork_core::momentum::Momentum;
 use fretwork_core::process::cycle::CycleClock;
 use fretwork_core::solve;
 use fretwork_core::step::{Simulation, StepReport};
@@ -36,6 +37,7 @@ struct Counts {
     damage_ratio: f64,
     step_size: StepSizeDiagnostics,
     energy: Energy,
+    momentum: Momentum,
 }
 
 impl Counts {
@@ -52,6 +54,7 @@ impl Counts {
             damage_ratio: damage_ratio(s),
             step_size: n.step_size.clone(),
             energy: s.state.energy,
+            momentum: s.state.momentum,
         }
     }
 
@@ -66,6 +69,14 @@ impl Counts {
         summary.step_size = self.step_size.clone();
         summary.energy = self.energy;
         summary.energy_residual_relative = self.energy.relative_residual();
+        let [linear, angular] = self.momentum.drift();
+        let relative = self.momentum.relative();
+        summary.momentum = MomentumSummary {
+            linear,
+            angular,
+            linear_relative: relative[0],
+            angular_relative: relative[1],
+        };
     }
 }
 
@@ -181,6 +192,12 @@ impl<S: Space> Observer<S> for RunState {
         ];
         let entries = Energy::default().entries().into_iter();
         out.extend(entries.map(|(name, doc, _)| c(name, joule, doc)));
+        let units = match S::D {
+            2 => ["N s/m", "N s"],
+            _ => ["N s", "N m s"],
+        };
+        let entries = Momentum::default().entries().into_iter().zip(units);
+        out.extend(entries.map(|((name, doc, _), unit)| c(name, unit, doc)));
         out
     }
 
@@ -201,6 +218,7 @@ impl<S: Space> Observer<S> for RunState {
             n.mean_damage(),
         ]);
         row.extend(s.state.energy.entries().map(|(_, _, value)| value));
+        row.extend(s.state.momentum.entries().map(|(_, _, value)| value));
         row
     }
 

@@ -1,5 +1,6 @@
 //! Contacts on which an interface's bonds form, estimated from the scene before it runs.
 
+use fretwork_core::geometry::shape::point_radius;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
@@ -192,11 +193,9 @@ fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
 fn grains<S: Space>(s: &Simulation<S>) -> Vec<Side> {
     // A point of a grain that deforms is as large as what it stands for.
     let balls = s.shapes.balls.iter().map(|b| {
-        let area = b.area.norm();
-        let size = match S::D {
-            _ if b.radius > 0.0 => b.radius,
-            2 => 0.5 * area,
-            _ => (area / std::f64::consts::PI).sqrt(),
+        let size = match b.radius > 0.0 {
+            true => b.radius,
+            false => point_radius::<S>(b.area.norm()),
         };
         (b.body, size, b.material)
     });

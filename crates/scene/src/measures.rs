@@ -211,7 +211,7 @@ fn check_bodies(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationErro
 }
 
 /// Names of columns and figures that every run may have.
-const RESERVED: [&str; 56] = [
+const RESERVED: [&str; 58] = [
     "step",
     "time",
     "cycle",
@@ -240,6 +240,8 @@ const RESERVED: [&str; 56] = [
     "external_work",
     "initial_kinetic",
     "residual",
+    "momentum_drift",
+    "angular_momentum_drift",
     "worn_first",
     "worn_third",
     "delta",

@@ -9,6 +9,9 @@ extern crate self as fretwork_law;
 
 use sdk::*;
 
+#[cfg(test)]
+mod mixed_mode;
+
 /// The macro that replaces `export!` here.
 mod entry {
     macro_rules! export {

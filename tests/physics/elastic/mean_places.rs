@@ -285,7 +285,7 @@ fn tension_acts_once_at_a_crease() {
         profile: ", profile: (side: \"top\", shape: Wave(amplitude: 1e-9, x: 2e-3))",
         soft: false,
         sets: vec![format!(
-            "interfaces=[(name: \"contact\", between: (\"steel\", \"steel\"), contact: \"mohr-coulomb\", area_factor: 2.0, \
+            "interfaces=[(name: \"contact\", between: (\"steel\", \"steel\"), contact: \"mohr-coulomb\", \
              parameters: (contact: {{\"mu\": 0.3, \"cohesion\": {strength:e}, \"tension\": {strength:e}}}))]"
         )],
     };

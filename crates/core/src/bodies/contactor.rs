@@ -9,7 +9,8 @@ use crate::geometry::space::Space;
 pub struct Contactor {
     /// The nodes that carry its origin.
     pub nodes: Nodes,
-    /// Radius of a ball about the origin (m); of other shapes a length of their size, which laws take for a radius.
+    /// Radius of a ball about the origin (m); of a point half the length that it stands for, in space the radius of the disk of its area,
+    /// from which contacts have their area; of other shapes a length of their size.
     pub radius: f64,
     /// What touches.
     pub shape: ContactorShape,

@@ -372,7 +372,7 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Unloads half way and completely, and reloads: the path must point to the origin and return to its start.
+/// Unloads half way and completely, and reloads: the path must end in the origin, as the undamaged bond does, and return to its start.
 fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
@@ -396,6 +396,7 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
         let again = go(rig, &mut state, 0.5 * top)?;
         let length = |a: &Answer| a.traction.iter().map(|t| t * t).sum::<f64>().sqrt();
         let scale = length(&up).max(f64::MIN_POSITIVE);
+        let share = undamaged(rig, angle, 0.5 * top)? / undamaged(rig, angle, top)?;
         if up.damage >= 1.0 {
             continue;
         }
@@ -407,13 +408,26 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
             worst = worst.max((length(&half) - length(&again)).abs() / scale);
         }
         if rig.damages() && same(&up, &half) {
-            worst = worst.max((0.5 * length(&up) - length(&half)).abs() / scale);
+            worst = worst.max((share * length(&up) - length(&half)).abs() / scale);
         }
     }
     Ok(Line::below(
         NAME,
         worst,
         1e-6,
-        "largest distance from the line to the origin on unloading and reloading",
+        "largest distance from the path of the undamaged bond to the origin, a line where it is linear, on unloading and reloading",
     ))
+}
+
+/// The traction of the undamaged bond at an opening, up to a factor: of other laws than cohesion the bond is linear.
+fn undamaged(rig: &mut Rig, angle: f64, u: f64) -> Result<f64, LawError> {
+    let m = rig.tested().plugin.degradation;
+    if rig.kind != Kind::COHESION || m <= 0.0 {
+        return Ok(u);
+    }
+    let mut state = [rig.bench.fresh()];
+    let answer = rig.bench.step(&mut state, &[pull(u, angle)], 1e-12)?[0];
+    let carried = answer.traction.iter().map(|t| t * t).sum::<f64>().sqrt();
+    let left = (1.0f64 - answer.damage).powf(m);
+    Ok(if left > 0.0 { carried / left } else { u })
 }

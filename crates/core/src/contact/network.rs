@@ -52,6 +52,22 @@ impl Key {
     }
 }
 
+/// Where the impulse of a contact acts. One place for both bodies, so that it gives them no angular momentum: where there is a gap, or an
+/// overlap, their surfaces are not at one place.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Acts {
+    /// On either surface: of rigid bodies that touch within the step, and of two surfaces that deform, which take up forces at their
+    /// nodes only.
+    #[default]
+    Surfaces,
+    /// In the middle between the surfaces.
+    Middle,
+    /// On the surface of the candidate, which deforms.
+    Candidate,
+    /// On the surface of the antagonist, which deforms.
+    Antagonist,
+}
+
 /// A candidate pair within the alert distance, or held by a bond.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
@@ -74,8 +90,10 @@ pub struct Contact<S: Space> {
     pub gap: f64,
     /// Unit normal, from the antagonist to the candidate.
     pub normal: S::Vector,
-    /// Vectors from each body's centre to the contact point (m).
+    /// Vectors from each body's centre to its surface at the contact (m).
     pub arms: [S::Vector; 2],
+    /// Where its impulse acts, see [`Self::levers`].
+    pub acts: Acts,
     /// Reduced radius r1 r2/(r1 + r2) (m).
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
@@ -140,6 +158,7 @@ impl<S: Space> Contact<S> {
             gap: geometry.gap,
             normal: geometry.normal,
             arms: geometry.arms,
+            acts: Acts::Surfaces,
             radius: geometry.radius,
             impulse: S::Vector::zero(),
             moment: S::Spin::zero(),
@@ -151,6 +170,19 @@ impl<S: Space> Contact<S> {
             slides: false,
             friction_work: 0.0,
             spring: Spring::relaxed(),
+        }
+    }
+
+    /// Vectors from each body's centre to where the impulse acts (m).
+    #[inline]
+    pub fn levers(&self) -> [S::Vector; 2] {
+        let [i, j] = self.arms;
+        let across = |share: f64| self.normal * (share * self.gap);
+        match self.acts {
+            Acts::Surfaces => [i, j],
+            Acts::Middle => [i - across(0.5), j + across(0.5)],
+            Acts::Candidate => [i, j + across(1.0)],
+            Acts::Antagonist => [i - across(1.0), j],
         }
     }
 

@@ -27,34 +27,47 @@ pub struct Ball<S: Space> {
 const LEAST_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
-    /// Its size in contacts (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
-    /// that it stands for.
+    /// Half of its thickness (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
+    /// that it stands for, in space the radius of the disk of its area.
     pub fn size(&self, lengths: &[f64]) -> f64 {
         if self.radius > 0.0 {
             self.radius
         } else if self.area == S::Vector::zero() {
             lengths[self.body as usize]
         } else {
-            Self::point_size(self.area.norm())
+            match S::D {
+                2 => 0.5 * self.area.norm(),
+                _ => point_radius::<S>(self.area.norm()),
+            }
         }
     }
 
-    /// Its size in a contact with a normal towards it, in the axes of its body. The vertex at a corner stands for a part of either
+    /// Its radius in contacts (m), from which laws find their area: that of a ball; of a point of a surface the one whose contact has the
+    /// area that it stands for.
+    pub fn contact_radius(&self, lengths: &[f64]) -> f64 {
+        match S::D {
+            2 if self.radius == 0.0 => 2.0 * self.size(lengths),
+            _ => self.size(lengths),
+        }
+    }
+
+    /// The same in a contact with a normal towards it, in the axes of its body. The vertex at a corner stands for a part of either
     /// side, of which one touches.
-    pub fn size_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
+    pub fn radius_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
         if self.area == S::Vector::zero() {
-            return self.size(lengths);
+            return self.contact_radius(lengths);
         }
         let least = LEAST_SHARE * self.area.norm();
-        Self::point_size(least.max(-self.area.dot(normal)))
+        point_radius::<S>(least.max(-self.area.dot(normal)))
     }
+}
 
-    /// Half of a length, in space the radius of the disk of an area (m).
-    fn point_size(area: f64) -> f64 {
-        match S::D {
-            2 => 0.5 * area,
-            _ => (area / std::f64::consts::PI).sqrt(),
-        }
+/// The radius of a contact (m) that stands for a length (2D, m) or an area (3D, m^2) of a surface: that length, as it is for the sides of
+/// polygons; the radius of the disk of that area.
+pub fn point_radius<S: Space>(area: f64) -> f64 {
+    match S::D {
+        2 => area,
+        _ => (area / std::f64::consts::PI).sqrt(),
     }
 }
 

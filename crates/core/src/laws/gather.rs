@@ -20,7 +20,8 @@ pub(super) struct Source<'a, S: Space> {
 /// What contacts do in a step.
 #[derive(Debug)]
 pub(super) enum Motion<'a, S: Space> {
-    /// The motion at the start of the step goes on through it, without impulses.
+    /// The motion at the start of the step goes on through it, under the impulses and springs of the last step: what is known of the load
+    /// before the step is solved. Contacts that begin in this step carry nothing yet.
     Continued(&'a Velocities<S>),
     /// As solved.
     Solved(&'a SolvedStep<'a, S>),
@@ -41,7 +42,7 @@ impl<S: Space> Motion<'_, S> {
     pub fn after(&self, at: usize, contact: &Contact<S>, bond: BondAfter<S>) -> Values<S> {
         let mut values = Values {
             velocity: self.average(at),
-            impulse: S::Vector::zero(),
+            impulse: contact.impulse,
             opening: bond.opening,
             rotation: bond.rotation,
             damage: bond.damage,
@@ -50,12 +51,19 @@ impl<S: Space> Motion<'_, S> {
             spring: contact.spring.force_t,
             spring_before: contact.spring.force_t,
         };
-        if let Self::Solved(step) = self {
-            values.impulse = step.contacts[at].solution.impulse;
-            if let Some(step) = step.spring(at) {
-                values.overlap = step.spring.overlap;
-                values.spring = step.spring.force_t;
-                values.spring_before = step.force_before;
+        match self {
+            Self::Continued(before) => {
+                if let Some(overlap) = before.overlap.get(at) {
+                    values.overlap = *overlap;
+                }
+            }
+            Self::Solved(step) => {
+                values.impulse = step.contacts[at].solution.impulse;
+                if let Some(step) = step.spring(at) {
+                    values.overlap = step.spring.overlap;
+                    values.spring = step.spring.force_t;
+                    values.spring_before = step.force_before;
+                }
             }
         }
         values

@@ -76,8 +76,9 @@ pub enum BondOpening {
     Gap,
 }
 
-/// Area on which tractions act, from the reduced radius r = r1 r2/(r1 + r2): `factor` r times unit depth in
-/// 2D, `factor` pi r^2 in 3D. LMGC90's benchmark scene uses the factor 1.
+/// Area on which tractions act, from the radius r of a contact, r1 r2/(r1 + r2) of two balls: `factor` r times unit depth in
+/// 2D, `factor` pi r^2 in 3D. Points of surfaces that deform and facing sides and faces have the r whose area is theirs, see
+/// [`crate::geometry::shape::point_radius`]. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
     /// Factor.

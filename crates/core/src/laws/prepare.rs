@@ -22,6 +22,8 @@ const CHUNK: usize = 1024;
 const APPLY: f64 = 10.0;
 /// About what laws that vary take for a contact (ns).
 const PREPARE: f64 = 80.0;
+/// Distance of a traction from stiffness times opening, as a share of it, up to which the two are equal but for rounding.
+const LINEAR: f64 = 1e-9;
 
 /// Friction and restitution of one contact.
 #[derive(Clone, Copy, Default)]
@@ -468,6 +470,11 @@ impl Batch {
         if !law.opens() {
             return;
         }
+        let linear = (0..S::D).all(|axis| {
+            let stiffness = if axis == 0 { kn } else { kt };
+            let (x, t) = (self.columns.opening[axis][k], out.traction[axis][k]);
+            (t - stiffness * x).abs() <= LINEAR * t.abs()
+        });
         form.elastic = Some(Elastic {
             a_n: h * area * (out.traction[0][k] + (kn * memory + dn * (1.0 - theta)) * un),
             a_t: (traction_t + ut * (kt * memory + dt * (1.0 - theta))) * (h * area),
@@ -475,6 +482,7 @@ impl Batch {
             b_t: h * area * (h * theta * theta * kt + theta * dt),
             tension_only: law.tension_only(),
             damped: dn > 0.0,
+            curved: !linear,
             // Damping, and the dissipation of the theta-scheme beyond the change of k x^2/2.
             loss_n: h * area * (dn + h * (theta - 0.5) * kn),
             loss_t: h * area * (dt + h * (theta - 0.5) * kt),

@@ -43,7 +43,8 @@ fn kind<S: Space>(contact: &ContactForm<S>) -> Kind {
             Some(_) => Kind::BondedLever,
         };
     }
-    let plain = contact.elastic.is_none()
+    let plain = !contact.apart
+        && contact.elastic.is_none()
         && contact.tension == 0.0
         && contact.cohesion == 0.0
         && contact.compliance == [0.0; 2]
@@ -184,21 +185,35 @@ impl<S: Space> Problem<S> {
         });
     }
 
-    /// W along and across the normal of a contact of two balls (1/kg).
-    fn of_balls(&self, contact: &ContactForm<S>) -> [f64; 2] {
+    /// W along and across the normal of a contact of two balls (1/kg), at a reach of their lengths.
+    fn of_balls(&self, contact: &ContactForm<S>, [i, j]: [f64; 2]) -> [f64; 2] {
         let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
         let w_n = a.im + b.im;
-        [w_n, w_n + a.is + b.is]
+        [w_n, w_n + a.is * (i * i) + b.is * (j * j)]
     }
 
     fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
-        let [w_n, w_t] = self.of_balls(contact);
+        let [w_n, w_t] = self.of_balls(contact, [1.0; 2]);
         PlainRow::new(contact, w_n, w_t)
     }
 
     fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
-        let [w_n, w_t] = self.of_balls(contact);
-        FullRow::new(contact, w_n, w_t)
+        let reach = self.reach(contact);
+        let [w_n, w_t] = self.of_balls(contact, reach);
+        FullRow::new(contact, w_n, w_t, reach)
+    }
+
+    /// Levers of a central contact over the lengths of its bodies.
+    fn reach(&self, contact: &ContactForm<S>) -> [f64; 2] {
+        if !contact.apart {
+            return [1.0; 2];
+        }
+        [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
+            let body = contact.bodies[side] as usize;
+            let lever = sign * contact.normal.dot(&contact.arms[side]) / self.lengths[body];
+            // A surface that stays in place has no length that a spin would scale.
+            if lever.is_finite() { lever } else { 1.0 }
+        })
     }
 
     fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {

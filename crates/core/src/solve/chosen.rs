@@ -143,6 +143,7 @@ mod tests {
                 normal,
                 arms: [-normal, normal],
                 central: true,
+                apart: false,
                 shift_n: 0.0,
                 shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,

@@ -20,6 +20,9 @@ pub struct ContactForm<S: Space> {
     pub arms: [S::Vector; 2],
     /// Both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
+    /// Of a central contact, whether its arms are not the lengths of its bodies: it acts in the gap between two balls, or in their
+    /// overlap.
+    pub apart: bool,
     /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
     pub shift_n: f64,
     /// s_t: e_t u_t^- (m/s).
@@ -48,6 +51,7 @@ impl<S: Space> ContactForm<S> {
             normal: S::Vector::zero(),
             arms: [S::Vector::zero(); 2],
             central: true,
+            apart: false,
             shift_n: 0.0,
             shift_t: S::Tangent::zero(),
             friction: 0.0,
@@ -75,6 +79,8 @@ pub struct Elastic<S: Space> {
     pub tension_only: bool,
     /// Whether the normal part has damping.
     pub damped: bool,
+    /// Whether the law's traction is not linear in the opening, so that this is a tangent of it.
+    pub curved: bool,
     /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t |u_t,th|^2
     /// (kg).
     pub loss_n: f64,
@@ -92,14 +98,15 @@ impl<S: Space> Elastic<S> {
             b_t: 0.0,
             tension_only: false,
             damped: false,
+            curved: false,
             loss_n: 0.0,
             loss_t: 0.0,
         }
     }
 
     /// Energy that damping and the time scheme take in a step (J), given the opening at its start (m) and the relative velocity, its average over
-    /// the step and at its end (m/s). `None` for a bond in tension only whose force is not linear over the step: it opens, closes, or would push by
-    /// its damping, and what is lost follows from its stored energy.
+    /// the step and at its end (m/s). `None` for a bond whose force is not linear over the step: its law is not, or it acts in tension only and
+    /// opens, closes, or would push by its damping. What is lost then follows from its stored energy.
     pub fn lost(
         &self,
         solution: &ContactSolution<S>,
@@ -111,7 +118,7 @@ impl<S: Space> Elastic<S> {
         let (un, ut) = (normal.dot(average), S::tangential(normal, average));
         let pulls = !self.tension_only || self.a_n + self.b_n * normal.dot(after) > 0.0;
         let opens = [opening > 0.0, opening + h * un > 0.0];
-        let normal_part = if self.tension_only && opens[0] != opens[1] {
+        let normal_part = if self.curved || self.tension_only && opens[0] != opens[1] {
             return None;
         } else if self.tension_only && self.damped && !opens[0] {
             // It stores nothing in compression, so that all the work of its damping is lost.
@@ -227,6 +234,7 @@ pub(super) enum Place {
 ///     normal: Vector2::new(0.0, 1.0),
 ///     arms: [Vector2::new(0.0, -0.01), Vector2::zero()],
 ///     central: true,
+///     apart: false,
 ///     shift_n: 0.0,
 ///     shift_t: <Dim2 as Space>::Tangent::zero(),
 ///     friction: 0.5,

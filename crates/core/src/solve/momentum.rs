@@ -166,6 +166,7 @@ mod tests {
                 normal: Vector2::new(0.0, 1.0),
                 arms: [Vector2::new(0.0, -1.0), Vector2::new(0.0, 1.0)],
                 central: true,
+                apart: false,
                 shift_n: 0.0,
                 shift_t: <Dim2 as Space>::Tangent::zero(),
                 friction,

@@ -62,10 +62,10 @@ const EACH: f64 = 15.0;
 
 /// The mass of a contact along its normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
 fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
-    let n = &contact.normal;
+    let (n, levers) = (&contact.normal, contact.levers());
     let mobility = |side: usize| {
         let b = contact.bodies[side] as usize;
-        let turning = S::rotation_block(&contact.arms[side], &bodies.inverse_tensor(b));
+        let turning = S::rotation_block(&levers[side], &bodies.inverse_tensor(b));
         n.dot(&n.scaled_by(&bodies.inverse_mass[b])) + n.dot(&turning.apply(n))
     };
     let w = mobility(0) + mobility(1);
@@ -76,9 +76,10 @@ fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
 #[inline]
 pub(super) fn relative_velocity<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> S::Vector {
     let [i, j] = contact.bodies.map(|b| b as usize);
-    bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &contact.arms[0])
+    let levers = contact.levers();
+    bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &levers[0])
         - bodies.velocity[j]
-        - S::spin_velocity(&bodies.spin[j], &contact.arms[1])
+        - S::spin_velocity(&bodies.spin[j], &levers[1])
 }
 
 impl<S: Space> Simulation<S> {

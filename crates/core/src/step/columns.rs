@@ -4,6 +4,7 @@ use super::Simulation;
 use crate::contact::Contact;
 use crate::energy::Energy;
 use crate::geometry::space::{Space, VectorLike};
+use crate::momentum::Momentum;
 
 /// A contact at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +87,11 @@ impl<S: Space> Simulation<S> {
         let (impulse, moment) = self.state.received.get(place)?;
         let rate = 1.0 / self.options.scheme.h;
         Some((*impulse * rate, *moment * rate))
+    }
+
+    /// The ledger of momentum (N s, N m s; 2D per m).
+    pub fn momentum(&self) -> &Momentum {
+        &self.state.momentum
     }
 
     /// The energy ledger (J; 2D J/m).

@@ -21,7 +21,9 @@
 //!       │                                        ▼
 //!       └──────────────── observers and files (layers above), processes between steps
 //! ```
+mod action;
 mod answers;
+mod balance;
 mod change;
 mod columns;
 mod compiled;

@@ -146,6 +146,11 @@ impl<S: Space> StepStart<S> {
         bodies.spin.clone_from(&self.spin);
     }
 
+    /// Returns the velocity of a body at the start of the step.
+    pub fn velocity(&self, body: usize) -> S::Vector {
+        self.velocity[body]
+    }
+
     /// Returns the spin of a body at the start of the step.
     pub fn spin(&self, body: usize) -> S::Spin {
         self.spin[body]

@@ -34,6 +34,7 @@ impl<S: Space> Simulation<S> {
         self.book_expansion();
         self.conduct()?;
         self.book(&start, &report.totals);
+        self.book_momentum(&start);
         self.move_to_end();
         self.end_step(&mut report)?;
         Ok(report)
@@ -230,12 +231,12 @@ impl<S: Space> Simulation<S> {
         let parts = map_chunks(divide, contacts, CHUNK, |_, contacts| {
             let mut received = Vec::new();
             for contact in contacts {
+                let levers = contact.levers();
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     let d = place[contact.bodies[side] as usize];
                     if d != u32::MAX {
                         let impulse = contact.impulse * sign;
-                        let moment =
-                            S::moment(&contact.arms[side], &impulse) + contact.moment * sign;
+                        let moment = S::moment(&levers[side], &impulse) + contact.moment * sign;
                         received.push((d, impulse, moment));
                     }
                 }

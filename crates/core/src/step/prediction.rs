@@ -134,6 +134,7 @@ impl<S: Space> Simulation<S> {
         let mut last: Vec<(Key, S::Vector)> = Vec::new();
         self.forget_system_contacts();
         for solves in 1.. {
+            self.place_actions();
             self.find_system_contacts();
             self.relative_velocities();
             self.geometry_of_forms(info.h);

@@ -3,7 +3,7 @@
 use super::coupling::{Coupling, Progress};
 use super::motion::StepStart;
 use super::{Simulation, StepError, StepReport};
-use crate::contact::{Contact, Network};
+use crate::contact::{Acts, Contact, Network};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::columns::StepInfo;
@@ -184,8 +184,9 @@ impl<S: Space> Simulation<S> {
             ContactForm {
                 bodies: contact.bodies,
                 normal: contact.normal,
-                arms: contact.arms,
+                arms: contact.levers(),
                 central: contact.central,
+                apart: contact.central && contact.acts != Acts::Surfaces,
                 shift_n: shift_of_gap(network, contact, correction, h),
                 shift_t: S::Tangent::zero(),
                 friction: 0.0,

@@ -215,6 +215,8 @@ fn pose<S: Space>(
             normal: contact.normal,
             arms: contact.arms,
             central: contact.central,
+            // Overlaps are taken out along normals, about which arms along them do not turn.
+            apart: false,
             shift_n: if kept { 0.0 } else { contact.gap },
             shift_t: S::Tangent::zero(),
             friction: 0.0,

@@ -13,6 +13,7 @@ use crate::energy::Energy;
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::HeatState;
 use crate::laws::{Interface, LawHistory};
+use crate::momentum::Momentum;
 use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};
@@ -63,6 +64,8 @@ pub struct State<S: Space> {
     pub started: Vec<(S::Vector, S::Spin)>,
     /// The energy ledger.
     pub energy: Energy,
+    /// The ledger of momentum.
+    pub momentum: Momentum,
     /// Work of projections on driven bodies against imposed forces (J).
     pub projection_work: f64,
     /// Scars of the surfaces that wear.
@@ -96,6 +99,7 @@ impl<S: Space> State<S> {
                 initial_kinetic: kinetic,
                 ..Energy::default()
             },
+            momentum: Momentum::default(),
             projection_work: 0.0,
             scars: Vec::new(),
             worn_through: None,

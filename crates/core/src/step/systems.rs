@@ -202,16 +202,19 @@ impl<S: Space> Simulation<S> {
         }
         let mean = self.workspace.means.nodes(k, &contact.key);
         Some(std::array::from_fn(|k| {
-            let (body, arm) = (contact.bodies[k], contact.arms[k]);
+            let body = contact.bodies[k];
             match carriers[k] {
                 Some(carrier) => Side::Nodes {
                     system: carrier.system,
                     nodes: match mean {
                         Some(nodes) if k == 1 => nodes.clone(),
-                        _ => self.state.systems.contact_nodes(carrier, &arm),
+                        _ => (self.state.systems).contact_nodes(carrier, &contact.arms[k]),
                     },
                 },
-                None => Side::Rigid { body, arm },
+                None => Side::Rigid {
+                    body,
+                    arm: contact.levers()[k],
+                },
             }
         }))
     }

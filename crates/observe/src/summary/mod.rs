@@ -49,6 +49,19 @@ pub struct PluginStamp {
     pub certified: bool,
 }
 
+/// Momentum of the free rigid bodies that nothing outside gave them.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct MomentumSummary {
+    /// Linear (N s; N s/m).
+    pub linear: f64,
+    /// Angular (N m s; N s); zero in periodic scenes.
+    pub angular: f64,
+    /// Linear, over the largest sum of the bodies' |m v| so far.
+    pub linear_relative: f64,
+    /// Angular, over the largest sum of the bodies' |x × m v| + |I w| so far.
+    pub angular_relative: f64,
+}
+
 /// Wear and mean mass flows since the start of the friction test, or of the run without one.
 #[derive(Clone, Debug, Default, Serialize)]
 #[allow(non_snake_case)]
@@ -174,6 +187,8 @@ pub struct Summary {
     pub energy: Energy,
     /// Residual over the largest energy seen.
     pub energy_residual_relative: f64,
+    /// Momentum of the free rigid bodies that nothing outside gave.
+    pub momentum: MomentumSummary,
     /// Wear.
     pub wear: Wear,
     /// The tribological circuit; null without one.

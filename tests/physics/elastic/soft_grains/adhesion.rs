@@ -25,7 +25,6 @@ fn pulling_off_takes_the_tension_over_the_range() {
                 bodies: wall("floor", &[0.0, 1.0], &[0.0, 0.0], ""),
                 grains: square(material, [0.0, 0.01], side, 0.0, "velocity: [0.0, 1.0]")
                     + &disks("soft", &[ball_at(&[1.0, 1.0], &[])]),
-                interface: if material == "soft" { "area_factor: 2.0," } else { "" },
                 ..Soft::default()
             }
             .build::<Dim2>();

@@ -6,12 +6,7 @@ use fretwork::scene::bond_sites::BondSites;
 /// Bonds of a side of a length stand for that length.
 fn glued<S: Dimensional>(what: &str, bodies: &str, grains: &str) -> f64 {
     let mut s = Soft {
-        // In the plane the size of a point is half of its part of the surface.
-        interface: if S::D == 2 {
-            "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5, area_factor: 2.0,"
-        } else {
-            "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5,"
-        },
+        interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5,",
         parameters: ", cohesion: {\"k_n\": 1e10, \"k_t\": 1e10}, damage: {\"strength\": 1e4, \"energy\": 1.0}".to_owned(),
         bodies: bodies.to_owned(),
         grains: grains.to_owned(),
@@ -78,7 +73,7 @@ fn bonds_stand_for_the_side() {
 #[test]
 fn check_estimates_bonds_of_grains_that_deform() {
     let mut s = Soft {
-        interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5, area_factor: 2.0,",
+        interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5,",
         parameters: ", cohesion: {\"k_n\": 1e10, \"k_t\": 1e10}, damage: {\"strength\": 1e4, \"energy\": 1.0}".to_owned(),
         bodies: wall("floor", &[0.0, 1.0], &[0.0, 0.0], ""),
         grains: square("soft", [0.0, 0.01], 0.02, 0.0, ""),

@@ -115,8 +115,9 @@ fn cantilever(method: Method, tolerance: f64, steps: usize) -> Simulation<Dim2> 
         young: 1e13,
         elements: 1,
         gravity: down(2),
-        interface: "cohesion: \"parallel-bond\", bonds: Start, bonds_within: 1e-5, area_factor: 2.0,",
-        parameters: ", cohesion: {\"k_n\": 1e8, \"k_t\": 1e8, \"sigma_c\": 1e9, \"tau_c\": 1e9}".to_owned(),
+        interface: "cohesion: \"parallel-bond\", bonds: Start, bonds_within: 1e-5,",
+        parameters: ", cohesion: {\"k_n\": 1e8, \"k_t\": 1e8, \"sigma_c\": 1e9, \"tau_c\": 1e9}"
+            .to_owned(),
         bodies: wall("wall", &[1.0, 0.0], &[0.0, 0.0], ""),
         grains: square("soft", [0.01, 0.0], 0.02, 0.0, ""),
         mu: 0.0,

@@ -136,7 +136,7 @@ impl<S: Space> Narrow<'_, S> {
             bodies = [ball.body, other.body];
             law = self.laws.get(ball.material, other.material)?;
             let own = S::unrotate(&self.bodies.rotation[ball.body as usize], &meeting.normal);
-            radius = ball.size_towards(&own, &self.bodies.length);
+            radius = ball.radius_towards(&own, &self.bodies.length);
         } else {
             let piece = &self.shapes.pieces[at(a)];
             own_centre = self.centres[balls + at(a)];

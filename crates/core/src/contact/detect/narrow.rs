@@ -114,6 +114,13 @@ impl<S: Space> Narrow<'_, S> {
             [size_of(a), size_of(b)]
         };
         let size = reduced_radius([p.radius, q.radius], sizes);
+        let radius = if p.radius > 0.0 && q.radius > 0.0 {
+            size
+        } else {
+            let radius_of =
+                |ball: u32| self.shapes.balls[ball as usize].contact_radius(&self.bodies.length);
+            reduced_radius([p.radius, q.radius], [radius_of(a), radius_of(b)])
+        };
         let central = p.simple && q.simple;
         let arms = if central {
             [normal * -p.radius, normal * q.radius]
@@ -147,7 +154,7 @@ impl<S: Space> Narrow<'_, S> {
                 gap: length - sum,
                 normal,
                 arms,
-                radius: size,
+                radius,
             },
         };
         match old {
@@ -252,7 +259,7 @@ impl<S: Space> Narrow<'_, S> {
             }
             let normal = S::rotate(&rotation, &touch.normal);
             let own = S::unrotate(&self.bodies.rotation[i], &normal);
-            let radius = share * ball.size_towards(&own, &self.bodies.length);
+            let radius = share * ball.radius_towards(&own, &self.bodies.length);
             let closest_point = origin + S::rotate(&rotation, &touch.closest_point);
             let still = self.bodies.immovable(j) && self.bodies.spin[j] == S::Spin::zero();
             let centred = ball.offset == S::Vector::zero() && self.bodies.length[i] == ball.radius;

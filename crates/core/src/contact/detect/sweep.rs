@@ -74,10 +74,10 @@ impl<S: Space> Shape<'_, S> {
         }
     }
 
-    /// Returns its size in the reduced radius of a single-point contact (m).
-    fn size(&self) -> f64 {
+    /// Returns its size in the reduced radius of a single-point contact (m), given the length of each body.
+    fn size(&self, lengths: &[f64]) -> f64 {
         match self {
-            Self::Ball(_, size) => *size,
+            Self::Ball(b, _) => b.contact_radius(lengths),
             Self::ConvexCollider(p, _) => p.size,
             Self::Surface(_) => f64::INFINITY,
         }
@@ -411,7 +411,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         met.dedup_by_key(|m| m.feature);
         let [i, j] = pair.bodies();
         let [(v, w), (v_other, w_other)] = [i, j].map(|b| self.velocities[b as usize]);
-        let sizes = [pair.shapes[0].size(), pair.shapes[1].size()];
+        let sizes = [0, 1].map(|k: usize| pair.shapes[k].size(&self.bodies.length));
         let radius = match (&pair.shapes[0], &pair.shapes[1]) {
             (_, Shape::Surface(_)) | (Shape::Ball(..), Shape::ConvexCollider(..)) => sizes[0],
             (Shape::Ball(a, _), Shape::Ball(b, _)) => reduced_radius([a.radius, b.radius], sizes),

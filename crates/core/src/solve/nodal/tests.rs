@@ -15,6 +15,7 @@ fn form(bodies: [u32; 2], normal: Vector2<f64>) -> ContactForm<Dim2> {
         normal,
         arms: [Vector2::zeros(); 2],
         central: false,
+        apart: false,
         shift_n: 0.0,
         shift_t: Vector1::zeros(),
         friction: 0.3,

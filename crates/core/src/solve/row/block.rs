@@ -333,6 +333,7 @@ mod tests {
             normal,
             arms: [S::Vector::zero(); 2],
             central: false,
+            apart: false,
             shift_n: 0.0,
             shift_t: S::Tangent::zero(),
             friction: 0.0,
@@ -382,6 +383,7 @@ mod tests {
                 tension_only: case % 3 == 0,
                 damped: false,
                 loss_n: 0.0,
+                curved: false,
                 loss_t: 0.0,
             };
             let form = ContactForm {

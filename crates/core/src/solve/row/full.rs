@@ -1,9 +1,6 @@
 //! Contact of two balls with a spring, a bond, cohesion or tangential restitution, solved in closed form.
 
-use super::{
-    LocalImpulse, Residual, Row, SolverBody, answer_to_slip, natural_map, push, relative,
-    shift_along,
-};
+use super::{LocalImpulse, Residual, Row, SolverBody, answer_to_slip, natural_map, shift_along};
 use crate::geometry::space::{Space, VectorLike, greatest, least};
 use crate::solve::form::{ContactForm, ContactSolution, Elastic};
 
@@ -37,6 +34,8 @@ pub(in crate::solve) struct FullRow<S: Space> {
     n: S::Vector,
     pn: f64,
     pt: S::Tangent,
+    /// Levers over the lengths of the bodies: 1 where the contact acts on the surfaces of the balls.
+    reach: [f64; 2],
     normal: Direction<f64>,
     tangent: Direction<S::Tangent>,
     /// Inactive tension-only bond: s = q_0 - f iw_0.
@@ -58,7 +57,7 @@ pub(in crate::solve) struct FullRow<S: Space> {
 }
 
 impl<S: Space> FullRow<S> {
-    pub fn new(contact: &ContactForm<S>, w_n: f64, w_t: f64) -> Self {
+    pub fn new(contact: &ContactForm<S>, w_n: f64, w_t: f64, reach: [f64; 2]) -> Self {
         let n = contact.normal;
         let e = contact.elastic.unwrap_or_else(Elastic::none);
         let (dn, dt) = (1.0 + w_n * e.b_n, 1.0 + w_t * e.b_t);
@@ -98,6 +97,7 @@ impl<S: Space> FullRow<S> {
             n,
             pn: n.dot(&contact.impulse),
             pt: S::tangential(&n, &contact.impulse),
+            reach,
             normal: Direction {
                 w: w_n,
                 iw: iwn * share_n,
@@ -138,7 +138,27 @@ impl<S: Space> FullRow<S> {
     /// Returns a row of a contact between immovable bodies.
     #[cfg(target_arch = "x86_64")]
     pub(super) fn idle() -> Self {
-        Self::new(&ContactForm::idle(), 0.0, 0.0)
+        Self::new(&ContactForm::idle(), 0.0, 0.0, [1.0; 2])
+    }
+
+    /// Relative velocity, normal and tangential.
+    #[inline(always)]
+    fn relative(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> (f64, S::Tangent) {
+        let (n, [i, j]) = (&self.n, self.reach);
+        let d = a.v - b.v;
+        let turning = S::roll(&(a.s * i + b.s * j), n);
+        (n.dot(&d), S::tangential(n, &d) - turning)
+    }
+
+    /// Applies an impulse to the velocities.
+    #[inline(always)]
+    fn push(&self, dn: f64, dt: S::Tangent, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
+        let impulse = self.n * dn + S::tangent_vector(&self.n, &dt);
+        let twist = S::twist(&self.n, &dt);
+        a.v += impulse * a.im;
+        b.v -= impulse * b.im;
+        a.s -= twist * (a.is * self.reach[0]);
+        b.s -= twist * (b.is * self.reach[1]);
     }
 
     /// Returns the impulse of the bond at a relative velocity.
@@ -158,7 +178,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     #[inline(always)]
     fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64) {
         let (n, t) = (&self.normal, &self.tangent);
-        let (un, ut) = relative(&self.n, a, b);
+        let (un, ut) = self.relative(a, b);
         let f = un - n.w * self.pn;
         // Both branches are computed and one is selected, because the branch would be mispredicted too
         // often.
@@ -173,13 +193,13 @@ impl<S: Space> Row<S> for FullRow<S> {
         let et = -(t.k + (st * t.w + f) * t.c);
         let (dn, dt) = (sn + en - self.pn, st + et - self.pt);
         let (dn, dt) = (dn * relaxation, dt * relaxation);
-        push(&self.n, dn, dt, a, b);
+        self.push(dn, dt, a, b);
         self.pn += dn;
         self.pt += dt;
     }
 
     fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>) {
-        push(&self.n, self.pn, self.pt, a, b);
+        self.push(self.pn, self.pt, a, b);
     }
 
     #[inline(always)]
@@ -198,7 +218,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
-        let (un, ut) = relative(&self.n, a, b);
+        let (un, ut) = self.relative(a, b);
         un * un + ut.dot(&ut)
     }
 
@@ -215,7 +235,7 @@ impl<S: Space> Row<S> for FullRow<S> {
         if rho == 0.0 {
             return Residual::default();
         }
-        let (un, ut) = relative(&self.n, a, b);
+        let (un, ut) = self.relative(a, b);
         let (en, et) = self.bond(un, ut);
         let (sn, st) = (self.pn - en, self.pt - et);
         let shifted = (sn + self.tension, st);
@@ -227,7 +247,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S> {
-        let (un, ut) = relative(&self.n, a, b);
+        let (un, ut) = self.relative(a, b);
         let (en, et) = self.bond(un, ut);
         ContactSolution {
             impulse: self.n * self.pn + S::tangent_vector(&self.n, &self.pt),

@@ -143,6 +143,38 @@ pub fn push<F: Frame, const U: usize>(
     b.s = b.s - twist * b.is;
 }
 
+/// Returns u_n and u_t of contacts that act at a reach of their bodies' lengths.
+#[inline(always)]
+pub fn relative_at<F: Frame, const U: usize>(
+    n: &F::V<U>,
+    reach: &[Lanes<U>; 2],
+    a: &Moving<F, U>,
+    b: &Moving<F, U>,
+) -> (Lanes<U>, F::T<U>) {
+    let d = a.v - b.v;
+    let un = n.dot(d);
+    let turning = F::rolling(&(a.s * reach[0] + b.s * reach[1]), n);
+    (un, F::across(n, &d, un) - turning)
+}
+
+/// Applies an impulse of such contacts to the velocities.
+#[inline(always)]
+pub fn push_at<F: Frame, const U: usize>(
+    n: &F::V<U>,
+    reach: &[Lanes<U>; 2],
+    dn: Lanes<U>,
+    dt: F::T<U>,
+    a: &mut Moving<F, U>,
+    b: &mut Moving<F, U>,
+) {
+    let impulse = F::impulse(n, dn, &dt);
+    let twist = F::turning(n, &dt);
+    a.v = a.v + impulse * a.im;
+    b.v = b.v - impulse * b.im;
+    a.s = a.s - twist * (a.is * reach[0]);
+    b.s = b.s - twist * (b.is * reach[1]);
+}
+
 impl Frame for Dim2 {
     type V<const U: usize> = Columns<U, 2>;
     type T<const U: usize> = Columns<U, 1>;

@@ -58,6 +58,7 @@ fn contact<S: Space>(pair: u32) -> ContactForm<S> {
         normal,
         arms: [-normal, normal],
         central: true,
+        apart: false,
         shift_n: 0.1 * wave(30, pair),
         shift_t: S::Tangent::zero(),
         friction: 0.3 + 0.3 * wave(31, pair),
@@ -83,6 +84,7 @@ fn bonded<S: Space>(pair: u32) -> ContactForm<S> {
         tension_only: pair.is_multiple_of(2),
         damped: false,
         loss_n: 0.0,
+        curved: false,
         loss_t: 0.0,
     };
     ContactForm {
@@ -199,8 +201,12 @@ fn lanes_give_the_bits_of_single_contacts() {
     same(contact::<Dim3>, PlainRow::new);
     same(smooth::<Dim2>, PlainRow::new);
     same(smooth::<Dim3>, PlainRow::new);
-    same(bonded::<Dim2>, FullRow::new);
-    same(bonded::<Dim3>, FullRow::new);
+    same(bonded::<Dim2>, |form, n, t| {
+        FullRow::new(form, n, t, [1.0; 2])
+    });
+    same(bonded::<Dim3>, |form, n, t| {
+        FullRow::new(form, n, t, [1.07, 0.95])
+    });
     // Contacts with levers, of bodies of which some move along one axis alone.
     let inertia = |solver_bodies: &[SolverBody<Dim2>], b: usize| {
         let body = &solver_bodies[b];
@@ -223,6 +229,7 @@ fn lanes_give_the_bits_of_single_contacts() {
     };
     let aside = |form: ContactForm<Dim2>, pair: u32| ContactForm {
         central: false,
+        apart: false,
         // With restitution an open contact is free.
         shift_n: if pair % 19 == 4 {
             f64::INFINITY

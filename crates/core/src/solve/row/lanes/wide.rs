@@ -1,7 +1,7 @@
 //! Rows solved several at a time. The operations and their order are those of a single contact, so that
 //! results are bitwise identical.
 
-use super::frame::{Frame, Moving, Tuple, push, relative};
+use super::frame::{Frame, Moving, Tuple, push, push_at, relative, relative_at};
 use super::vector::*;
 use crate::solve::row::{FullRow, PlainRow, Row};
 
@@ -70,7 +70,7 @@ const fn sizes<F: Frame>() -> [usize; 2] {
 
 /// Reads the numbers of a record one after the other.
 struct Reader<const U: usize> {
-    numbers: [Lanes<U>; 28],
+    numbers: [Lanes<U>; 32],
     at: usize,
 }
 
@@ -81,7 +81,7 @@ impl<const U: usize> Reader<U> {
     /// The records have that many numbers.
     #[inline(always)]
     unsafe fn new<T>(rows: &Records<T, U>, skip: usize, count: usize) -> Self {
-        let mut numbers = [Lanes::all(0.0); 28];
+        let mut numbers = [Lanes::all(0.0); 32];
         for four in 0..count.div_ceil(4) {
             // SAFETY: as asked for.
             let columns = unsafe { load(rows, skip + 4 * four) };
@@ -250,6 +250,7 @@ struct Full<F: Frame, const U: usize> {
     n: F::V<U>,
     pn: Lanes<U>,
     pt: F::T<U>,
+    reach: [Lanes<U>; 2],
     normal: Direction<U, Lanes<U>>,
     tangent: Direction<U, F::T<U>>,
     q_slack: Lanes<U>,
@@ -274,6 +275,7 @@ impl<F: Frame, const U: usize> Full<F, U> {
             n: r.tuple(v),
             pn: r.number(),
             pt: r.tuple(t),
+            reach: [r.number(), r.number()],
             normal: Direction {
                 w: r.number(),
                 iw: r.number(),
@@ -316,14 +318,15 @@ impl<F: Frame, const U: usize> Bonds<F, U> {
     /// Number of numbers of a row before these.
     const BEFORE: usize = {
         let [v, t] = sizes::<F>();
-        v + 3 * t + 15
+        v + 3 * t + 17
     };
 
     #[inline(always)]
     unsafe fn new(rows: &Records<FullRow<F>, U>) -> Self {
         let [_, t] = const { sizes::<F>() };
-        // SAFETY: the row ends with them and two indices.
-        let mut r = unsafe { Reader::new(rows, Self::BEFORE, 2 * t + 8) };
+        // From the number before them, so that a multiple of four ends with the row. SAFETY: the row ends with them and two indices.
+        let mut r = unsafe { Reader::new(rows, Self::BEFORE - 1, 2 * t + 9) };
+        r.number();
         Self {
             cohesion: r.number(),
             rho: r.number(),
@@ -357,7 +360,7 @@ impl<F: Frame> Wide for FullRow<F> {
         unsafe {
             let r = Full::<F, U>::new(rows);
             let (n, t) = (&r.normal, &r.tangent);
-            let (un, ut) = relative(&r.n, a, b);
+            let (un, ut) = relative_at(&r.n, &r.reach, a, b);
             let f = un - n.w * r.pn;
             let with = (n.q - f * n.iw).max(-r.tension);
             let pull = -(n.k + n.c * (n.w * with + f));
@@ -370,7 +373,7 @@ impl<F: Frame> Wide for FullRow<F> {
             let et = -(t.k + (st * t.w + f) * t.c);
             let (dn, dt) = (sn + en - r.pn, st + et - r.pt);
             let (dn, dt) = (dn * relaxation, dt * relaxation);
-            push(&r.n, dn, dt, a, b);
+            push_at(&r.n, &r.reach, dn, dt, a, b);
             store_impulses::<_, F, U>(rows, &r.n, r.pn + dn, &(r.pt + dt));
         }
     }
@@ -383,7 +386,7 @@ impl<F: Frame> Wide for FullRow<F> {
     ) {
         // SAFETY: as asked for.
         let r = unsafe { Full::<F, U>::new(rows) };
-        push(&r.n, r.pn, r.pt, a, b);
+        push_at(&r.n, &r.reach, r.pn, r.pt, a, b);
     }
 
     #[inline(always)]
@@ -394,7 +397,7 @@ impl<F: Frame> Wide for FullRow<F> {
     ) -> Speeds<U> {
         // SAFETY: as asked for.
         let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
-        let (un, ut) = relative(&r.n, a, b);
+        let (un, ut) = relative_at(&r.n, &r.reach, a, b);
         Speeds {
             speed: un * un + ut.dot(ut),
             rho: bonds.rho,
@@ -410,7 +413,7 @@ impl<F: Frame> Wide for FullRow<F> {
     ) -> Residuals<U> {
         // SAFETY: as asked for.
         let (r, bonds) = unsafe { (Full::<F, U>::new(rows), Bonds::<F, U>::new(rows)) };
-        let (un, ut) = relative(&r.n, a, b);
+        let (un, ut) = relative_at(&r.n, &r.reach, a, b);
         let pull = -(bonds.a_n + bonds.b_n * un);
         let en = pull.above(r.limit).choose(Lanes::all(0.0), pull);
         let et = -(bonds.a_t + ut * bonds.b_t);

@@ -1,0 +1,97 @@
+//! The ledger of momentum: what free rigid bodies have gained that nothing outside of them gave.
+
+use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize};
+
+/// Momentum of the free rigid bodies less what gravity and the contacts with other bodies gave them, since the start: zero but for
+/// rounding where the contacts among them act on one place of both bodies (N s and N m s; per metre of depth in 2D).
+///
+/// Outside are first bodies and dynamical systems. Between steps nothing is booked: what removes, adds, pushes or displaces bodies there
+/// acts from outside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Momentum {
+    /// Linear momentum, x, y, z (N s).
+    pub linear: [f64; 3],
+    /// Angular momentum, x, y, z (in 2D z), about [`Self::about`] (N m s).
+    pub angular: [f64; 3],
+    /// The mean place of the free bodies at the start (m), none before the first step. In periodic scenes there is no angular momentum.
+    pub about: Option<[f64; 3]>,
+    /// Largest sums so far of the sizes of the bodies' linear and angular momenta (N s, N m s).
+    pub scale: [f64; 2],
+}
+
+/// Momentum of some bodies, or a change of it.
+#[derive(Clone, Copy, Debug)]
+pub struct MomentumSum<S: Space> {
+    /// Linear (N s).
+    pub linear: S::Vector,
+    /// Angular (N m s).
+    pub angular: S::Spin,
+    /// Sums of sizes of the momenta (N s, N m s).
+    pub sizes: [f64; 2],
+}
+
+impl<S: Space> MomentumSum<S> {
+    /// Nothing.
+    pub fn zero() -> Self {
+        Self {
+            linear: S::Vector::zero(),
+            angular: S::Spin::zero(),
+            sizes: [0.0; 2],
+        }
+    }
+
+    /// Adds that of others.
+    pub fn add(&mut self, other: &Self) {
+        self.linear += other.linear;
+        self.angular += other.angular;
+        self.sizes = [0, 1].map(|k| self.sizes[k] + other.sizes[k]);
+    }
+}
+
+impl Momentum {
+    /// Adds a step: the gain that nothing outside gave, and the sizes of what there is.
+    pub fn book<S: Space>(&mut self, step: &MomentumSum<S>) {
+        let angular = match S::D {
+            2 => [0.0, 0.0, step.angular[0]],
+            _ => step.angular.padded(),
+        };
+        let linear = step.linear.padded();
+        for k in 0..3 {
+            self.linear[k] += linear[k];
+            self.angular[k] += angular[k];
+        }
+        self.scale = [0, 1].map(|k| self.scale[k].max(step.sizes[k]));
+    }
+
+    /// Lengths of the gains, linear (N s) and angular (N m s).
+    pub fn drift(&self) -> [f64; 2] {
+        [self.linear, self.angular].map(|v| v[0].hypot(v[1]).hypot(v[2]))
+    }
+
+    /// The same over the largest sums of the sizes of momenta; zero where nothing moved.
+    pub fn relative(&self) -> [f64; 2] {
+        let drift = self.drift();
+        [0, 1].map(|k| match self.scale[k] > 0.0 {
+            true => drift[k] / self.scale[k],
+            false => 0.0,
+        })
+    }
+
+    /// Every entry: name, description, value (N s, N m s).
+    pub fn entries(&self) -> [(&'static str, &'static str, f64); 2] {
+        let [linear, angular] = self.drift();
+        [
+            (
+                "momentum_drift",
+                "momentum of free rigid bodies that nothing outside gave",
+                linear,
+            ),
+            (
+                "angular_momentum_drift",
+                "angular momentum of free rigid bodies that nothing outside gave; 0 in periodic scenes",
+                angular,
+            ),
+        ]
+    }
+}

@@ -1,0 +1,92 @@
+//! Books the momentum of a step.
+
+use super::Simulation;
+use super::motion::StepStart;
+use crate::geometry::space::{Space, VectorLike};
+use crate::momentum::MomentumSum;
+use crate::threads::{map_ranges, pays};
+
+/// Bodies and contacts of a task.
+const CHUNK: usize = 1024;
+/// About what it takes to find the momentum of a body, and to look whether a contact acts from outside (ns).
+const BODY: f64 = 10.0;
+const CONTACT: f64 = 4.0;
+
+impl<S: Space> Simulation<S> {
+    /// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the angular momentum of a step by its moment,
+    /// whatever theta is.
+    pub(super) fn book_momentum(&mut self, start: &StepStart<S>) {
+        let (bodies, network) = (&self.state.bodies, &self.state.network);
+        let mut free = bodies.grain_flags();
+        for (free, carrier) in free.iter_mut().zip(&bodies.carriers) {
+            *free &= carrier.is_none();
+        }
+        let about = match self.state.momentum.about {
+            Some(about) => S::Vector::from_slice(&about[..S::D]),
+            None => mean_place::<S>(&bodies.position, &free),
+        };
+        let turns = !self.shapes.periodic.any();
+        let h = self.options.scheme.h;
+        let pushed = self.state.gravity * h;
+        let parallel = self.options.solver.parallel;
+        let divide = pays(parallel, bodies.len(), BODY);
+        let of_bodies = map_ranges(divide, bodies.len(), CHUNK, |some| {
+            let mut sum = MomentumSum::<S>::zero();
+            for b in some.filter(|b| free[*b]) {
+                let (m, v, w) = (bodies.mass[b], bodies.velocity[b], bodies.spin[b]);
+                let gain = (v - start.velocity(b) - pushed) * m;
+                sum.linear += gain;
+                sum.sizes[0] += m * v.norm();
+                if turns {
+                    let arm = bodies.position[b] - about;
+                    sum.angular += S::moment(&arm, &gain);
+                    sum.angular += bodies.angular_momentum(b, &(w - start.spin(b)));
+                    let own = bodies.angular_momentum(b, &w).norm();
+                    sum.sizes[1] += S::moment(&arm, &(v * m)).norm() + own;
+                }
+            }
+            sum
+        });
+        let divide = pays(parallel, network.contacts.len(), CONTACT);
+        let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {
+            let mut sum = MomentumSum::<S>::zero();
+            for contact in &network.contacts[some] {
+                let sides = contact.bodies.map(|b| free[b as usize]);
+                let side = match sides {
+                    [true, false] => 0,
+                    [false, true] => 1,
+                    _ => continue,
+                };
+                let sign = [1.0, -1.0][side];
+                let impulse = contact.impulse * sign;
+                sum.linear -= impulse;
+                if turns {
+                    let at =
+                        bodies.position[contact.bodies[side] as usize] + contact.levers()[side];
+                    sum.angular -= S::moment(&(at - about), &impulse) + contact.moment * sign;
+                }
+            }
+            sum
+        });
+        let mut step = MomentumSum::zero();
+        of_bodies
+            .iter()
+            .chain(&of_contacts)
+            .for_each(|part| step.add(part));
+        self.state.momentum.about = Some(about.padded());
+        self.state.momentum.book(&step);
+    }
+}
+
+/// The mean place of some bodies (m).
+fn mean_place<S: Space>(places: &[S::Vector], which: &[bool]) -> S::Vector {
+    let (mut sum, mut count) = (S::Vector::zero(), 0.0);
+    for (place, _) in places.iter().zip(which).filter(|(_, which)| **which) {
+        sum += *place;
+        count += 1.0;
+    }
+    match count > 0.0 {
+        true => sum * (1.0 / count),
+        false => sum,
+    }
+}
