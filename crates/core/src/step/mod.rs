@@ -21,7 +21,9 @@
 //!       │                                        ▼
 //!       └──────────────── observers and files (layers above), processes between steps
 //! ```
+mod agreement;
 mod answers;
+mod attraction;
 mod change;
 mod columns;
 mod compiled;
@@ -47,11 +49,13 @@ mod repeat;
 mod report;
 mod run;
 mod simulation;
+mod sliding;
 mod state;
 mod systems;
 mod turning;
 mod workspace;
 
+pub use agreement::Agreement;
 pub use change::{ContactForces, StepChange};
 pub use columns::ContactRow;
 pub use compiled::{InDimension, Steps};
