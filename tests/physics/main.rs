@@ -28,6 +28,8 @@ mod periodic_cell;
 mod processes;
 mod programme;
 mod projection;
+mod pull_off;
+mod rate;
 mod rolling;
 mod scenes;
 mod solids;

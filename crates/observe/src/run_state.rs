@@ -153,6 +153,7 @@ impl<S: Space> Observer<S> for RunState {
         solver.choice.add(&report.solver);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
+        solver.laws.add(&report.agreement);
         if let Some(p) = &report.projected {
             solver.projected_steps += 1;
             solver.overlap_before = solver.overlap_before.max(p.before);

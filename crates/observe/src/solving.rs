@@ -2,6 +2,7 @@
 
 use super::choice::SolverStats;
 use fretwork_core::solve::error::ErrorParts;
+use fretwork_core::step::Agreement;
 use serde::{Deserialize, Serialize};
 
 /// Parts of the error over the steps of a run, each weighted by the heat of slip of its step: what matters for friction.
@@ -31,6 +32,31 @@ impl ErrorPartsOfRun {
     }
 }
 
+/// How friction that depends on the velocity of sliding, and attraction that depends on the gap, agree with the steps of a run, each of which is
+/// solved until they do.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LawsOfRun {
+    /// Mean number of solves per step; 1 where no law asks for more.
+    pub solves_mean: f64,
+    /// Mean over the steps of the share of the friction by which it differs from that of the laws at the velocities reached.
+    pub friction_mean: f64,
+    /// Largest share of an attraction by which it differs from that over the gaps passed in a step.
+    pub attraction_max: f64,
+    /// Steps.
+    pub steps: u64,
+}
+
+impl LawsOfRun {
+    /// Adds a step.
+    pub fn add(&mut self, step: &Agreement) {
+        self.steps += 1;
+        let share = 1.0 / self.steps as f64;
+        self.solves_mean += share * (f64::from(step.solves) - self.solves_mean);
+        self.friction_mean += share * (step.friction - self.friction_mean);
+        self.attraction_max = self.attraction_max.max(step.attraction);
+    }
+}
+
 /// Solver statistics over the steps of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SolverSummary {
@@ -48,6 +74,8 @@ pub struct SolverSummary {
     pub uncoupled_steps: u64,
     /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
     pub coupling_iterations_mean: f64,
+    /// What the laws at the velocities and gaps reached in the steps differ from what the steps used.
+    pub laws: LawsOfRun,
     /// First unconverged step; 0 if there is none.
     pub first_unconverged: u64,
     /// Steps in which penetrations were removed by projection.

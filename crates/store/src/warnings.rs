@@ -131,6 +131,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("NOT CONVERGED", advice);
     serious("LOOSE VELOCITIES", loose_velocities(summary));
     serious("NOT COUPLED", uncoupled(summary));
+    serious("LAWS NOT MET", unmet(summary));
     serious("NOT CERTIFIED", uncertified(summary));
     serious("GRAINS DO NOT ADD UP", grains(summary));
     let reached = summary.stopped.is_none();
@@ -195,6 +196,30 @@ fn uncoupled(summary: &Summary) -> Option<String> {
             summary.steps
         )
     })
+}
+
+/// Mean share of the friction, and largest share of an attraction, by which steps may differ from their laws.
+const UNMET_FRICTION: f64 = 2e-3;
+const UNMET_ATTRACTION: f64 = 2e-2;
+
+fn unmet(summary: &Summary) -> Option<String> {
+    let laws = &summary.solver.laws;
+    let (friction, attraction) = (laws.friction_mean, laws.attraction_max);
+    let mut parts = Vec::new();
+    if friction > UNMET_FRICTION {
+        parts.push(format!(
+            "friction differs from that of its law at the velocity of sliding by {:.2} % on average: contacts jump between stick and slip within \
+             a step; take a smaller time.step, or a law that falls over a wider range of velocities",
+            1e2 * friction
+        ));
+    }
+    if attraction > UNMET_ATTRACTION {
+        parts.push(format!(
+            "an attraction differs from that of its law over the gaps of a step by up to {:.1} %; take a smaller time.step or solver.tolerance",
+            1e2 * attraction
+        ));
+    }
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
 fn uncertified(summary: &Summary) -> Option<String> {

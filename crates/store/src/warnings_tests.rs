@@ -82,6 +82,25 @@ fn each_failed_check_is_a_reason() {
 }
 
 #[test]
+fn laws_that_steps_did_not_meet_are_a_reason() {
+    let of = |friction, attraction| {
+        of_run(|s| {
+            s.solver.laws.friction_mean = friction;
+            s.solver.laws.attraction_max = attraction;
+        })
+    };
+    assert_eq!(of(1e-3, 1e-2), []);
+    for (friction, attraction, cure) in [
+        (0.03, 0.0, "3.00 % on average"),
+        (0.0, 0.2, "up to 20.0 %; take a smaller time.step"),
+    ] {
+        let list = of(friction, attraction);
+        assert!(list.len() == 1 && list[0].serious && list[0].of == "LAWS NOT MET");
+        assert!(list[0].text.contains(cure), "{}", list[0].text);
+    }
+}
+
+#[test]
 fn loose_velocities_are_a_reason_where_slip_is_outweighed() {
     let parts = |velocity, contact_law| {
         of_run(|s| {

@@ -21,6 +21,8 @@ mod outputs;
 mod plugin_table;
 mod prepare;
 mod range;
+mod rate;
+mod reach;
 #[cfg(test)]
 pub(crate) mod sample_laws;
 pub mod search;
@@ -39,6 +41,7 @@ pub use library::{Call, Plugin};
 pub use plugin_table::Field;
 
 pub use range::Range;
+pub use rate::{FrictionAt, Step};
 pub use search::{Place, SearchPath};
 pub use spring::{SpringForm, SpringStep};
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};

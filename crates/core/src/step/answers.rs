@@ -61,7 +61,7 @@ const CLOSING_OVERLAP: f64 = 1e-3;
 const EACH: f64 = 15.0;
 
 /// The mass of a contact along its normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
-fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
+pub(super) fn effective_mass<S: Space>(bodies: &Bodies<S>, contact: &Contact<S>) -> f64 {
     let (n, levers) = (&contact.normal, contact.levers());
     let mobility = |side: usize| {
         let b = contact.bodies[side] as usize;
@@ -148,7 +148,7 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Collects what compliant contacts did, which need their velocities at the end of the step.
-    fn collect_spring_steps(&mut self) {
+    pub(super) fn collect_spring_steps(&mut self) {
         let mut steps = std::mem::take(&mut self.workspace.solved.springs);
         let (springs, forms) = (&self.workspace.springs, &self.workspace.forms);
         let (solved, h) = (&self.workspace.solved, self.options.scheme.h);
@@ -166,7 +166,7 @@ impl<S: Space> Simulation<S> {
         self.workspace.solved.springs = steps;
     }
 
-    /// Collects the results of all contacts.
+    /// Collects the results of all contacts, but for springs.
     pub(super) fn collect_contact_steps(&mut self) {
         let mut after = std::mem::take(&mut self.workspace.solved.after);
         self.fill_relative_velocities(&mut after);
@@ -214,7 +214,6 @@ impl<S: Space> Simulation<S> {
         });
         self.workspace.solved.contact_steps = contact_steps;
         self.workspace.solved.after = after;
-        self.collect_spring_steps();
     }
 
     /// Collects the results of the contacts that resist rotation.

@@ -22,8 +22,10 @@
 //!       └──────────────── observers and files (layers above), processes between steps
 //! ```
 mod action;
+mod agreement;
 mod answers;
 mod balance;
+mod attraction;
 mod change;
 mod columns;
 mod compiled;
@@ -49,11 +51,13 @@ mod repeat;
 mod report;
 mod run;
 mod simulation;
+mod sliding;
 mod state;
 mod systems;
 mod turning;
 mod workspace;
 
+pub use agreement::Agreement;
 pub use change::{ContactForces, StepChange};
 pub use columns::ContactRow;
 pub use compiled::{InDimension, Steps};

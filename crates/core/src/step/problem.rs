@@ -52,12 +52,7 @@ impl<S: Space> Simulation<S> {
             self.find_turned_systems();
             report.timing.laws += clock.elapsed();
 
-            let clock = Instant::now();
-            self.solve_contacts(free, &options, report)?;
-            report.timing.solve += clock.elapsed();
-
-            self.collect_contact_steps();
-            self.collect_moment_steps(start);
+            self.solve_in_agreement(start, free, &options, info, report)?;
             let Coupling::Implicit { .. } = self.options.coupling else {
                 return Ok(());
             };
@@ -90,7 +85,7 @@ impl<S: Space> Simulation<S> {
 
     /// Solves the contacts with the current forms, and again while dynamical systems linearise anew at the velocities that they
     /// reach.
-    fn solve_contacts(
+    pub(super) fn solve_contacts(
         &mut self,
         free: &[(S::Vector, S::Spin)],
         options: &solve::Options,

@@ -1,5 +1,6 @@
 //! What a step reports.
 
+use super::agreement::Agreement;
 use super::coupling::CouplingReport;
 use super::projection::Projected;
 use crate::laws::Totals;
@@ -24,6 +25,8 @@ pub struct StepReport {
     pub solver: solve::Report,
     /// Report of the coupling of damage and opening.
     pub coupling: CouplingReport,
+    /// How laws and the step agree.
+    pub agreement: Agreement,
     /// Sums over contacts.
     pub totals: Totals,
     /// Number of solves: above 1 where the first left contacts out that its velocities closed.

@@ -129,6 +129,13 @@ impl Summary {
             );
             lines.add("coupling", text);
         }
+        if s.laws.solves_mean > 1.0 {
+            let text = format!(
+                "{:.1} solves per step for friction that depends on velocity or attraction that depends on the gap",
+                s.laws.solves_mean
+            );
+            lines.add("laws", text);
+        }
         if s.fclib_written + s.fclib_skipped > 0 {
             let skipped = match s.fclib_skipped {
                 0 => String::new(),

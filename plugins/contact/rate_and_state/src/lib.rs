@@ -6,8 +6,8 @@
 //! * slip law, d theta/dt = -x ln x: psi tends to ln(V_0/V) as exp(-V t/D_c).
 //!
 //! Both are integrated exactly over a step at its velocity u_th. The state of a contact without load does not
-//! change. The direct effect a is computed from u^-: a lower bound v_min far below the sliding
-//! velocities makes friction jump by a ln(V/v_min) when a sticking contact starts to slide.
+//! change. The direct effect a is that of the velocity at the end of the step, for which the host asks again; below v_min
+//! friction is that at v_min, which holds a contact.
 #![forbid(unsafe_code)]
 use fretwork_law::{ContactLaw, Friction, Law, Site, Variable, export, parameters};
 

@@ -1,0 +1,169 @@
+//! Friction at a velocity of sliding other than that at the start of the step, by another call of the contact law.
+
+use super::batch::{BATCH, Batch, locate};
+use super::error::LawError;
+use super::evaluator::LawEvaluator;
+use super::gather::Source;
+use super::history::LawHistory;
+use super::interface::Interface;
+use super::library::Call;
+use super::step_result::Velocities;
+use crate::contact::Network;
+use crate::geometry::space::Space;
+use crate::laws::columns::StepInfo;
+use crate::threads::any_size;
+
+/// About what the two calls take for a contact (ns).
+const EACH: f64 = 120.0;
+
+/// Velocities of sliding at which a law is tried for whether it depends on them (m/s).
+const TRIED: [f64; 7] = [0.0, 1e-9, 1e-6, 1e-3, 3e-2, 1.0, 1e2];
+
+/// Relative change of the velocity from which a slope follows, and of friction by it that is more than rounding.
+const NEARBY: f64 = 1e-4;
+const ROUNDING: f64 = 1e-13;
+
+/// Where laws are asked: the contacts of the step, and what is known of them at its start.
+#[derive(Debug)]
+pub struct Step<'a, S: Space> {
+    /// The interfaces.
+    pub laws: &'a [Interface],
+    /// Memory of the checks.
+    pub history: &'a mut LawHistory,
+    /// The contacts.
+    pub network: &'a mut Network<S>,
+    /// Velocities and overlaps at the start of the step.
+    pub before: &'a Velocities<S>,
+    /// Time and scheme.
+    pub info: &'a StepInfo,
+}
+
+/// Friction of a contact at a velocity of sliding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionAt {
+    /// mu.
+    pub mu: f64,
+    /// Its derivative by the velocity (s/m).
+    pub slope: f64,
+}
+
+impl LawEvaluator {
+    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on one of their contacts, with the contacts that
+    /// they have in the step. An error at a velocity that is tried is none of the run's.
+    pub fn rate_dependent<S: Space>(&mut self, step: &mut Step<'_, S>) -> Vec<(usize, Vec<usize>)> {
+        let mut found = Vec::new();
+        for (index, law) in step.laws.iter().enumerate() {
+            if law.constant_contact() {
+                continue;
+            }
+            let Some(first) = self.members[index].all.first() else {
+                continue;
+            };
+            let source = Source {
+                law,
+                index,
+                network: &*step.network,
+                info: step.info,
+            };
+            let members = [*first; TRIED.len()];
+            let depends = self.pool.with(|batch| {
+                batch.gather_before(&source, &members, step.before, &[law.contact()]);
+                let [_, t1, t2] = &mut batch.columns.velocity;
+                t1.copy_from_slice(&TRIED);
+                t2.fill(0.0);
+                let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
+                let friction = &batch.columns.out.friction;
+                asked.is_err() || friction.iter().any(|mu| *mu != friction[0])
+            });
+            if depends {
+                found.push((index, self.members[index].all.clone()));
+            }
+        }
+        found
+    }
+
+    /// Friction of contacts of an interface, each at a tangential velocity.
+    ///
+    /// # Errors
+    /// The law's error, with the contact.
+    pub fn friction_at<S: Space>(
+        &mut self,
+        step: &mut Step<'_, S>,
+        index: usize,
+        members: &[usize],
+        velocities: &[S::Tangent],
+    ) -> Result<Vec<FrictionAt>, LawError> {
+        let (law, before, info) = (&step.laws[index], step.before, step.info);
+        let size = any_size(BATCH);
+        let tasks: Vec<_> = members.chunks(size).zip(velocities.chunks(size)).collect();
+        let of = |network: &Network<S>,
+                  batch: &mut Batch,
+                  (members, velocities): &mut (&[usize], &[S::Tangent])| {
+            let source = Source {
+                law,
+                index,
+                network,
+                info,
+            };
+            batch.gather_before(&source, members, before, &[law.contact()]);
+            for (k, at) in members.iter().enumerate() {
+                let [v1, v2] = S::components(&network.contacts[*at].normal, &velocities[k]);
+                let [_, t1, t2] = &mut batch.columns.velocity;
+                t1[k] = v1;
+                if S::D == 3 {
+                    t2[k] = v2;
+                }
+            }
+            batch.friction_and_slope(&source, members)
+        };
+        let mut all = Vec::with_capacity(members.len());
+        let divide = self.divides(members.len(), EACH);
+        self.pool.evaluate(
+            divide,
+            &mut step.history.largest,
+            step.network,
+            tasks,
+            of,
+            |_, _, found| all.extend(found),
+        )?;
+        Ok(all)
+    }
+}
+
+impl Batch {
+    /// Friction at the velocities in the columns, and its slope from another call at velocities a little above.
+    fn friction_and_slope<S: Space>(
+        &mut self,
+        source: &Source<'_, S>,
+        members: &[usize],
+    ) -> Result<Vec<FrictionAt>, LawError> {
+        let Source {
+            law, network, info, ..
+        } = *source;
+        let ask = |batch: &mut Self| -> Result<Vec<f64>, LawError> {
+            batch
+                .run_afresh(law.contact(), info, 0.0, Call::Prepare)
+                .map_err(|e| locate(law, network, members, e))?;
+            Ok(batch.columns.out.friction[..members.len()].to_vec())
+        };
+        let friction = ask(self)?;
+        let speed = |batch: &Self, k: usize| {
+            let [_, t1, t2] = &batch.columns.velocity;
+            t1[k].hypot(t2.get(k).copied().unwrap_or(0.0))
+        };
+        let speeds: Vec<f64> = (0..members.len()).map(|k| speed(self, k)).collect();
+        let [_, t1, t2] = &mut self.columns.velocity;
+        t1.iter_mut().chain(t2).for_each(|v| *v *= 1.0 + NEARBY);
+        let nearby = ask(self)?;
+        let of = |k: usize| {
+            let change = nearby[k] - friction[k];
+            let by = NEARBY * speeds[k];
+            let known = by > 0.0 && change.abs() > ROUNDING * friction[k];
+            FrictionAt {
+                mu: friction[k],
+                slope: if known { change / by } else { 0.0 },
+            }
+        };
+        Ok((0..members.len()).map(of).collect())
+    }
+}

@@ -1,0 +1,481 @@
+//! Attraction that depends on the gap, over the gaps that a contact passes in the step.
+//!
+//! Over a step in which the gap at detection g changes by x until the next detection the attraction is G(x): its mean over the gaps passed from the
+//! start of the step to its end, g - (1 - theta) h u^- to g + theta x, which does the work of its potential whatever the step; or its value at
+//! g + x where that holds back more. The latter is a state of equilibrium on the branch on which attraction grows with the gap, as on a neck before
+//! pull-off; it loses a little energy there, where the mean would swing about that state.
+//!
+//! A solve with the attraction R found x_s. A contact of the effective mass m would be at x under R(x) = R + (x_s - x) m/h^2. The step ends at
+//! the first x on the way at which G(x) holds it, or, if there is none, at x_s or beyond. There the attraction is linearised: by its value, and,
+//! where it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
+
+use super::Simulation;
+use super::answers::effective_mass;
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::LawError;
+use crate::laws::columns::StepInfo;
+use crate::solve::form::{ContactForm, Elastic};
+
+/// The nodes at which an attraction is asked for: powers of two of the distance from the smallest gap, and parts of each.
+const OCTAVES: usize = 18;
+const PARTS: usize = 8;
+/// Nodes at gaps below zero, where bodies overlap.
+const BELOW: usize = 4;
+
+/// An attraction linearised at a change of the gap x (m): force (N) and slope (N/m), not negative.
+#[derive(Clone, Copy, Debug, Default)]
+struct Linear {
+    x: f64,
+    force: f64,
+    slope: f64,
+}
+
+impl Linear {
+    fn at(&self, x: f64) -> f64 {
+        self.force + self.slope * (x - self.x)
+    }
+}
+
+/// A contact that passes gaps with different attraction.
+#[derive(Clone, Copy, Debug)]
+struct Pull {
+    at: usize,
+    /// What the form has beside the attraction: tension (N s), and the shift without what a tension adds to it (m/s).
+    tension: f64,
+    shift: f64,
+    /// Attraction at the gap of detection (N).
+    start: f64,
+    linear: Linear,
+}
+
+impl Pull {
+    /// Writes the linearised attraction into the form.
+    fn apply<S: Space>(&self, form: &mut ContactForm<S>, h: f64) {
+        let Linear { x, force, slope } = self.linear;
+        let implicit = slope > 0.0;
+        if implicit || form.elastic.is_some() {
+            let bond = form.elastic.get_or_insert_with(Elastic::none);
+            (bond.a_n, bond.b_n) = if implicit {
+                (h * (force - slope * x), h * h * slope)
+            } else {
+                (0.0, 0.0)
+            };
+        }
+        form.tension = self.tension + if implicit { 0.0 } else { h * force };
+        form.shift_n = self.shift + form.compliance[0] * form.tension;
+    }
+}
+
+/// Contacts of one interface: where attraction acts, and those whose attraction is linearised.
+#[derive(Debug)]
+struct Group {
+    interface: usize,
+    members: Vec<usize>,
+    pulls: Vec<Pull>,
+}
+
+/// The iteration of a step.
+#[derive(Debug)]
+pub(super) struct Attractions {
+    groups: Vec<Group>,
+}
+
+/// Gaps of a contact in a step (m).
+#[derive(Clone, Copy, Debug)]
+struct Path {
+    /// At the start of the step, and at detection.
+    start: f64,
+    gap: f64,
+    /// Change until the next detection, and the share of it by the end of the step.
+    x: f64,
+    theta: f64,
+}
+
+impl Path {
+    /// At the start of the step, at detection, at the next detection, at the end of the step.
+    fn gaps(&self) -> [f64; 4] {
+        let Self {
+            start,
+            gap,
+            x,
+            theta,
+        } = *self;
+        [start, gap, gap + x, gap + theta * x]
+    }
+
+    fn bounds(&self) -> [f64; 2] {
+        let all = self.gaps();
+        let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+        [least, all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    }
+
+    /// Gaps at which to ask for the attraction, in ascending order: close to each other where they are small.
+    fn nodes(&self) -> Vec<f64> {
+        let [low, high] = self.bounds();
+        let near = 0f64.clamp(low, high);
+        let mut gaps = self.gaps().to_vec();
+        gaps.extend([low, high, near]);
+        let part = (near - low) / BELOW as f64;
+        gaps.extend((1..BELOW).map(|k| low + part * k as f64));
+        let least = (high - near) * 0.5f64.powi(OCTAVES as i32);
+        for octave in 0..OCTAVES {
+            let from = least * 2f64.powi(octave as i32);
+            gaps.extend((0..PARTS).map(|k| near + from * (1.0 + k as f64 / PARTS as f64)));
+        }
+        gaps.retain(|g| (low..=high).contains(g));
+        gaps.sort_unstable_by(f64::total_cmp);
+        gaps.dedup();
+        gaps
+    }
+}
+
+/// The attraction over the gaps of a path, linear between nodes.
+struct Passed {
+    path: Path,
+    gaps: Vec<f64>,
+    force: Vec<f64>,
+    /// Integral of the force over the gap, up to each node (J).
+    work: Vec<f64>,
+}
+
+impl Passed {
+    fn of(path: Path, gaps: &[f64], force: &[f64]) -> Self {
+        let mut work = vec![0.0; gaps.len()];
+        for k in 1..gaps.len() {
+            work[k] = work[k - 1] + 0.5 * (force[k] + force[k - 1]) * (gaps[k] - gaps[k - 1]);
+        }
+        Self {
+            path,
+            gaps: gaps.to_vec(),
+            force: force.to_vec(),
+            work,
+        }
+    }
+
+    /// Force at a gap, and its integral up to there.
+    fn at(&self, gap: f64) -> [f64; 2] {
+        let last = self.gaps.len() - 1;
+        if last == 0 {
+            return [self.force[0], 0.0];
+        }
+        let k = self.gaps.partition_point(|g| *g <= gap).clamp(1, last);
+        let (a, by) = (self.gaps[k - 1], gap - self.gaps[k - 1]);
+        let slope = (self.force[k] - self.force[k - 1]) / (self.gaps[k] - a);
+        let force = self.force[k - 1];
+        [
+            force + slope * by,
+            self.work[k - 1] + by * (force + 0.5 * slope * by),
+        ]
+    }
+
+    /// G(x).
+    fn given(&self, x: f64) -> f64 {
+        let Path {
+            start, gap, theta, ..
+        } = self.path;
+        let end = self.at(gap + x)[0];
+        let passed = gap - start + theta * x;
+        if passed == 0.0 {
+            return end;
+        }
+        let mean = (self.at(gap + theta * x)[1] - self.at(start)[1]) / passed;
+        if passed > 0.0 {
+            end.max(mean)
+        } else {
+            end.min(mean)
+        }
+    }
+
+    /// Changes of the gap from zero to x_s at nodes, in the order passed.
+    fn changes(&self) -> Vec<f64> {
+        let Path { gap, x, .. } = self.path;
+        let within = |c: &f64| *c != 0.0 && (0.0..1.0).contains(&(c / x));
+        let mut all: Vec<f64> = self.gaps.iter().map(|g| g - gap).filter(within).collect();
+        if x < 0.0 {
+            all.reverse();
+        }
+        all.insert(0, 0.0);
+        if x != 0.0 {
+            all.push(x);
+        }
+        all
+    }
+
+    /// Where to linearise, see the module, under `needed` R(x), and whether that is before x_s, by more than a force `margin`.
+    fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (Linear, bool) {
+        let nodes = self.changes();
+        let given: Vec<f64> = nodes.iter().map(|x| self.given(*x)).collect();
+        let last = nodes.len() - 1;
+        if last == 0 {
+            let force = given[0];
+            return (
+                Linear {
+                    force,
+                    ..Linear::default()
+                },
+                false,
+            );
+        }
+        let excess = |k: usize| (given[k] - needed(nodes[k])) * nodes[last].signum();
+        let before_end = (1..last).any(|k| excess(k) > margin);
+        let k = (1..=last).find(|k| excess(*k) >= 0.0).unwrap_or(last);
+        let slope = (given[k] - given[k - 1]) / (nodes[k] - nodes[k - 1]);
+        let (before, here) = (excess(k - 1), excess(k));
+        let share = if here > 0.0 && before < 0.0 {
+            before / (before - here)
+        } else {
+            1.0
+        };
+        let linear = Linear {
+            x: nodes[k - 1] + share * (nodes[k] - nodes[k - 1]),
+            force: given[k - 1] + share * (given[k] - given[k - 1]),
+            slope: slope.max(0.0),
+        };
+        (linear, before_end)
+    }
+}
+
+/// A contact that may pass gaps with different attraction.
+struct Moved {
+    at: usize,
+    path: Path,
+    pull: Option<Pull>,
+}
+
+impl<S: Space> Simulation<S> {
+    /// Finds the contacts that are attracted.
+    pub(super) fn begin_attractions(&self) -> Attractions {
+        let attracted = self.workspace.evaluator.attracted(&self.laws);
+        let group = |(interface, members)| Group {
+            interface,
+            members,
+            pulls: Vec::new(),
+        };
+        Attractions {
+            groups: attracted.into_iter().map(group).collect(),
+        }
+    }
+
+    /// Compares the attraction of a solve with that over the gaps which it led to: the largest difference over the load of a contact, to which
+    /// a hundredth of all load is added. If it is above the tolerance, attractions are linearised anew.
+    pub(super) fn compare_attractions(
+        &mut self,
+        attractions: &mut Attractions,
+        tolerance: f64,
+        info: &StepInfo,
+    ) -> Result<f64, LawError> {
+        let mut worst = 0.0f64;
+        for group in &mut attractions.groups {
+            let differs = self.compare_attraction(group, tolerance, info)?;
+            worst = worst.max(differs);
+        }
+        Ok(worst)
+    }
+
+    /// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
+    fn moved(&self, group: &Group, info: &StepInfo) -> (Vec<Moved>, f64) {
+        let (workspace, contacts) = (&self.workspace, &self.state.network.contacts);
+        let mut moved = Vec::new();
+        let mut whole = 0.0;
+        let mut pulls = group.pulls.iter().peekable();
+        for at in &group.members {
+            let (contact, form) = (&contacts[*at], &workspace.forms[*at]);
+            let pull = pulls.next_if(|p| p.at == *at).copied();
+            let solved = &workspace.solved;
+            let (gap, n) = (contact.gap, &contact.normal);
+            let path = Path {
+                start: gap - (1.0 - info.theta) * info.h * n.dot(&solved.before.relative[*at]),
+                gap,
+                x: info.h * n.dot(&solved.after[*at]),
+                theta: info.theta,
+            };
+            let carried = solved.contact_steps[*at].solution.unilateral_n;
+            whole += form.tension.max(carried.abs());
+            let [low, high] = path.bounds();
+            if pull.is_some() || (high > low && high > 0.0) {
+                moved.push(Moved {
+                    at: *at,
+                    path,
+                    pull,
+                });
+            }
+        }
+        (moved, whole)
+    }
+
+    fn compare_attraction(
+        &mut self,
+        group: &mut Group,
+        tolerance: f64,
+        info: &StepInfo,
+    ) -> Result<f64, LawError> {
+        let h = info.h;
+        let (mut moved, whole) = self.moved(group, info);
+        // Those that are not linearised yet, and pass one attraction only, are left as they are.
+        let unknown = moved.iter().filter(|m| m.pull.is_none());
+        let (mut places, mut gaps) = (Vec::new(), Vec::new());
+        for m in unknown {
+            let [start, gap, next, _] = m.path.gaps();
+            places.extend([m.at; 3]);
+            gaps.extend([gap, start, next]);
+        }
+        let force = self.attraction_at(group, &places, &gaps, info)?;
+        let mut found = force.chunks_exact(3);
+        moved.retain_mut(|m| {
+            if m.pull.is_some() {
+                return true;
+            }
+            let Some([here, start, next]) = found.next() else {
+                return false;
+            };
+            let form = &self.workspace.forms[m.at];
+            m.pull = Some(Pull {
+                at: m.at,
+                tension: form.tension - h * here,
+                shift: form.shift_n - form.compliance[0] * form.tension,
+                start: *here,
+                linear: Linear {
+                    force: *here,
+                    ..Linear::default()
+                },
+            });
+            start != here || next != here
+        });
+        let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+        for m in &moved {
+            let first = gaps.len();
+            gaps.extend(m.path.nodes());
+            places.resize(gaps.len(), m.at);
+            ranges.push(first..gaps.len());
+        }
+        let force = self.attraction_at(group, &places, &gaps, info)?;
+        let (mut differs, mut next) = (0.0f64, Vec::with_capacity(moved.len()));
+        for (m, range) in moved.iter().zip(ranges) {
+            let Some(mut pull) = m.pull else { continue };
+            let passed = Passed::of(m.path, &gaps[range.clone()], &force[range]);
+            let x = m.path.x;
+            let (used, given) = (pull.linear.at(x), passed.given(x));
+            let own = used.abs().max(pull.start).max(given);
+            let inertia = self.inertia_of(m.at) / (h * h);
+            let needed = |here: f64| used + (x - here) * inertia;
+            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * own);
+            pull.linear = linear;
+            next.push(pull);
+            let load = own + 0.01 * whole / h;
+            if load > 0.0 {
+                differs = differs.max((given - used).abs() / load);
+                if early && tolerance < 1.0 {
+                    differs = differs.max(2.0 * tolerance);
+                }
+            }
+        }
+        if differs <= tolerance {
+            return Ok(differs);
+        }
+        for pull in next {
+            pull.apply(&mut self.workspace.forms[pull.at], h);
+            match group.pulls.binary_search_by_key(&pull.at, |p| p.at) {
+                Ok(k) => group.pulls[k] = pull,
+                Err(k) => group.pulls.insert(k, pull),
+            }
+        }
+        Ok(differs)
+    }
+
+    fn attraction_at(
+        &mut self,
+        group: &Group,
+        places: &[usize],
+        gaps: &[f64],
+        info: &StepInfo,
+    ) -> Result<Vec<f64>, LawError> {
+        if places.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (evaluator, mut step) = self.asks(info);
+        evaluator.attraction_at(&mut step, group.interface, places, gaps)
+    }
+
+    /// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a body deforms, of which only the answer of a
+    /// solve tells.
+    fn inertia_of(&self, at: usize) -> f64 {
+        let (bodies, contact) = (&self.state.bodies, &self.state.network.contacts[at]);
+        let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();
+        if contact.bodies.iter().any(deforms) {
+            return 0.0;
+        }
+        effective_mass(bodies, contact)
+    }
+
+    /// Writes attractions as tension alone, in forms and solutions.
+    pub(super) fn settle_attractions(&mut self, attractions: Attractions, h: f64) {
+        for pull in attractions.groups.iter().flat_map(|group| &group.pulls) {
+            let form = &mut self.workspace.forms[pull.at];
+            let un = form.normal.dot(&self.workspace.solved.after[pull.at]);
+            let step = &mut self.workspace.solved.contact_steps[pull.at];
+            if pull.linear.slope > 0.0 {
+                let force = h * pull.linear.at(h * un);
+                step.solution.unilateral_n -= force;
+                form.tension += force;
+                form.shift_n += form.compliance[0] * force;
+            }
+            form.elastic = None;
+            step.adheres = form.tension > 0.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn passed(path: Path, force: impl Fn(f64) -> f64) -> Passed {
+        let gaps = path.nodes();
+        let force: Vec<f64> = gaps.iter().map(|g| force(*g)).collect();
+        Passed::of(path, &gaps, &force)
+    }
+
+    /// The mean over the gaps passed has the work of the potential, whatever the distance over the range.
+    #[test]
+    fn the_mean_does_the_work_of_the_potential() {
+        for (start, gap, x) in [
+            (0.0, 0.5, 1.0),
+            (0.0, 500.0, 1e3),
+            (0.5, 0.5, 2.0),
+            (-0.2, 0.5, 1.4),
+            (3.0, 2.0, -2.0),
+        ] {
+            let path = Path {
+                start,
+                gap,
+                x,
+                theta: 0.5,
+            };
+            let end = gap + 0.5 * x;
+            let passed = passed(path, |g| 3.0 * (-g.max(0.0)).exp());
+            let potential = |g: f64| 3.0 * g.min(0.0) - 3.0 * (-g.max(0.0)).exp();
+            let work = potential(end) - potential(start);
+            let given = passed.given(x) * (end - start);
+            assert!((given / work - 1.0).abs() < 3e-3, "{start} {gap} {x}");
+        }
+    }
+
+    /// F = 1 + x up to 2 and nothing beyond holds up to 2, at x = P - 1, whatever the mass.
+    #[test]
+    fn the_first_state_that_holds_is_found() {
+        let path = Path {
+            start: 0.0,
+            gap: 0.0,
+            x: 100.0,
+            theta: 0.5,
+        };
+        let passed = passed(path, |g| if g <= 1.0 { 1.0 + g } else { 0.0 });
+        for load in [1.1, 1.5, 1.8] {
+            let (hold, early) = passed.first_hold(|_| load, 1e-4);
+            assert!(early && (hold.x - (load - 1.0)).abs() < 1e-9, "{hold:?}");
+            assert!((hold.slope - 1.0).abs() < 1e-9);
+        }
+        let (gone, early) = passed.first_hold(|_| 2.1, 1e-4);
+        assert!(!early && gone.x == 100.0 && gone.force < 0.04);
+    }
+}
