@@ -84,7 +84,7 @@ pub fn evaluations(tests: &Tests, found: &Found, path: &Path) -> Result<(), Runs
         row.push(e.samples.len().to_string());
         row.push(e.chi_squared.map_or(String::new(), |x| format!("{x:e}")));
         let reason = e.samples.iter().find_map(|s| s.as_ref().err());
-        row.push(reason.cloned().unwrap_or_default());
+        row.push(reason.map(|text| guarded(text)).unwrap_or_default());
         out.write_record(&row).map_err(|e| fail(&e))?;
     }
     out.flush().map_err(|e| fail(&e))
@@ -114,7 +114,7 @@ pub fn curves(
                 .and_then(|d| d.get(place))
                 .map_or(String::new(), |v| format!("{v:e}"));
             let row = [
-                test.name.clone(),
+                guarded(&test.name),
                 format!("{:e}", test.x[j]),
                 format!("{:e}", test.y[j]),
                 format!("{:e}", test.sigma[j]),

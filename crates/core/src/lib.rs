@@ -57,6 +57,7 @@ pub mod geometry;
 pub mod heat;
 pub mod huge_pages;
 pub mod laws;
+pub mod out_of_memory;
 pub mod process;
 pub mod program;
 pub mod solve;
