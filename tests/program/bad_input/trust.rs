@@ -308,7 +308,8 @@ fn a_library_that_a_law_links_to_is_a_part_of_it() {
     let library = helper("0.3");
     trial.compile_linked_law("own", "LINKS");
     let case = with(PLANE, r#"contact: "coulomb""#, r#"contact: "own""#);
-    trial.write("case.ron", with(&case, r#"parameters_from: "laws","#, ""));
+    let case = with(&case, r#"parameters_from: "laws","#, "");
+    trial.write("case.ron", &case);
     let sum = || {
         let shown = trial.call(&["law", "show", "own", "--plugin-path", "."]);
         let shown = String::from_utf8_lossy(&shown.stdout).into_owned();

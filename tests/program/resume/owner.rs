@@ -93,7 +93,7 @@ fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
             .filter(|(_, w)| w == b"FRETWORK");
         let states = heads.map(|(at, _)| at).filter(|at| bytes[at + 12] == 1);
         let at = states.last().expect("a frame with a state");
-        bytes[at + 3000] ^= 1;
+        bytes[at + 100] ^= 1;
         std::fs::write(&path, &bytes).unwrap();
         let later = Job {
             case: JOB.case,
