@@ -5,6 +5,7 @@ use super::outcome::{HalfStep, Outcome, mean_of};
 use super::search::Found;
 use super::spec::ReadFit;
 use crate::runs::RunsError;
+use crate::runs::cells::guarded;
 use serde_json::{Value, json};
 use std::path::Path;
 
