@@ -87,8 +87,8 @@ pub mod study;
 pub mod trade;
 
 pub use fretwork_core::{
-    bodies, certify, contact, energy, fields, geometry, heat, huge_pages, laws, process, program,
-    solve, step, threads, wear,
+    bodies, certify, contact, energy, fields, geometry, heat, huge_pages, laws, out_of_memory,
+    process, program, solve, step, threads, wear,
 };
 pub use fretwork_elastic as elastic;
 pub use fretwork_plot as report;

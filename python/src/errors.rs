@@ -71,10 +71,11 @@ pub(crate) fn run(message: &str, out: Option<&Path>) -> PyErr {
 
 /// A failed run: wrong input where another case or version is resumed.
 pub(crate) fn ended(error: &RunError, place: Option<String>, out: &Path) -> PyErr {
-    if let RunError::Resume(e) = error
-        && e.is_input()
-    {
-        return wrong(out.display(), in_python(&e.to_string()));
+    if let RunError::Input(e) = error {
+        return input(e);
+    }
+    if error.is_input() {
+        return wrong(out.display(), in_python(&error.to_string()));
     }
     let place = place.map_or_else(String::new, |p| format!("; {p}"));
     run(&format!("{error}{place}"), Some(out))

@@ -12,6 +12,7 @@ use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
+use crate::record::check_names;
 use crate::runs::cost::Trial;
 use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
@@ -37,7 +38,9 @@ pub struct CheckArgs {
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
-    match loaded.build(&args.case.plugins.search()?)? {
+    let scene = loaded.build(&args.case.plugins.search()?)?;
+    check_names(&loaded, &scene)?;
+    match scene {
         Scene::Dim2(built) => describe_and_time(&loaded, *built, args),
         Scene::Dim3(built) => describe_and_time(&loaded, *built, args),
     }

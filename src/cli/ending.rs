@@ -1,4 +1,5 @@
-//! Termination of the process: by the program itself, or by a law through `exit`, `abort` or a fault.
+//! Termination of the process: by the program itself, by a law through `exit`, `abort`, a fault or an exception, or by the system that
+//! has no more memory.
 
 /// Guard during whose lifetime an unexpected termination is reported and gets exit code 1. Has no effect on
 /// systems without POSIX signals.
@@ -9,6 +10,11 @@ pub struct Armed(());
 pub fn arm() -> Armed {
     #[cfg(unix)]
     posix::arm();
+    #[cfg(not(unix))]
+    crate::out_of_memory::on_refusal(|bytes| {
+        super::output::report(&format!("error: {}", no_memory(bytes)));
+        std::process::exit(FAILED.into())
+    });
     Armed(())
 }
 
@@ -36,11 +42,20 @@ pub fn now(code: u8) -> ! {
 /// Exit code of a failed run.
 pub const FAILED: u8 = 1;
 
+/// What is said where the system refuses so many bytes.
+fn no_memory(bytes: usize) -> String {
+    format!(
+        "memory ran out: the system refused {bytes} bytes; allow more (ulimit -v, the limit of the job), or take fewer bodies"
+    )
+}
+
 #[cfg(unix)]
 mod posix {
     use super::FAILED;
     use crate::laws::watch::{self, RESCUED_WITHIN, Saved};
+    use crate::out_of_memory;
     use libc::c_int;
+    use std::cell::Cell;
     use std::io::Read;
     use std::mem::MaybeUninit;
     use std::os::fd::IntoRawFd;
@@ -63,12 +78,38 @@ mod posix {
     static FAULT: AtomicBool = AtomicBool::new(false);
     /// File descriptor that wakes the rescue thread.
     static WAKE: AtomicI32 = AtomicI32::new(-1);
-    /// The law and function being called, for that thread.
-    static WHO: AtomicPtr<(&str, &str)> = AtomicPtr::new(std::ptr::null_mut());
-    static SIGNAL: AtomicI32 = AtomicI32::new(0);
+    /// Why the program ends, for that thread.
+    static WHY: AtomicPtr<Why> = AtomicPtr::new(std::ptr::null_mut());
+    /// Memory that is given back where the system has no more: what is saved then takes some.
+    static RESERVE: AtomicPtr<Vec<u8>> = AtomicPtr::new(std::ptr::null_mut());
+    /// Its size (bytes).
+    const RESERVED: usize = 8 << 20;
     /// Result of the rescue; 0 while it is running.
     static SAVED: AtomicUsize = AtomicUsize::new(0);
     const SAVED_AS: [Saved; 3] = [Saved::All, Saved::Some, Saved::Nothing];
+
+    thread_local! {
+        /// Whether this thread saves what was recorded.
+        static RESCUES: Cell<bool> = const { Cell::new(false) };
+    }
+
+    /// Why the program ends.
+    enum Why {
+        /// A law, one of its functions, and how it ended there.
+        Law(&'static str, &'static str, &'static str),
+        /// Memory ran out, in a sentence.
+        Memory(String),
+    }
+
+    impl Why {
+        fn text(&self) -> String {
+            match self {
+                Self::Law(law, call, how) => format!("{law} crashed in {call} ({how})"),
+                Self::Memory(text) => text.clone(),
+            }
+        }
+    }
+
     /// Signal actions installed before.
     static BEFORE: OnceLock<[libc::sigaction; FAULTS.len()]> = OnceLock::new();
 
@@ -79,6 +120,11 @@ mod posix {
             unsafe { libc::atexit(at_exit) };
             wait_for_faults();
             catch_faults();
+            let mut reserve = Vec::new();
+            if reserve.try_reserve_exact(RESERVED).is_ok() {
+                RESERVE.store(Box::into_raw(Box::new(reserve)), Ordering::SeqCst);
+            }
+            out_of_memory::on_refusal(on_refused_memory);
         });
         ARMED.store(true, Ordering::SeqCst);
     }
@@ -124,11 +170,10 @@ mod posix {
             if !matches!(reader.read(&mut byte), Ok(1)) {
                 return;
             }
+            RESCUES.with(|rescues| rescues.set(true));
             // SAFETY: null, or a reference that stays valid while the handler waits.
-            let who = unsafe { WHO.load(Ordering::SeqCst).as_ref() };
-            let (law, call) = who.copied().unwrap_or(("a law", "a call"));
-            let signal = name(SIGNAL.load(Ordering::SeqCst));
-            let saved = watch::save(&format!("{law} crashed in {call} ({signal})"));
+            let why = unsafe { WHY.load(Ordering::SeqCst).as_ref() };
+            let saved = watch::save(&why.map_or("the program ended".to_owned(), Why::text));
             let place = SAVED_AS.iter().position(|s| *s == saved).unwrap_or(1);
             SAVED.store(place + 1, Ordering::SeqCst);
         });
@@ -163,35 +208,66 @@ mod posix {
         let Some(who) = called.filter(|_| !FAULT.swap(true, Ordering::SeqCst)) else {
             return as_before(signal);
         };
-        put(&[
-            "error: ",
-            who.0,
-            " crashed in ",
-            who.1,
-            " (",
-            name(signal),
-            "); ",
-        ]);
-        WHO.store(std::ptr::from_ref(&who).cast_mut(), Ordering::SeqCst);
-        SIGNAL.store(signal, Ordering::SeqCst);
+        let way = if watch::was_unwound() {
+            "it threw an exception, or ended its thread"
+        } else {
+            name(signal)
+        };
+        put(&["error: ", who.0, " crashed in ", who.1, " (", way, "); "]);
+        let saved = rescued(&Why::Law(who.0, who.1, way));
+        put(&[saved.words(), "\n"]);
+        // SAFETY: `_exit` is async-signal-safe.
+        unsafe { libc::_exit(FAILED.into()) }
+    }
+
+    /// Has the other thread save what was recorded, and waits for it. It takes no lock and no memory.
+    fn rescued(why: &Why) -> Saved {
+        WHY.store(std::ptr::from_ref(why).cast_mut(), Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);
         // SAFETY: `write` is async-signal-safe.
         let woken = wake >= 0 && unsafe { libc::write(wake, [1u8].as_ptr().cast(), 1) } == 1;
         let mut waits = RESCUED_WITHIN.as_millis() / 5;
         while woken && waits > 0 && SAVED.load(Ordering::SeqCst) == 0 {
-            let pause = libc::timespec {
-                tv_sec: 0,
-                tv_nsec: 5_000_000,
-            };
-            // SAFETY: `nanosleep` is async-signal-safe in practice.
-            unsafe { libc::nanosleep(&pause, std::ptr::null_mut()) };
+            pause();
             waits -= 1;
         }
         let saved = SAVED.load(Ordering::SeqCst).checked_sub(1);
-        let saved = saved.map_or(Saved::Some, |k| SAVED_AS[k.min(2)]);
+        saved.map_or(Saved::Some, |k| SAVED_AS[k.min(2)])
+    }
+
+    fn pause() {
+        let pause = libc::timespec {
+            tv_sec: 0,
+            tv_nsec: 5_000_000,
+        };
+        // SAFETY: `nanosleep` is async-signal-safe in practice.
+        unsafe { libc::nanosleep(&pause, std::ptr::null_mut()) };
+    }
+
+    /// Says that memory ran out, has saved what was recorded, and ends the program with exit code 1.
+    fn on_refused_memory(bytes: usize) {
+        if !ARMED.load(Ordering::SeqCst) {
+            return;
+        }
+        if RESCUES.try_with(Cell::get).unwrap_or(false) {
+            // What is saved takes more than there is: the thread that waits for it ends the program.
+            SAVED.store(2, Ordering::SeqCst);
+        }
+        if FAULT.swap(true, Ordering::SeqCst) {
+            loop {
+                pause();
+            }
+        }
+        let reserve = RESERVE.swap(std::ptr::null_mut(), Ordering::SeqCst);
+        if !reserve.is_null() {
+            // SAFETY: made by `Box::into_raw`, and taken out of its place once.
+            drop(unsafe { Box::from_raw(reserve) });
+        }
+        let text = super::no_memory(bytes);
+        put(&["error: ", &text, "; "]);
+        let saved = rescued(&Why::Memory(text));
         put(&[saved.words(), "\n"]);
-        // SAFETY: `_exit` is async-signal-safe.
-        unsafe { libc::_exit(FAILED.into()) }
+        super::now(FAILED);
     }
 
     /// Restores the previous handler and lets the fault happen again.

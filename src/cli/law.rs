@@ -172,6 +172,9 @@ fn describe(p: &Plugin) -> String {
         library(p),
         p.sha256
     );
+    for (path, sum) in &p.links {
+        let _ = writeln!(out, "  links to   {}\n             {sum}", path.display());
+    }
     for (title, fields) in [("parameters", &p.parameters), ("variables", &p.variables)] {
         if fields.is_empty() {
             continue;

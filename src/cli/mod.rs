@@ -91,7 +91,7 @@ enum Command {
     /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
     #[command(
         allow_negative_numbers = true,
-        after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/wheel_rail_rigid.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
+        after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
     )]
     Trade(trade::TradeArgs),
     /// Internal: opens libraries in a separate process
@@ -174,6 +174,7 @@ impl PluginArgs {
         let limit = law_limit(self.law_timeout)?;
         child::enable(limit);
         watch_laws(limit)?;
+        output::keep_from_laws();
         let path = SearchPath::new(&self.plugin_path).with_built_in(built_in());
         Ok(if self.trust_plugins {
             path.trusting()
@@ -236,7 +237,10 @@ impl From<InputError> for Failure {
 
 impl From<RunError> for Failure {
     fn from(e: RunError) -> Self {
-        Self::Run(e)
+        match e {
+            RunError::Input(e) => Self::Input(*e),
+            e => Self::Run(e),
+        }
     }
 }
 
@@ -280,10 +284,7 @@ pub fn call(words: &[OsString]) -> u8 {
         }
         Err(Failure::Usage(message)) => (format!("error: {message}"), 2),
         Err(Failure::Failed(message)) => (format!("error: {message}"), 1),
-        Err(Failure::Run(e)) => {
-            let input = matches!(&e, RunError::Resume(e) if e.is_input());
-            (format!("error: {e}"), if input { 2 } else { 1 })
-        }
+        Err(Failure::Run(e)) => (format!("error: {e}"), if e.is_input() { 2 } else { 1 }),
     };
     output::report(&message);
     code

@@ -4,14 +4,45 @@
 
 use super::Failure;
 use crate::scene::source::{clean_json, clean_lines};
+use std::fs::File;
 use std::io::{ErrorKind, Write};
+use std::sync::{Mutex, OnceLock};
+
+/// Standard output of the program, once [`keep_from_laws`] has taken it.
+static TAKEN: OnceLock<Mutex<File>> = OnceLock::new();
+
+/// Keeps standard output for the program's answers: what laws print goes to standard error from then on. Without the system's help
+/// (Windows) both go to standard output.
+pub fn keep_from_laws() {
+    #[cfg(unix)]
+    {
+        use std::os::fd::{AsFd, AsRawFd};
+        let (out, err) = (std::io::stdout(), std::io::stderr());
+        let _ = out.lock().flush();
+        let Ok(own) = out.as_fd().try_clone_to_owned() else {
+            return;
+        };
+        if TAKEN.set(Mutex::new(File::from(own))).is_ok() {
+            // SAFETY: both are open; the first becomes another name of the second.
+            unsafe { libc::dup2(err.as_raw_fd(), out.as_raw_fd()) };
+        }
+    }
+}
+
+/// Writes a line to the standard output of the program.
+fn write_out(text: &str) -> std::io::Result<()> {
+    match TAKEN.get() {
+        Some(own) => write(&mut *own.lock().unwrap_or_else(|e| e.into_inner()), text),
+        None => write(&mut std::io::stdout().lock(), text),
+    }
+}
 
 /// Writes the requested answer to standard output. A closed pipe is not an error.
 ///
 /// # Errors
 /// It cannot be written.
 pub fn answer(text: &str) -> Result<(), Failure> {
-    delivered(write(&mut std::io::stdout().lock(), &clean_lines(text)))
+    delivered(write_out(&clean_lines(text)))
 }
 
 /// Writes the requested answer as JSON to standard output.
@@ -19,7 +50,7 @@ pub fn answer(text: &str) -> Result<(), Failure> {
 /// # Errors
 /// It cannot be written.
 pub fn answer_json(text: &str) -> Result<(), Failure> {
-    delivered(write(&mut std::io::stdout().lock(), &clean_json(text)))
+    delivered(write_out(&clean_json(text)))
 }
 
 /// Converts the result of writing an answer.
@@ -37,7 +68,7 @@ pub fn delivered(written: std::io::Result<()>) -> Result<(), Failure> {
 
 /// Writes information to standard output, ignoring failures.
 pub fn inform(text: &str) {
-    let _ = write(&mut std::io::stdout().lock(), &clean_lines(text));
+    let _ = write_out(&clean_lines(text));
 }
 
 /// Writes progress, a warning or an error to standard error, ignoring failures.

@@ -64,10 +64,14 @@ pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), Rep
     })
 }
 
-/// Makes the report of a run that has just ended. That there is none is said, and does not change how the run ended.
-pub fn of_run(folder: &Path, quiet: bool) {
+/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. That there is none is said, and does not
+/// change how the run ended.
+pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
     match make(folder, Some(DEFAULT_BYTES)) {
-        Ok((path, _)) if !quiet => inform(&format!("  report in {}", path.display())),
+        Ok(_) if !quiet => {
+            let path = shown.join(fretwork_report::FILE);
+            inform(&format!("  report in {}", path.display()));
+        }
         Ok(_) => {}
         Err(e) => complain(&format!("warning: there is no report: {e}")),
     }

@@ -44,14 +44,22 @@ pub struct RunArgs {
     json: bool,
 }
 
+impl RunArgs {
+    /// Folder of the results, as the user names it.
+    fn out(&self) -> PathBuf {
+        let given = self.out.clone();
+        given.unwrap_or_else(|| default_folder(&self.case.case))
+    }
+}
+
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
+    // From the root: a law may change the folder to which other paths are relative.
+    let out = std::path::absolute(args.out())
+        .map_err(|e| Failure::Usage(format!("--out {}: {e}", args.out().display())))?;
     let loaded = load(&args.case.case, &args.case.sets)?;
     let scene = loaded.build(&args.case.plugins.search()?)?;
     let options = RunOptions {
-        out: args
-            .out
-            .clone()
-            .unwrap_or_else(|| default_folder(&args.case.case)),
+        out,
         threads: args.threads.into(),
     };
     let pool = rayon::ThreadPoolBuilder::new()
@@ -95,7 +103,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         };
         inform(&format!(
             "{text}  results in {}{more}",
-            options.out.display()
+            args.out().display()
         ));
     }
     report(&options.out, args);
@@ -109,7 +117,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 /// Makes the report, unless it is not wanted.
 fn report(out: &Path, args: &RunArgs) {
     if !args.no_report {
-        super::report::of_run(out, args.json);
+        super::report::of_run(out, &args.out(), args.json);
     }
 }
 
@@ -138,7 +146,8 @@ fn run_case<S: Observed>(
     for pair in without_interface(&loaded.case, &built.simulation) {
         inform(format!("no interface: {pair}"));
     }
-    let out = options.out.display();
+    let shown = args.out();
+    let out = shown.display();
     let mut stop = None;
     if args.resume {
         match record::stopped(loaded, &built, options)? {
@@ -194,7 +203,7 @@ fn run_case<S: Observed>(
         .map(Some)
         .map_err(|error| match place(loaded, &origins, &error) {
             Some(place) => Failure::Failed(format!("{error}; {place}")),
-            None => Failure::Run(error),
+            None => error.into(),
         })
 }
 

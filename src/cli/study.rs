@@ -18,9 +18,9 @@ use crate::study::spec::ReadSpec;
 use crate::study::table::{Cell, Table, status};
 use crate::study::{OWNER, StudyError};
 use clap::{Args, Subcommand};
+use fretwork_store::folder_lock::FolderLock;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeSet;
-use std::fs::File;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -165,7 +165,7 @@ impl StudyArgs {
     }
 
     /// The plan, and its folder for this command alone. Nothing is written if the study is wrong.
-    fn plan_alone(&self) -> Result<(Plan, File), Failure> {
+    fn plan_alone(&self) -> Result<(Plan, FolderLock), Failure> {
         let plan = self.plan()?;
         let lock = OWNER.take(&plan.out)?;
         plan.keep()?;

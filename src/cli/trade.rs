@@ -7,6 +7,7 @@ use super::number::{not_negative, share};
 use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
 use crate::interrupt;
+use crate::record::check_names;
 use crate::runs::RunsError;
 use crate::runs::duration::{parse as duration, seconds};
 use crate::runs::launcher::Launcher;
@@ -110,6 +111,7 @@ pub fn trade(args: &TradeArgs) -> Result<(), Failure> {
     let search = args.case.plugins.search()?;
     let loaded = load(&args.case.case, &args.case.sets)?;
     let scene = loaded.build(&search)?;
+    check_names(&loaded, &scene)?;
     let first = Facts::of(&loaded, &scene);
     let outputs = refuse::outputs(args, &first.offer)?;
     let random = seed_matters(&loaded, &scene, &search)?;

@@ -5,7 +5,7 @@ use super::measured;
 use super::model::Model;
 use super::spec::{ReadFit, TestSpec};
 use crate::laws::SearchPath;
-use crate::record::statistics_columns;
+use crate::record::{check_names, statistics_columns};
 use crate::runs::RunsError;
 use crate::runs::expression::{Derived, number};
 use crate::runs::launcher::{Ended, Launcher};
@@ -104,6 +104,7 @@ impl Tests {
             let sets = changes(&keys, &derived, &middle)?;
             let loaded = load(&case, &[set, sets].concat())?;
             let scene = loaded.build(search)?;
+            check_names(&loaded, &scene)?;
             let matters = seed_matters(&loaded, &scene, search)?;
             random |= matters;
             launcher.perturbation = (!matters).then_some(Perturbation {

@@ -5,6 +5,7 @@ use super::outcome::{HalfStep, Outcome, mean_of};
 use super::search::Found;
 use super::spec::ReadFit;
 use crate::runs::RunsError;
+use crate::runs::cells::guarded;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -84,7 +85,7 @@ pub fn evaluations(tests: &Tests, found: &Found, path: &Path) -> Result<(), Runs
         row.push(e.samples.len().to_string());
         row.push(e.chi_squared.map_or(String::new(), |x| format!("{x:e}")));
         let reason = e.samples.iter().find_map(|s| s.as_ref().err());
-        row.push(reason.cloned().unwrap_or_default());
+        row.push(reason.map(|text| guarded(text)).unwrap_or_default());
         out.write_record(&row).map_err(|e| fail(&e))?;
     }
     out.flush().map_err(|e| fail(&e))
@@ -114,7 +115,7 @@ pub fn curves(
                 .and_then(|d| d.get(place))
                 .map_or(String::new(), |v| format!("{v:e}"));
             let row = [
-                test.name.clone(),
+                guarded(&test.name),
                 format!("{:e}", test.x[j]),
                 format!("{:e}", test.y[j]),
                 format!("{:e}", test.sigma[j]),

@@ -16,8 +16,8 @@ pub use fretwork_store::{
 pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};
 pub use run::{
-    OnProgress, Progress, Run, RunError, RunOptions, run, run_observers, statistics_columns,
-    stopped,
+    OnProgress, Progress, Run, RunError, RunOptions, check_names, run, run_observers,
+    statistics_columns, stopped,
 };
 pub use summary::Summary;
 pub use warnings::Missed;

@@ -1,7 +1,7 @@
 //! Lock on a folder of runs: one command at a time, and only in a folder that belongs to such commands.
 
 use super::RunsError;
-use std::fs::{File, TryLockError};
+use fretwork_store::folder_lock::{FolderLock, LockError};
 use std::path::Path;
 
 /// What a command calls itself and its files.
@@ -16,12 +16,11 @@ pub struct Owner {
 }
 
 impl Owner {
-    /// Creates or opens a folder and locks it until the returned file is dropped; the system releases the lock when
-    /// the process ends.
+    /// Creates or opens a folder and locks it until the returned lock is dropped.
     ///
     /// # Errors
     /// The command runs in it already, it holds other files, or it cannot be written.
-    pub fn take(&self, out: &Path) -> Result<File, RunsError> {
+    pub fn take(&self, out: &Path) -> Result<FolderLock, RunsError> {
         let fail = |e: &dyn std::fmt::Display| RunsError::write(out, e);
         let ours = || {
             let mut known = [self.mark].into_iter().chain(self.files.iter().copied());
@@ -36,21 +35,14 @@ impl Owner {
             )));
         }
         std::fs::create_dir_all(out).map_err(|e| fail(&e))?;
-        let path = out.join(self.mark);
-        let file = File::options()
-            .create(true)
-            .append(true)
-            .open(&path)
-            .map_err(|e| RunsError::write(&path, &e))?;
-        match file.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(RunsError::Usage(format!(
+        FolderLock::own(out, self.mark).map_err(|e| match e {
+            LockError::Held { .. } => RunsError::Usage(format!(
                 "another {} is running in {}; wait for its end, or give another folder with --out",
                 self.command,
                 out.display()
-            ))),
-            // Continue without a lock on file systems that have none.
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(file),
-        }
+            )),
+            LockError::Write { path, reason } => RunsError::write(&path, &reason),
+        })
     }
 }
 

@@ -3,8 +3,9 @@
 //! [`launcher`] starts them, [`stored`] says how they ended, [`key`] names them, [`quantity`] reads the numbers that they leave,
 //! [`offer`] says which a case has, [`randomness`] whether its seed matters, [`perturbation`] tells runs apart where it does not,
 //! [`cost`] estimates how long one takes, [`lock`] keeps a folder for one command at a time, [`pool`] makes
-//! several at once, [`expression`] makes changes that follow from numbers, and [`spec`] has what files of studies and fits share. [`trade`](crate::trade) and [`study`](crate::study) are made of such runs.
+//! several at once, [`cells`] guards texts in tables, [`expression`] makes changes that follow from numbers, and [`spec`] has what files of studies and fits share. [`trade`](crate::trade) and [`study`](crate::study) are made of such runs.
 
+pub mod cells;
 pub mod cost;
 pub mod duration;
 pub mod expression;
@@ -21,6 +22,7 @@ pub mod stored;
 pub mod unit;
 
 use crate::scene::InputError;
+use fretwork_store::write_advice;
 use std::path::{Path, PathBuf};
 
 /// Reason why runs cannot be made or kept.
@@ -33,7 +35,7 @@ pub enum RunsError {
     #[error("{0}")]
     Usage(String),
     /// A file or folder cannot be written.
-    #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
+    #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
         path: PathBuf,

@@ -3,6 +3,7 @@
 use super::StudyError;
 use super::table::{Cell, Table};
 use crate::runs::RunsError;
+use crate::runs::cells::{guarded, unguarded};
 use std::path::Path;
 
 /// Writes a table; headings have units, `wear.Qs [kg/s]`, and what is not known is empty.
@@ -20,7 +21,7 @@ pub fn write(table: &Table, path: &Path) -> Result<(), RunsError> {
     for k in 0..table.rows() {
         let row = table.columns.iter().map(|c| match &c.cells[k] {
             Cell::Number(x) => format!("{x}"),
-            Cell::Text(text) => text.clone(),
+            Cell::Text(text) => guarded(text),
             Cell::Unknown => String::new(),
         });
         out.write_record(row).map_err(|e| fail(&e))?;
@@ -44,7 +45,12 @@ pub fn read_points(path: &Path) -> Result<(Vec<String>, Vec<Vec<String>>), Study
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| fail(e.to_string()))?;
-        rows.push(record.iter().map(str::to_owned).collect());
+        rows.push(
+            record
+                .iter()
+                .map(|cell| unguarded(cell).to_owned())
+                .collect(),
+        );
     }
     if rows.is_empty() {
         return Err(fail(

@@ -5,6 +5,7 @@ use super::design::{Setting, settings};
 use super::factor::{AS_IN_THE_CASE, Factor, Kind, Value};
 use super::spec::{DesignSpec, ReadSpec};
 use crate::laws::SearchPath;
+use crate::record::check_names;
 use crate::runs::RunsError;
 use crate::runs::expression::Derived;
 use crate::runs::launcher::Launcher;
@@ -147,6 +148,7 @@ impl Plan {
             Some(known) => known,
             None => {
                 let scene = base.build(place.search)?;
+                check_names(&base, &scene)?;
                 let first = [
                     settings[0].iter().flat_map(|v| v.sets.clone()).collect(),
                     derived[0].clone(),

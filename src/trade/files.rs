@@ -7,6 +7,7 @@ use super::output::Wanted;
 use super::setting::Setting;
 use super::study::Study;
 use super::verdict::Verdict;
+use crate::runs::cells::guarded;
 use serde_json::{Value, json};
 
 /// The whole study as JSON.
@@ -116,11 +117,11 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
     for r in &found.rows {
         let ends = r.faster.and_then(|f| f.1);
         let mut row = vec![
-            r.name.clone(),
+            guarded(&r.name),
             u8::from(r.setting == reference).to_string(),
             r.seeds.to_string(),
-            r.failed.clone().unwrap_or_default(),
-            r.doubt().unwrap_or_default(),
+            guarded(&r.failed.clone().unwrap_or_default()),
+            guarded(&r.doubt().unwrap_or_default()),
             format!("{:e}", r.seconds),
             format!("{:e}", r.visits),
             maybe(r.faster.map(|f| f.0)),
@@ -132,7 +133,7 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
                 .parameters
                 .iter()
                 .zip(&r.setting.0)
-                .map(|(k, l)| k.levels[*l].label.clone()),
+                .map(|(k, l)| guarded(&k.levels[*l].label)),
         );
         for e in &r.errors {
             let e = e.as_ref();

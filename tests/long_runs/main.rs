@@ -81,6 +81,7 @@ fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, 
     let slots = kept.checkpoints().unwrap();
     let states = slots
         .iter()
+        .flatten()
         .filter_map(|b| Frame::read(b))
         .map(|f| f.state.len());
     let state = states.max().unwrap();

@@ -163,7 +163,8 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 16] = [
+const MODULES: [&str; 17] = [
+    "out_of_memory",
     "huge_pages",
     "threads",
     "code",

@@ -14,6 +14,7 @@ mod check_features;
 mod check_methods;
 mod contact_patch;
 mod deformed_state;
+mod facts;
 mod fclib;
 mod fit;
 mod grains;

@@ -1,5 +1,6 @@
 //! Memory of large arrays in huge pages: a step passes over arrays that are larger than what the processor's table of pages of 4 KiB covers.
 
+use crate::out_of_memory::refused;
 use std::alloc::{GlobalAlloc, Layout, System};
 
 /// Allocations from this size on ask for huge pages (bytes): any block of this size contains a whole page of the usual 2 MiB.
@@ -16,11 +17,14 @@ const LARGE: usize = 4 << 20;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HugePages;
 
-/// Asks for huge pages for an allocation, where it is large.
+/// Asks for huge pages for an allocation, where it is large. One that the system refused is [reported](crate::out_of_memory).
 ///
 /// The advice remains where the system reuses the memory for small blocks; the memory that the process holds can then be somewhat larger.
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
+    if start.is_null() {
+        refused(size);
+    }
     /// A multiple of the page size of any usual machine, which `madvise` asks for.
     const PAGE: usize = 64 << 10;
     if start.is_null() || size < LARGE {
@@ -44,7 +48,11 @@ fn advise(start: *mut u8, size: usize) {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn advise(_: *mut u8, _: usize) {}
+fn advise(start: *mut u8, size: usize) {
+    if start.is_null() {
+        refused(size);
+    }
+}
 
 // SAFETY: every call is the system allocator's.
 unsafe impl GlobalAlloc for HugePages {

@@ -58,6 +58,7 @@ pub mod heat;
 pub mod huge_pages;
 pub mod laws;
 pub mod momentum;
+pub mod out_of_memory;
 pub mod process;
 pub mod program;
 pub mod solve;

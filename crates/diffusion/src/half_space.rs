@@ -117,6 +117,19 @@ impl HalfSpace {
         }
     }
 
+    /// Whether it is a later state of a half-space, which may be as deep as another: it has a temperature at each point of its grid.
+    pub(crate) fn fits(&self, first: &Self) -> bool {
+        let (points, grid) = (self.grid.points(), &self.grid);
+        [
+            grid.depth.len(),
+            grid.conductance.len() + 1,
+            self.temperature.len(),
+            self.lost.len(),
+        ] == [points; 4]
+            && self.area == first.area
+            && self.temperature.iter().all(|t| t.is_finite())
+    }
+
     /// Heat stored since a reference temperature (J).
     pub fn heat(&self, reference: f64) -> f64 {
         let each = self.grid.capacity.iter().zip(&self.temperature);

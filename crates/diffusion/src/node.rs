@@ -44,6 +44,16 @@ impl Node {
         }
     }
 
+    /// Whether it is a later state of a node: with the same kind of store, and a finite temperature.
+    pub fn fits(&self, first: &Self) -> bool {
+        let store = match (&self.store, &first.store) {
+            (Store::Fixed, Store::Fixed) | (Store::Lumped(_), Store::Lumped(_)) => true,
+            (Store::HalfSpace(a), Store::HalfSpace(b)) => a.fits(b),
+            _ => false,
+        };
+        store && self.temperature.is_finite()
+    }
+
     /// Adds a change of temperature (K).
     pub(crate) fn change(&mut self, by: f64) {
         add(&mut self.temperature, &mut self.lost, by);

@@ -547,7 +547,11 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         let read: Result<(Vec<f64>, Vec<f64>, Vec<f64>), _> = postcard::from_bytes(saved);
         let total = self.model.freedoms.total();
         match read {
-            Ok((q, v, free)) if q.len() == total && v.len() == total => {
+            Ok((q, v, free))
+                if [&q, &v]
+                    .iter()
+                    .all(|x| x.len() == total && x.iter().all(|x| x.is_finite())) =>
+            {
                 if !self.restore_free_strain(free) {
                     return false;
                 }

@@ -324,10 +324,11 @@ impl<S: Space> Observer<S> for Deformable {
             ]
         };
         let grains = self.grains.map(|_| GRAINS.to_owned());
+        let figure = ["deformable.png".to_owned()];
         let links = self.materials.iter();
         let links = links.map(|name| format!("elastic_grains_{name}.vtkhdf"));
         let of_bodies = self.bodies.iter().flat_map(of);
-        of_bodies.chain(grains).chain(links).collect()
+        of_bodies.chain(grains).chain(links).chain(figure).collect()
     }
 }
 

@@ -147,8 +147,8 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// Names of files that it may leave at the end, which a run that starts over in a folder first removes: so that no file of an
-    /// older run is taken for one of a run that was stopped. What is not named is overwritten at the end.
+    /// Names of files that it may leave at the end. A run that starts over in a folder first removes them, so that no file of an
+    /// older run is taken for one of a run that was stopped; and no two observers may name the same.
     fn file_names(&self) -> Vec<String> {
         Vec::new()
     }

@@ -136,6 +136,13 @@ impl<S: Space> Observer<S> for Scars {
         s.state.scars.iter().map(file).collect()
     }
 
+    fn file_names(&self) -> Vec<String> {
+        let names = self.names.iter().map(|name| file_name(name));
+        names
+            .flat_map(|name| [".csv", ".png"].map(|end| format!("{name}{end}")))
+            .collect()
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         figures::scars::charts(end.title, end.simulation)
     }

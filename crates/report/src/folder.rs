@@ -1,6 +1,7 @@
 //! The folder of a run: its files of results and summary, and what is missing of them.
 
 use crate::ReportError;
+use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
 use fretwork_store::results::Reader;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,8 @@ pub(crate) struct RunFolder {
     pub version: String,
     /// What is missing, in sentences.
     pub gaps: Vec<String>,
+    /// No run writes in it as long as it is read.
+    _lock: FolderLock,
 }
 
 impl RunFolder {
@@ -49,6 +52,12 @@ impl RunFolder {
                 "there is no results.h5 in it; name the folder that `fretwork run` wrote, such as results/CASE".to_owned(),
             ));
         }
+        let lock = FolderLock::read(path, RUN_LOCK).map_err(|_| {
+            no_run(
+                "a run is writing in it; make the page when it has ended, or stop it first (Ctrl-C, and later --resume)"
+                    .to_owned(),
+            )
+        })?;
         let damaged = |reason: String| {
             no_run(format!(
                 "its results.h5 cannot be read, {reason}; if it was copied, copy it again, or run the case again"
@@ -74,6 +83,7 @@ impl RunFolder {
             title,
             version,
             gaps,
+            _lock: lock,
         })
     }
 

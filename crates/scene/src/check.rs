@@ -12,6 +12,9 @@ use fretwork_core::step::control::Until;
 use fretwork_core::step::coupling::Coupling;
 use fretwork_core::step::{Simulation, Steps};
 
+/// Most materials and most interfaces of a case.
+const MOST: usize = 10_000;
+
 /// Checks the numbers of a case.
 ///
 /// # Errors
@@ -41,6 +44,18 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
             "a case needs at least one material",
         ));
     }
+    for (list, count) in [
+        ("materials", case.materials.len()),
+        ("interfaces", case.interfaces.len()),
+    ] {
+        if count > MOST {
+            let message = format!(
+                "{count} of them, at most {MOST}: every pair of materials has a place in a table; merge those that are alike"
+            );
+            return Err(ValidationError::new(list, message));
+        }
+    }
+    super::names::check(case)?;
     bodies(case, dimension)?;
     output_files(case)?;
     super::biaxial::check(case)?;

@@ -27,6 +27,7 @@ pub mod measures;
 pub mod mesh_file;
 pub mod methods;
 pub mod most_steps;
+mod names;
 pub mod phases;
 pub mod processes;
 pub mod profile_file;

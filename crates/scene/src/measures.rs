@@ -334,10 +334,8 @@ fn check_measure(case: &Case, spec: &MeasureSpec) -> Result<(), FieldError> {
 }
 
 fn check_name(name: &str) -> Result<(), FieldError> {
-    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-    if name.is_empty() || !name.chars().all(plain) {
-        let message = "a name is made of letters, digits, `-` and `_`: it names columns and files";
-        return Err(("name", message.into()));
+    if let Some(message) = super::names::word_fault(name) {
+        return Err(("name", message));
     }
     if RESERVED.contains(&name) {
         let message = format!("`{name}` is a column or a figure of every run; take another name");

@@ -4,11 +4,14 @@
 
 pub mod checkpoint;
 pub mod fclib;
+pub mod folder_lock;
 pub mod meshes;
 pub mod results;
 pub mod shapes;
 pub mod views;
 pub mod warnings;
+mod write_advice;
 
 pub use fretwork_observe::{series, summary};
 pub use summary::Summary;
+pub use write_advice::write_advice;

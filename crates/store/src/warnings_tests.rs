@@ -53,6 +53,7 @@ fn each_failed_check_is_a_reason() {
             version: String::new(),
             sha256: String::new(),
             path: String::new(),
+            links: Vec::new(),
             certified: false,
         }];
     });

@@ -68,6 +68,18 @@ pub const FLAG_COMPLIANT: u64 = 1 << 8;
 /// flag. Since version 1.1.
 pub const FLAG_TEMPERATURE: u64 = 1 << 9;
 
+/// All flags of this version.
+pub const FLAGS: u64 = FLAG_2D_ONLY
+    | FLAG_3D_ONLY
+    | FLAG_TENSION_ONLY
+    | FLAG_OPENING
+    | FLAG_CONSTANT
+    | FLAG_MOMENT
+    | FLAG_BREAKS
+    | FLAG_FORMS
+    | FLAG_COMPLIANT
+    | FLAG_TEMPERATURE;
+
 /// Describes one parameter or one internal variable. Frozen within a major version.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]

@@ -16,8 +16,7 @@ pub const EXAMPLES: &str = "Examples:
 pub struct NewArgs {
     /// Name of the law: a-z, 0-9 and -, e.g. my-law
     name: String,
-    /// contact, cohesion, damage or wear
-    #[arg(long)]
+    #[arg(long, help = Kind::words())]
     kind: String,
     /// Language
     #[arg(long, value_enum)]

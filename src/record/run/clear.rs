@@ -7,8 +7,8 @@ use crate::geometry::space::Space;
 use fretwork_observe::Observers;
 use std::path::Path;
 
-/// Names of the figures at the end of a run, and its report. Figures of measures and scars are named by a case, and are kept.
-const FIGURES: [&str; 9] = [
+/// Names of the figures at the end of a run that no observer names, and its report.
+pub(super) const FIGURES: [&str; 9] = [
     fretwork_report::FILE,
     "damage_ratio.png",
     "fretting_loops.png",
@@ -21,7 +21,7 @@ const FIGURES: [&str; 9] = [
 ];
 
 /// Files of the program in the folder of a run: they are in place when older files are removed, and no observer's.
-const OWN: [&str; 6] = [
+pub(super) const OWN: [&str; 6] = [
     "results.h5",
     "grains.vtkhdf",
     "bodies.vtkhdf",

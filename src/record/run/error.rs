@@ -4,8 +4,11 @@ use crate::record::checkpoint::ResumeError;
 use crate::record::code::CodeError;
 use crate::record::results::ResultsError;
 use crate::report::ReportError;
+use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
 use fretwork_observe::accuracy::PartError;
+use fretwork_store::folder_lock::LockError;
+use fretwork_store::write_advice;
 use std::path::{Path, PathBuf};
 
 /// Reason why a run failed. What was computed is on disk.
@@ -15,13 +18,16 @@ pub enum RunError {
     #[error(transparent)]
     Step(#[from] StepError),
     /// A file or folder cannot be written.
-    #[error("cannot write {}: {reason}; choose another folder with --out or make room", path.display())]
+    #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
         path: PathBuf,
         /// Reason.
         reason: String,
     },
+    /// Another run is writing in the folder, or it cannot be owned.
+    #[error(transparent)]
+    Lock(#[from] LockError),
     /// A written file cannot be read back.
     #[error("cannot read {} back: {reason}; its results are not summarised or drawn", path.display())]
     Read {
@@ -33,11 +39,14 @@ pub enum RunError {
     /// The state before repeated steps cannot be restored.
     #[error(transparent)]
     Repeat(#[from] RepeatError),
-    /// Two columns of the statistics have one name.
-    #[error(
-        "two columns of the statistics are named `{name}`; give a measure or an observer another name"
-    )]
-    ColumnTwice {
+    /// The case is wrong.
+    #[error(transparent)]
+    Input(Box<InputError>),
+    /// Two columns of the statistics or two files have one name, which no line of the case gives.
+    #[error("two {what}s are named `{name}`; give a measure or an observer another name")]
+    NameTwice {
+        /// Of what kind.
+        what: &'static str,
         /// The name.
         name: String,
     },
@@ -67,6 +76,17 @@ pub enum RunError {
     /// A checkpoint failed.
     #[error("cannot make a checkpoint: {0}")]
     Checkpoint(#[from] CodeError),
+}
+
+impl RunError {
+    /// Whether what the user gave is wrong, and nothing was run.
+    pub fn is_input(&self) -> bool {
+        match self {
+            Self::Resume(e) => e.is_input(),
+            Self::Input(_) | Self::Lock(LockError::Held { .. }) => true,
+            _ => false,
+        }
+    }
 }
 
 pub(super) fn unwritable(path: &Path, e: &dyn std::fmt::Display) -> RunError {

@@ -8,6 +8,7 @@ mod emergency;
 mod end;
 mod error;
 mod frame;
+mod names;
 mod notice;
 mod schedule;
 mod stamps;
@@ -15,6 +16,7 @@ mod timed;
 
 pub use self::end::write_outputs;
 pub use self::error::RunError;
+pub use self::names::check_names;
 
 use self::drawing::Drawing;
 use self::emergency::EmergencySave;
@@ -39,6 +41,7 @@ use fretwork_observe::heat::without_heat;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::{self, Observed};
 use fretwork_observe::{Observer, Observers};
+use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -262,14 +265,14 @@ struct Recorder<'a, S: Space> {
     summary: Summary,
     /// See [`Run::hurry`].
     hurry: Option<&'a AtomicBool>,
+    /// The folder is this run's alone until it is over.
+    _lock: FolderLock,
 }
 
 impl<'a, S: Observed> Recorder<'a, S> {
     /// From the start, or from where a run was stopped.
     fn new(run: Run<'a, S>) -> Result<Self, RunError> {
         let (loaded, mut built, options) = (run.loaded, run.built, run.options);
-        let frames = options.out.join("frames");
-        std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let case = &loaded.case;
         let number = run.stop.as_ref().map_or(0, |s| s.number + 1);
         let identity = Identity::of(loaded, &built)?;
@@ -279,6 +282,17 @@ impl<'a, S: Observed> Recorder<'a, S> {
         processes::install(case, simulation);
         let mut observers = run_observers(loaded, simulation);
         observers.append(run.observers);
+        names::check(loaded, &observers)?;
+        let lock = match &run.stop {
+            Some(stop) => stop.lock.clone(),
+            None => {
+                let made = std::fs::create_dir_all(&options.out);
+                made.map_err(|e| unwritable(&options.out, &e))?;
+                FolderLock::own(&options.out, RUN_LOCK)?
+            }
+        };
+        let frames = options.out.join("frames");
+        std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let summary = Summary {
             case: case.name.clone(),
             dimension: S::D,
@@ -293,7 +307,6 @@ impl<'a, S: Observed> Recorder<'a, S> {
             ..Summary::default()
         };
         let columns = observers.columns();
-        check_names(&columns)?;
         // The file of results comes first: it alone says what the folder holds.
         let part = options.out.join("results.h5.part");
         let results = create_results(&part, loaded, &built, &summary, &observers)?;
@@ -324,6 +337,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             simulation,
             loaded,
             hurry: run.hurry,
+            _lock: lock,
         };
         recorder.observers.begin(&mut recorder.simulation);
         let begun = match run.stop {
@@ -496,15 +510,4 @@ fn create_results<S: Dimensional>(
     let (statistics, grains) = (observers.columns(), observers.grain_columns());
     let header = views::header(loaded, &made, summary, &statistics, &grains);
     Ok(Results::create(part, &header)?)
-}
-
-/// Refuses two columns of one name.
-fn check_names(columns: &[Column]) -> Result<(), RunError> {
-    let twice = |k: &usize| columns[..*k].iter().any(|c| c.name == columns[*k].name);
-    match (0..columns.len()).find(twice) {
-        None => Ok(()),
-        Some(k) => Err(RunError::ColumnTwice {
-            name: columns[k].name.clone(),
-        }),
-    }
 }

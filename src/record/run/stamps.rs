@@ -37,12 +37,21 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
                         true => format!("built into {}", p.path.display()),
                         false => p.path.display().to_string(),
                     },
+                    links: links(p),
                     certified,
                 }),
             }
         }
     }
     stamps
+}
+
+/// The libraries that a law links to, each with its SHA-256.
+fn links(p: &Plugin) -> Vec<String> {
+    let links = p.links.iter();
+    links
+        .map(|(path, sum)| format!("{} {sum}", path.display()))
+        .collect()
 }
 
 /// Whether laws of a kind are certified beside a cohesion law.

@@ -58,11 +58,48 @@ impl Export<'_> {
     /// # Errors
     /// A file cannot be written, or the path of the program is not known.
     pub fn write(&self, engine: Engine) -> Result<Written, StudyError> {
+        self.check_texts(engine)?;
         match engine {
             Engine::Slurm => slurm::write(self),
             Engine::Hq => hyperqueue::write(self),
             Engine::Snakemake => snakemake::write(self),
             Engine::Jobs => jobs::write(self),
+        }
+    }
+
+    /// Refuses texts that a script cannot hold: a line of it would end in them, or an engine would read more than a name.
+    fn check_texts(&self, engine: Engine) -> Result<(), StudyError> {
+        let plan = self.plan;
+        for path in [&plan.file, &plan.out, &plan.launcher.case] {
+            if path.to_str().is_none() {
+                return Err(StudyError::Usage(format!(
+                    "the name {path:?} is not UTF-8, and a script cannot hold it; rename it"
+                )));
+            }
+        }
+        let texts = self
+            .call("point", &[])?
+            .into_iter()
+            .chain(self.lines.iter().cloned());
+        let case = absolute(&plan.launcher.case);
+        for text in texts.chain([case]) {
+            if text.chars().any(char::is_control) {
+                return Err(StudyError::Usage(format!(
+                    "{text:?} has a control character, such as the end of a line, and a script would take what follows for a command; rename it"
+                )));
+            }
+        }
+        let special = match engine {
+            Engine::Slurm => "\"\\",
+            Engine::Snakemake => "{}",
+            Engine::Hq | Engine::Jobs => "",
+        };
+        let out = absolute(&plan.out);
+        match out.chars().find(|c| special.contains(*c)) {
+            None => Ok(()),
+            Some(c) => Err(StudyError::Usage(format!(
+                "the folder {out} has a `{c}`, which the engine does not take as a part of a name; give another with --out"
+            ))),
         }
     }
 
@@ -138,6 +175,18 @@ fn absolute(path: &Path) -> String {
 fn shell(words: &[String]) -> String {
     let quoted: Vec<String> = words.iter().map(|w| quote(w)).collect();
     quoted.join(" ")
+}
+
+/// Words for a POSIX shell, of which one is a text that is one already.
+fn shell_with(words: &[String], marked: &str, text: &str) -> String {
+    let word = |w: &String| {
+        if w == marked {
+            text.to_owned()
+        } else {
+            quote(w)
+        }
+    };
+    words.iter().map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// A word for a POSIX shell.

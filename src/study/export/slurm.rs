@@ -1,7 +1,7 @@
 //! Slurm: a job array, each task of which makes a chunk of the runs, and a job that collects when all have ended.
 
 use super::super::StudyError;
-use super::{Export, Written, absolute, quote, shell};
+use super::{Export, Written, absolute, quote, shell, shell_with};
 
 pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     let logs = absolute(&export.logs()?);
@@ -19,8 +19,11 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
             crate::runs::duration::seconds(s)
         )
     });
-    let point = shell(&export.call("point", &["$first-$last"])?)
-        .replace("'$first-$last'", "\"$first-$last\"");
+    // No other word of a call has a control character.
+    let words = export.call("point", &["\u{1}"])?;
+    let point = shell_with(&words, "\u{1}", "\"$first-$last\"");
+    // A percent sign begins what Slurm fills in.
+    let logs = logs.replace('%', "%%");
     let array = format!(
         "#!/bin/sh\n\
          # {count} runs in {tasks} tasks of {chunk}; written by fretwork study export --to slurm.\n\

@@ -1,7 +1,7 @@
 //! Snakemake: a rule that makes a chunk of runs, and one that collects.
 
 use super::super::StudyError;
-use super::{Export, Written, absolute, quote, shell};
+use super::{Export, Written, absolute, quote, shell, shell_with};
 use crate::study::spec::DesignSpec;
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,11 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
     let tasks = export.tasks().len();
     let (count, chunk) = (export.plan.count(), export.chunk);
     // Braces are Snakemake's own.
-    let escaped = |words: Vec<String>| shell(&words).replace('{', "{{").replace('}', "}}");
-    let point = escaped(export.call("point", &["\u{1}"])?).replace("'\u{1}'", "{params.runs}");
-    let collect = escaped(export.call("collect", &[])?);
+    let escaped = |text: String| text.replace('{', "{{").replace('}', "}}");
+    // No other word of a call has a control character.
+    let point = shell_with(&export.call("point", &["\u{1}"])?, "\u{1}", "\u{1}");
+    let point = escaped(point).replace('\u{1}', "{params.runs}");
+    let collect = escaped(shell(&export.call("collect", &[])?));
     // A text of JSON is one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));

@@ -127,6 +127,11 @@ fn a_law_that_ends_the_program_in_a_step() {
         ),
         ("CRASHES", "`own` crashed in prepare (SIGSEGV"),
         ("ABORTS", "`own` crashed in prepare (SIGABRT"),
+        (
+            "ENDS_ITS_THREAD",
+            "`own` crashed in prepare (it threw an exception, or ended its thread)",
+        ),
+        ("THROWS", "`own` crashed in prepare ("),
         #[cfg(target_arch = "x86_64")]
         ("DIVIDES", "`own` crashed in prepare (SIGFPE"),
     ] {
@@ -223,4 +228,76 @@ fn certificates_of_laws_that_end_the_process() {
         assert!(line.contains("FAIL") && line.contains(why), "{said}");
         assert!(line.contains("while `dissipation` was tested"), "{said}");
     }
+}
+
+/// Rounding and subnormal numbers belong to the caller: the run is that of a law which leaves them alone, and the certificate names it.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn a_law_that_changes_rounding_changes_no_number() {
+    let rows = |trial: &Trial| {
+        assert!(run(trial, &["--set", "time.end=0.2"]).status.success());
+        std::fs::read(trial.path("results/case/statistics.csv")).unwrap()
+    };
+    let (good, _) = own("GOOD");
+    let expected = rows(&good);
+    for (fault, when) in [
+        ("ROUNDS_UP", "in a call"),
+        ("FLUSHES_WHEN_LOADED", "while it is loaded"),
+    ] {
+        let (trial, _) = own(fault);
+        assert!(rows(&trial) == expected, "{fault}");
+        let certified = trial.call(&["law", "certify", "own", "--plugin-path", "."]);
+        let table = String::from_utf8_lossy(&certified.stdout).into_owned();
+        let line = table
+            .lines()
+            .find(|l| l.contains("floating point"))
+            .unwrap();
+        assert!(line.contains("FAIL") && line.contains(when), "{line}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_law_prints_is_no_part_of_an_answer() {
+    let (trial, _) = own("PRINTS");
+    let output = run(&trial, &["--json"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["steps"], 2);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("a step"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_law_that_changes_the_folder_moves_no_results() {
+    let (trial, _) = own("MOVES");
+    let output = run(&trial, &[]);
+    says(&output, 0, &[]);
+    let out = trial.path("results/case");
+    assert!(out.join("summary.json").exists() && out.join("report.html").exists());
+}
+
+#[test]
+fn flags_of_a_later_interface_are_refused() {
+    let trial = Trial::new();
+    trial.compile_law("own", "(1ull << 40)");
+    let shown = trial.call(&["law", "show", "own", "--plugin-path", "."]);
+    refusal(
+        &shown,
+        &["sets flags that this program does not know (0x10000000000)"],
+    );
+}
+
+/// A file beside the user, named without a folder: the linker would look for it where the system has its libraries.
+#[test]
+fn a_library_is_certified_in_its_own_folder() {
+    let (trial, _) = own("SPOOFS");
+    let file = library(&trial);
+    let name = file.file_name().unwrap().to_str().unwrap();
+    says(&trial.call(&["law", "certify", name]), 0, &[]);
+    trial.write("libbroken.so", "no library");
+    says(
+        &trial.call(&["law", "certify", "libbroken.so"]),
+        2,
+        &["is not a loadable library ("],
+    );
 }

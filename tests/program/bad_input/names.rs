@@ -233,3 +233,92 @@ fn two_interfaces_of_one_name() {
         &["two interfaces are named `grains`"],
     );
 }
+
+/// Names of bodies stand in names of files and columns, and in paths of the results.
+#[test]
+fn a_body_whose_name_is_a_path() {
+    for bad in [
+        "wheel/rail",
+        "/abs",
+        "a\\\\b",
+        "..",
+        ".hidden",
+        "=1+1",
+        "",
+        "a\\nb",
+        "c:",
+    ] {
+        refused(
+            &with(PLANE, r#"name: "floor""#, &format!("name: ‸\"{bad}\"")),
+            &["name"],
+        );
+    }
+    let long = "x".repeat(300);
+    refused(
+        &with(PLANE, r#"name: "floor""#, &format!("name: ‸\"{long}\"")),
+        &["at most 100 bytes"],
+    );
+    // Spaces, points and letters of any language are none.
+    let trial = Trial::new();
+    let case = with(
+        PLANE,
+        r#"name: "floor""#,
+        r#"name: "sol élastique 1.2 (bas)""#,
+    );
+    trial.write("case.ron", case);
+    assert!(trial.call(&["run", "case.ron"]).status.success());
+}
+
+/// The same sentence from `run`, before anything is written, and from `check`.
+fn taken(case: &str, words: &[&str]) {
+    refused(case, words);
+    let trial = Trial::new();
+    let (case, place) = trial.write_marked("case.ron", case);
+    let checked = trial.call(&["check", case.to_str().unwrap(), "--no-timing"]);
+    let said = super::trial::refusal(&checked, words);
+    assert!(said.starts_with(&place.unwrap()), "{said}");
+}
+
+#[test]
+fn a_measure_with_the_name_of_a_file_of_every_run() {
+    for name in ["statistics", "Statistics"] {
+        let measure = format!(
+            "    measures: [Profile(name: ‸\"{name}\", axis: 1, low: [0.0, 0.0], high: [0.4, 0.1], bins: 4)],\n    friction: ("
+        );
+        taken(
+            &with(PLANE, "    friction: (", &measure),
+            &["another file in the folder of the results is named `statistics.csv`"],
+        );
+    }
+}
+
+#[test]
+fn a_measure_with_the_name_of_a_column_of_a_body() {
+    let measure = "    measures: [Mass(name: ‸\"lid_x\", axis: 1, above: 0.0)],\n    friction: (";
+    taken(
+        &with(PLANE, "    friction: (", measure),
+        &["another column of statistics.csv is named `lid_x`"],
+    );
+}
+
+/// Of two measures, and of a part that a measure adds to its name.
+#[test]
+fn two_measures_with_one_file() {
+    let profile = |name: &str| {
+        format!("Profile(name: {name}, axis: 1, low: [0.0, 0.0], high: [0.4, 0.1], bins: 4)")
+    };
+    let two = |one: &str, other: &str| {
+        let measures = format!("    measures: [{one}, {other}],\n    friction: (");
+        with(PLANE, "    friction: (", &measures)
+    };
+    let layer = r#"ThirdBody(name: "gap", between: ("floor", "lid"), along: 0, across: 1)"#;
+    taken(
+        &two(layer, &profile("‸\"gap_energy\"")),
+        &["is named `gap_energy.csv`"],
+    );
+    // The same file on systems that do not tell capitals from small letters.
+    taken(
+        &two(&profile("\"Top\""), &profile("‸\"top\"")),
+        &["is named `top.csv`"],
+    );
+}

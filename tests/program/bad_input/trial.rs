@@ -92,6 +92,27 @@ __attribute__((constructor)) static void loaded(void) {
 #endif
 }
 #endif
+#if defined ROUNDS_UP || defined FLUSHES_WHEN_LOADED
+#include <xmmintrin.h>
+#endif
+#ifdef FLUSHES_WHEN_LOADED
+__attribute__((constructor)) static void loaded(void) { _mm_setcsr(_mm_getcsr() | 0x8040); }
+#endif
+#ifdef MOVES
+__attribute__((constructor)) static void loaded(void) { if (chdir("/") != 0) abort(); }
+#endif
+#ifdef ENDS_ITS_THREAD
+#include <pthread.h>
+#endif
+#ifdef THROWS
+#include <unwind.h>
+#endif
+#ifdef PRINTS
+#include <stdio.h>
+#endif
+#ifdef LINKS
+double helper(void);
+#endif
 #ifdef SWAPS
 #include <stdio.h>
 __attribute__((constructor)) static void loaded(void) { rename("next", "libfretwork_contact_own.so"); }
@@ -123,6 +144,24 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
 #ifdef ABORTS
     if (calls > 1000) abort();
 #endif
+#ifdef ENDS_ITS_THREAD
+    if (calls > 1000) pthread_exit(NULL);
+#endif
+#ifdef THROWS
+    // What a C++ compiler makes of `throw`.
+    static struct _Unwind_Exception thrown;
+    if (calls > 1000) _Unwind_RaiseException(&thrown);
+#endif
+#ifdef ROUNDS_UP
+    _mm_setcsr(_mm_getcsr() | 0x4000);
+#endif
+#ifdef PRINTS
+    printf("a step\n");
+    fflush(stdout);
+#endif
+#ifdef MOVES
+    if (chdir("/") != 0) abort();
+#endif
 #ifdef FAILS
     static int asked;
     if (++asked > 200) return FW_ERROR;
@@ -136,6 +175,9 @@ static int32_t prepare(const fw_batch *b, fw_message *m) {
 #endif
     for (size_t k = 0; k < b->n; k++) {
         b->out_friction[k] = b->parameters[0];
+#ifdef LINKS
+        b->out_friction[k] = helper();
+#endif
 #ifdef BOUNCES
         b->out_restitution_n[k] = BOUNCES;
 #endif
@@ -220,6 +262,20 @@ impl Trial {
 
     /// The same with a fault, a word that the text asks for: it `LOOPS` for ever in prepare, say, or `SPILLS` behind a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
+        self.compile(name, flags, fault, &[]);
+    }
+
+    /// A law that links to `lib/libhelper.so`, which it finds beside itself.
+    pub fn compile_linked_law(&self, name: &str, fault: &str) {
+        self.compile(
+            name,
+            "0",
+            fault,
+            &["-Llib", "-lhelper", "-Wl,-rpath,$ORIGIN/lib"],
+        );
+    }
+
+    fn compile(&self, name: &str, flags: &str, fault: &str, links: &[&str]) {
         use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
         let source = self.write("law.c", LAW);
         let file = name.replace('-', "_");
@@ -231,6 +287,8 @@ impl Trial {
             .arg(format!("-D{fault}"))
             .arg("-o")
             .args([&library, &source])
+            .args(links)
+            .current_dir(&self.folder)
             .status()
             .expect("a C compiler named cc");
         assert!(compiled.success());

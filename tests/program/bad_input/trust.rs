@@ -284,3 +284,59 @@ fn check_times_steps_of_laws_that_fail_and_hang() {
         assert!(line.is_some_and(|l| l.contains(says)), "{fault}: {text}");
     }
 }
+
+/// What a law links to runs with it: it is doubted, pinned and recorded with it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_library_that_a_law_links_to_is_a_part_of_it() {
+    use std::os::unix::fs::PermissionsExt;
+    let trial = Trial::new();
+    std::fs::create_dir_all(trial.path("lib")).unwrap();
+    let helper = |value: &str| {
+        let source = trial.write(
+            "helper.c",
+            format!("double helper(void) {{ return {value}; }}"),
+        );
+        let library = trial.path("lib/libhelper.so");
+        let made = std::process::Command::new("cc")
+            .args(["-shared", "-fPIC", "-Wl,-soname,libhelper.so", "-o"])
+            .args([&library, &source])
+            .status();
+        assert!(made.unwrap().success());
+        library
+    };
+    let library = helper("0.3");
+    trial.compile_linked_law("own", "LINKS");
+    let case = with(PLANE, r#"contact: "coulomb""#, r#"contact: "own""#);
+    let case = with(&case, r#"parameters_from: "laws","#, "");
+    trial.write("case.ron", &case);
+    let sum = || {
+        let shown = trial.call(&["law", "show", "own", "--plugin-path", "."]);
+        let shown = String::from_utf8_lossy(&shown.stdout).into_owned();
+        assert!(
+            shown.contains("links to") && shown.contains("libhelper.so"),
+            "{shown}"
+        );
+        let line = shown.lines().find(|l| l.contains("sha256")).unwrap();
+        line.split_whitespace().last().unwrap().to_owned()
+    };
+    let first = sum();
+    says(&run(&trial, &[]), 0, &[]);
+    let summary = std::fs::read_to_string(trial.path("results/case/summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let link = summary["plugins"][0]["links"][0].as_str().unwrap();
+    assert!(link.contains("libhelper.so "), "{link}");
+    // Pinned with the law: another helper is another law.
+    helper("0.4");
+    assert_ne!(sum(), first);
+    let pin = format!("pins.contact/own={first}");
+    refusal(
+        &run(&trial, &["--set", &pin]),
+        &["has the SHA-256", "as pinned"],
+    );
+    std::fs::set_permissions(&library, std::fs::Permissions::from_mode(0o666)).unwrap();
+    refusal(
+        &run(&trial, &[]),
+        &["it links to", "libhelper.so", "anybody may write to"],
+    );
+}

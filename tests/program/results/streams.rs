@@ -154,3 +154,37 @@ fn threads_that_cannot_be_started_are_told() {
     assert!(told.contains("cannot start 1024 threads"), "{told}");
     std::fs::remove_dir_all(out).ok();
 }
+
+/// Memory that the system refuses ends the program with a sentence and exit code 1, and no signal.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_that_runs_out_is_told() {
+    let out = folder("memory-limit");
+    std::fs::create_dir_all(&out).unwrap();
+    let case = out.join("many.ron");
+    let grain = |k: usize| format!("(at: [{}.0, {}.0], radius: 0.5)", k % 1000, k / 1000);
+    let grains: Vec<String> = (0..200_000).map(grain).collect();
+    let text = format!(
+        r#"(name: "many", dimension: 2, time: (step: 1e-4, end: 1e-3), materials: {{"g": "glass_bead"}},
+        interfaces: [(name: "g", between: ("g", "g"), contact: "frictionless")],
+        grains: [List(material: "g", grains: [{}])])"#,
+        grains.join(",")
+    );
+    std::fs::write(&case, text).unwrap();
+    let program = env!("CARGO_BIN_EXE_fretwork");
+    let run = format!("run {} --out {}/run", case.display(), out.display());
+    for limit in [200_000, 300_000] {
+        let output = Command::new("sh")
+            .args(["-c", &format!("ulimit -v {limit}; exec {program} {run}")])
+            .output()
+            .unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{told}");
+        assert!(
+            told.contains("error: memory ran out: the system refused "),
+            "{told}"
+        );
+        assert_eq!(told.lines().count(), 1, "{told}");
+    }
+    std::fs::remove_dir_all(out).ok();
+}

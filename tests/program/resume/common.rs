@@ -138,7 +138,10 @@ pub fn draft(out: &Path) -> Option<Vec<u8>> {
 pub fn last_frame(out: &Path) -> Option<Frame> {
     let kept = PreviousResults::open(&out.join("results.h5")).ok()?;
     let slots = kept.checkpoints().ok()?;
-    let frames = slots.iter().filter_map(|bytes| Frame::read(bytes));
+    let frames = slots
+        .iter()
+        .flatten()
+        .filter_map(|bytes| Frame::read(bytes));
     frames.max_by_key(|f| f.number)
 }
 

@@ -270,7 +270,7 @@ fn a_full_disk_is_told_and_the_run_goes_on_when_there_is_room() {
             .unwrap();
         let told = said(&output, 1);
         assert!(
-            told.contains("cannot write") && told.contains("make room"),
+            told.contains("cannot write") && told.contains("ulimit -f"),
             "{told}"
         );
         let told = job().done(&out.0, &["--resume"]);

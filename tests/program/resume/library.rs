@@ -249,7 +249,7 @@ fn two_columns_of_one_name_are_refused() {
     let run = run.observe(MeanGap::default()).observe(MeanGap::default());
     let error = run.execute(&mut |_| ControlFlow::Continue(())).unwrap_err();
     assert!(
-        matches!(&error, RunError::ColumnTwice { name } if name == "mean_gap"),
+        matches!(&error, RunError::NameTwice { name, .. } if name == "mean_gap"),
         "{error}"
     );
 }

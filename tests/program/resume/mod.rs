@@ -10,6 +10,7 @@ mod laws;
 mod library;
 mod longer_heat;
 mod observer_files;
+mod owner;
 mod repeats;
 #[cfg(unix)]
 mod signals;

@@ -57,8 +57,7 @@ impl<S: Space> Observer<S> for Speeds {
     }
 
     fn file_names(&self) -> Vec<String> {
-        // The program's own file is not removed, whoever names it.
-        vec!["speeds.csv".to_owned(), "results.h5".to_owned()]
+        vec!["speeds.csv".to_owned()]
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

@@ -1,4 +1,4 @@
-//! SIGINT and SIGTERM: a run ends at the end of its step with a summary, says how to go on, and ends in the same bits then.
+//! SIGINT, SIGTERM, and the signals of a terminal and of limits: a run ends at the end of its step with a summary, says how to go on, and ends in the same bits then.
 
 use super::common::{Folder, Job, last_frame, same};
 use fretwork::record::checkpoint::Kind;
@@ -65,7 +65,13 @@ fn summary(out: &Path) -> Value {
 fn a_run_that_is_interrupted_ends_well_and_goes_on_with_the_same_bits() {
     let whole = Folder::new("signals-whole");
     JOB.done(&whole.0, &[]);
-    for (number, name) in [(libc::SIGINT, "SIGINT"), (libc::SIGTERM, "SIGTERM")] {
+    for (number, name) in [
+        (libc::SIGINT, "SIGINT"),
+        (libc::SIGTERM, "SIGTERM"),
+        (libc::SIGHUP, "SIGHUP"),
+        (libc::SIGXCPU, "SIGXCPU"),
+        (libc::SIGXFSZ, "SIGXFSZ"),
+    ] {
         let folder = Folder::new(&format!("signals-{name}"));
         let output = interrupted(&JOB, &folder.0, number);
         assert_eq!(output.status.code(), Some(1), "{output:?}");

@@ -262,3 +262,53 @@ fn readings_of_the_last_step_are_the_same_after_a_resumption() {
     assert_eq!(whole.state.started, resumed.state.started);
     assert_eq!(whole.state.received, resumed.state.received);
 }
+
+/// A state whose numbers are those of no scene, behind a checksum that is right, is refused before a step is made.
+#[test]
+fn a_state_of_no_scene_is_refused() {
+    use fretwork::geometry::space::Dim3;
+    let scene = || match built("shear_cell_3d", &[]) {
+        Scene::Dim3(built) => built.simulation,
+        Scene::Dim2(_) => panic!("a case in space"),
+    };
+    let mut whole = scene();
+    steps(&mut whole, 20);
+    let bytes = all(&whole);
+    type Change = fn(&mut State<Dim3>);
+    let changes: [(&str, Change); 16] = [
+        ("a ball that is not there", |s| {
+            s.network.contacts[0].key.candidate = 1 << 29
+        }),
+        ("a piece that is not there", |s| {
+            s.network.contacts[0].key.antagonist = 1 << 30
+        }),
+        ("a surface that is not there", |s| {
+            s.network.contacts[0].key.antagonist = u32::MAX
+        }),
+        ("a body that is not there", |s| {
+            s.network.contacts[0].bodies[1] = u32::MAX
+        }),
+        ("another body", |s| s.network.contacts[0].bodies.reverse()),
+        ("a law that is not there", |s| s.network.contacts[0].law = 9),
+        ("memory that is not there", |s| {
+            s.network.contacts[0].slot = 1_000_000
+        }),
+        ("no gap", |s| s.network.contacts[0].gap = f64::NAN),
+        ("no normal", |s| {
+            s.network.contacts[0].normal.x = f64::INFINITY
+        }),
+        ("no order", |s| s.network.contacts.reverse()),
+        ("no place", |s| s.bodies.position[3].y = f64::NAN),
+        ("no velocity", |s| s.bodies.velocity[3].y = f64::INFINITY),
+        ("a mass too many", |s| s.bodies.mass.push(1.0)),
+        ("a body less", |s| drop(s.bodies.id.pop())),
+        ("a drive less", |s| drop(s.bodies.driven[0].dofs.pop())),
+        ("no time", |s| s.time = f64::NAN),
+    ];
+    for (what, change) in changes {
+        let mut state: State<Dim3> = decode(&bytes).unwrap();
+        change(&mut state);
+        assert!(!scene().restore(state), "{what}");
+    }
+    assert!(scene().restore(decode(&bytes).unwrap()));
+}

@@ -108,3 +108,44 @@ fn a_number_beyond_the_study_is_refused() {
     assert_eq!(folder.runs().len(), 2);
     assert!(json(&folder.0.join("out/study.json"))["random"] == true);
 }
+
+/// The rest of a name behind the end of a line would be a line of the script.
+#[cfg(unix)]
+#[test]
+fn a_name_with_an_end_of_a_line_becomes_no_command() {
+    let folder = Folder::new("lines");
+    folder.study(&mu("0.1"), "");
+    let name = "study\ntouch made\n.ron";
+    std::fs::rename(folder.0.join("study.ron"), folder.0.join(name)).unwrap();
+    for engine in ["slurm", "hq", "snakemake", "jobs"] {
+        let export = folder.call(&["export", name, "--out", "out", "--to", engine]);
+        let said = String::from_utf8_lossy(&export.stderr).into_owned();
+        assert_eq!(export.status.code(), Some(2), "{said}");
+        assert!(said.contains("control character"), "{said}");
+        for script in ["array.sbatch", "study.hq.toml", "Snakefile", "jobs.txt"] {
+            assert!(!folder.0.join("out").join(script).exists(), "{script}");
+        }
+    }
+    // Quotes and dollars are a part of the name to every shell.
+    let name = "a'$first-$last'$(touch made).ron";
+    std::fs::rename(
+        folder.0.join("study\ntouch made\n.ron"),
+        folder.0.join(name),
+    )
+    .unwrap();
+    let out = ["--out", "out", "--to", "slurm"];
+    let export = folder.call(&[&["export", name][..], &out].concat());
+    assert!(export.status.success(), "{export:?}");
+    let script = std::fs::read_to_string(folder.0.join("out/array.sbatch")).unwrap();
+    let line = script.lines().find(|l| l.starts_with("exec ")).unwrap();
+    // What the shell makes of the words.
+    let words = line.replacen("exec ", "printf '%s\\n' ", 1);
+    let shell = Command::new("sh")
+        .args(["-c", &words])
+        .current_dir(&folder.0)
+        .output()
+        .unwrap();
+    let words = String::from_utf8(shell.stdout).unwrap();
+    assert!(words.lines().any(|w| w.ends_with(name)), "{words}");
+    assert!(!folder.0.join("made").exists());
+}

@@ -132,6 +132,11 @@ impl<S: Space> Paths<S> {
         }
     }
 
+    /// Number of degrees of freedom.
+    pub(super) fn dofs(&self) -> usize {
+        self.along.len()
+    }
+
     /// Starts a new path of a degree of freedom with the next step.
     pub(super) fn forget(&mut self, dof: usize) {
         self.along[dof] = None;

@@ -107,11 +107,11 @@ impl<S: Space> Bodies<S> {
         self.id.len()
     }
 
-    /// Returns whether all arrays have the length of the bodies, and the driven bodies are valid and have
-    /// paths.
-    pub fn is_complete(&self) -> bool {
-        let n = self.len();
+    /// Returns whether these are later states of the same bodies: all arrays have their length, and numbers of motion are finite.
+    pub(crate) fn fits(&self, first: &Self) -> bool {
+        let n = first.len();
         let columns = [
+            self.id.len(),
             self.position.len(),
             self.rotation.len(),
             self.velocity.len(),
@@ -123,12 +123,25 @@ impl<S: Space> Bodies<S> {
             self.inverse_inertia.len(),
             self.removed.len(),
         ];
-        columns.iter().all(|rows| *rows == n)
-            && self.tensors.len() <= n
-            && self.lost.len() <= n
-            && self.carriers.len() <= n
-            && self.paths.len() == self.driven.len()
-            && self.driven.iter().all(|d| (d.body as usize) < n)
+        let driven = self.driven.iter().zip(&first.driven);
+        let same = |(a, b): (&Driven, &Driven)| {
+            a.body == b.body
+                && a.dofs.len() == b.dofs.len()
+                && a.dofs.iter().all(|d| d.fault().is_none())
+        };
+        let paths = self.paths.iter().zip(&first.paths);
+        let numbers = self.mass.iter().chain(&self.inertia).chain(&self.length);
+        columns == [n; 11]
+            && self.tensors.len() == first.tensors.len()
+            && (self.lost.is_empty() || self.lost.len() == n)
+            && self.carriers == first.carriers
+            && [self.driven.len(), self.paths.len()] == [first.driven.len(); 2]
+            && driven.into_iter().all(same)
+            && paths.into_iter().all(|(a, b)| a.dofs() == b.dofs())
+            && self.position.iter().all(VectorLike::is_finite)
+            && self.velocity.iter().all(VectorLike::is_finite)
+            && self.spin.iter().all(VectorLike::is_finite)
+            && numbers.into_iter().all(|x| !x.is_nan())
     }
 
     /// Returns whether there are no bodies.

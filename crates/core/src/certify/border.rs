@@ -10,7 +10,7 @@ use std::sync::Barrier;
 /// The first check: a law that fails it may corrupt the memory of all later ones.
 pub const FIRST: (&str, Check) = ("columns", columns);
 
-pub const CHECKS: [(&str, Check); 7] = [
+pub const CHECKS: [(&str, Check); 8] = [
     ("range", range),
     ("batch", batch),
     ("static memory", static_memory),
@@ -18,6 +18,7 @@ pub const CHECKS: [(&str, Check); 7] = [
     ("restore", restore),
     ("no hidden state", hidden),
     ("bad numbers", bad_numbers),
+    ("floating point", floating_point),
 ];
 
 /// The checks that depend on parameters; the others depend on the code only.
@@ -57,6 +58,20 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
         }
     }
     Ok(Line::judged("columns", true, 0.0, KEPT))
+}
+
+/// Checks that the law leaves rounding and subnormal numbers of its caller as they are, in all calls before.
+fn floating_point(rig: &mut Rig) -> Result<Line, LawError> {
+    const CHECK: &str = "floating point";
+    let kept = "leaves rounding and subnormal numbers of its caller as they are";
+    Ok(match rig.tested().plugin.disturbs_floating_point() {
+        None => Line::judged(CHECK, true, 0.0, kept),
+        Some(when) => {
+            let text =
+                format!("it changes rounding or flushes subnormal numbers for its caller {when}");
+            Line::judged(CHECK, false, 1.0, text)
+        }
+    })
 }
 
 /// Checks that outputs are within their physical range.

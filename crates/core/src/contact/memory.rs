@@ -183,6 +183,11 @@ impl<S: Space> Memory<S> {
         self.made += 1;
     }
 
+    /// The slots that are not in use.
+    pub(super) fn free_slots(&self) -> &[u32] {
+        &self.free
+    }
+
     /// Frees a slot.
     pub fn release(&mut self, slot: u32) {
         self.bonds[slot as usize].live = false;

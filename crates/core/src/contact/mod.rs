@@ -1,6 +1,7 @@
 //! The contact network: contacts, their geometry, and their memory.
 pub mod detect;
 pub mod events;
+mod fits;
 pub mod id;
 pub mod memory;
 pub mod network;

@@ -272,25 +272,6 @@ fn counts<S: Space>(contact: &Contact<S>) -> bool {
 }
 
 impl<S: Space> Network<S> {
-    /// Returns whether all bodies of its contacts have indices below this number. Broken pairs refer to
-    /// shapes, not bodies, and are only compared.
-    pub(crate) fn names_bodies_below(&self, bodies: usize) -> bool {
-        let below = |b: &u32| (*b as usize) < bodies;
-        self.contacts.iter().all(|c| c.bodies.iter().all(below))
-    }
-
-    /// Returns whether its contacts and their memory are those of interfaces with these numbers of internal variables, and in order.
-    pub(crate) fn fits_interfaces(&self, mut variables: impl Iterator<Item = usize>) -> bool {
-        let memory_fits = |m: &Memory<S>| variables.next() == Some(m.variables.len());
-        let in_range = |c: &Contact<S>| {
-            let memory = self.memory.get(c.law as usize);
-            memory.is_some_and(|m| c.memory().is_none_or(|slot| slot < m.bonds.len()))
-        };
-        // Detection searches them by pair.
-        let sorted = self.contacts.is_sorted_by_key(|c| c.key.pair());
-        sorted && self.memory.iter().all(memory_fits) && self.contacts.iter().all(in_range)
-    }
-
     /// Gives a contact another normal; what it remembers along the surface turns with it.
     pub(crate) fn turn(&mut self, contact: usize, normal: &S::Vector) {
         let contact = &mut self.contacts[contact];

@@ -39,16 +39,19 @@ impl HeatState {
         }
     }
 
-    /// Lengths of its lists, by which states of different scenes are told apart.
-    pub(crate) fn lengths(&self) -> [usize; 4] {
-        let Self {
-            nodes,
-            received,
-            stretch,
-            expanded,
-            ..
-        } = self;
-        [nodes.len(), received.len(), stretch.len(), expanded.len()]
+    /// Whether it is a later state of the same nodes.
+    pub(crate) fn fits(&self, first: &Self) -> bool {
+        let nodes = self.nodes.iter().zip(&first.nodes);
+        let lengths = |s: &Self| {
+            [
+                s.nodes.len(),
+                s.pending.len(),
+                s.received.len(),
+                s.stretch.len(),
+                s.expanded.len(),
+            ]
+        };
+        lengths(self) == lengths(first) && nodes.into_iter().all(|(a, b)| a.fits(b))
     }
 
     /// In how many steps of the mechanics, this one included, bodies come to the size of their temperature.

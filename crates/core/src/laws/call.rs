@@ -2,7 +2,7 @@
 
 use super::error::LawError;
 use super::library::{Call, Plugin};
-use super::watch;
+use super::{outside, watch};
 use fretwork_abi as abi;
 use std::ffi::c_char;
 
@@ -16,12 +16,20 @@ impl Plugin {
         if values.len() != self.parameters.len() {
             return None;
         }
-        // SAFETY: the signature is that of the ABI, with one value per parameter.
-        let energy = self
-            .table
-            .fracture_energy
-            .map(|f| unsafe { f(values.as_ptr(), angle) });
-        energy.filter(|e| e.is_finite())
+        let function = self.table.fracture_energy?;
+        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        let function = unsafe {
+            std::mem::transmute::<
+                unsafe extern "C" fn(*const f64, f64) -> f64,
+                unsafe extern "C-unwind" fn(*const f64, f64) -> f64,
+            >(function)
+        };
+        let disturbed = &self.disturbed.calling;
+        let energy = outside::call(self.label, watch::FRACTURE_ENERGY, disturbed, || {
+            // SAFETY: the signature is that of the ABI, with one value per parameter.
+            unsafe { function(values.as_ptr(), angle) }
+        });
+        Some(energy).filter(|e| e.is_finite())
     }
 
     /// Checks parameter values against the schema and with the law's own `validate` function.
@@ -54,10 +62,18 @@ impl Plugin {
         };
         let mut buffer = [0 as c_char; MESSAGE];
         let mut message = message_over(&mut buffer);
-        let inside = watch::enter(self.label, 4);
-        // SAFETY: the ABI's signature; the buffers outlive the call.
-        let status = unsafe { validate(values.as_ptr(), &mut message) };
-        drop(inside);
+        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        let validate = unsafe {
+            std::mem::transmute::<
+                unsafe extern "C" fn(*const f64, *mut abi::FwMessage) -> i32,
+                unsafe extern "C-unwind" fn(*const f64, *mut abi::FwMessage) -> i32,
+            >(validate)
+        };
+        let disturbed = &self.disturbed.calling;
+        let status = outside::call(self.label, watch::VALIDATE, disturbed, || {
+            // SAFETY: the ABI's signature; the buffers outlive the call.
+            unsafe { validate(values.as_ptr(), &mut message) }
+        });
         if status == abi::STATUS_OK {
             Ok(())
         } else {
@@ -84,10 +100,18 @@ impl Plugin {
         };
         let mut buffer = [0 as c_char; MESSAGE];
         let mut message = message_over(&mut buffer);
-        let inside = watch::enter(self.label, call as usize);
-        // SAFETY: by the contract of this function.
-        let status = unsafe { function(batch, &mut message) };
-        drop(inside);
+        // SAFETY: the same function, of which it is known in addition that it may unwind.
+        let function = unsafe {
+            std::mem::transmute::<
+                unsafe extern "C" fn(*const abi::FwBatch, *mut abi::FwMessage) -> i32,
+                unsafe extern "C-unwind" fn(*const abi::FwBatch, *mut abi::FwMessage) -> i32,
+            >(function)
+        };
+        let disturbed = &self.disturbed.calling;
+        let status = outside::call(self.label, call as usize, disturbed, || {
+            // SAFETY: by the contract of this function.
+            unsafe { function(batch, &mut message) }
+        });
         if status == abi::STATUS_OK {
             return Ok(());
         }

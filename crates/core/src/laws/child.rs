@@ -4,10 +4,10 @@
 
 use super::error::LawError;
 use super::library::Plugin;
+use super::linked::LawCode;
 use crate::program;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 use std::collections::HashMap;
 use std::hash::BuildHasher;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -126,13 +126,18 @@ pub fn run_request(word: &str, question: &Value) -> Result<ChildOutput, String> 
         .map_err(cannot)?;
     let token = new_token();
     let (send, heard) = mpsc::channel();
+    let no_thread = |e: std::io::Error| format!("cannot start a thread: {e}");
     if let Some(out) = child.stdout.take() {
-        std::thread::spawn(move || read_messages(out, token, &send));
+        let read = move || read_messages(out, token, &send);
+        std::thread::Builder::new().spawn(read).map_err(no_thread)?;
     }
-    let said = child
-        .stderr
-        .take()
-        .map(|err| std::thread::spawn(move || read_error_output(err)));
+    let said = match child.stderr.take() {
+        Some(err) => {
+            let read = move || read_error_output(err);
+            Some(std::thread::Builder::new().spawn(read).map_err(no_thread)?)
+        }
+        None => None,
+    };
     if let Some(mut to) = child.stdin.take() {
         // A process that has already ended does not read its request; the way it ended is reported below.
         let question = json!({ "token": token, "question": question });
@@ -276,12 +281,12 @@ pub(super) fn try_loading(libraries: &[(PathBuf, Option<&str>)]) {
     }
     let mut wanted: Vec<Library> = Vec::new();
     for (path, pin) in libraries {
-        let Ok(bytes) = std::fs::read(path) else {
+        let Ok(code) = LawCode::of(path) else {
             continue;
         };
         let library = Library {
             path: path.clone(),
-            sha256: super::built_in::hex(&Sha256::digest(&bytes)),
+            sha256: code.sha256,
         };
         let pinned = pin.is_none_or(|p| p.eq_ignore_ascii_case(&library.sha256));
         if pinned && cached_result(&library).is_none() && !wanted.contains(&library) {

@@ -89,55 +89,71 @@ impl Guarded {
         self.columns.clear();
         self.words.clear();
         self.words.resize(END, MARK);
-        // Reserves the memory first: addresses must not change.
-        self.words
-            .reserve(GAP * (80 + 2 * variables) + 80 * n + 2 * variables * n + parameters + END);
-        let room = self.words.capacity();
-        let mut state: Vec<*const f64> = Vec::new();
-        let mut next: Vec<*mut f64> = Vec::new();
+        // Where each column of the batch was put, in this order; none for null.
+        let (mut of_batch, mut of_state, mut of_next) = (Vec::new(), Vec::new(), Vec::new());
         // SAFETY: columns of the host, of `n` values or null.
         unsafe {
-            batch.parameters = self.put("parameters", batch.parameters, parameters, false);
+            of_batch.push(self.put("parameters", batch.parameters, parameters, false));
             for (name, column) in inputs(batch) {
-                *column = self.put(name, *column, n, false);
+                of_batch.push(self.put(name, *column, n, false));
             }
             for (name, column) in outputs(batch) {
-                *column = self.put(name, *column, n, true).cast_mut();
+                of_batch.push(self.put(name, *column, n, true));
             }
             for v in 0..variables {
                 if !batch.state.is_null() {
                     let column = *batch.state.add(v);
-                    state.push(self.put(&format!("state[{v}]"), column, n, false));
+                    of_state.push(self.put(&format!("state[{v}]"), column, n, false));
                 }
                 if !batch.state_next.is_null() {
                     let column = *batch.state_next.add(v);
-                    let put = self.put(&format!("state_next[{v}]"), column, n, true);
-                    next.push(put.cast_mut());
+                    of_next.push(self.put(&format!("state_next[{v}]"), column, n, true));
                 }
             }
         }
+        self.words.resize(self.words.len() + END, MARK);
+        self.before.clone_from(&self.words);
+        // The memory does not move any more. All addresses are of one pointer by which the law may write, to the marks too: that it
+        // does is what is looked for.
+        let words: *mut f64 = self.words.as_mut_ptr().cast();
+        let address = |start: Option<usize>| match start {
+            // SAFETY: within the words.
+            Some(start) => unsafe { words.add(start) },
+            None => std::ptr::null_mut(),
+        };
+        let mut places = of_batch.into_iter().map(address);
+        let mut next_place = || places.next().unwrap_or(std::ptr::null_mut());
+        batch.parameters = next_place().cast_const();
+        for (_, column) in inputs(batch) {
+            *column = next_place().cast_const();
+        }
+        for (_, column) in outputs(batch) {
+            *column = next_place();
+        }
+        let state: Vec<*const f64> = of_state
+            .into_iter()
+            .map(|s| address(s).cast_const())
+            .collect();
+        let next: Vec<*mut f64> = of_next.into_iter().map(address).collect();
         if !state.is_empty() {
             batch.state = state.as_ptr();
         }
         if !next.is_empty() {
             batch.state_next = next.as_ptr();
         }
-        self.words.resize(self.words.len() + END, MARK);
-        debug_assert_eq!(room, self.words.capacity(), "the columns have not moved");
-        self.before.clone_from(&self.words);
         (state, next)
     }
 
-    /// Copies a column in, followed by guard values.
+    /// Copies a column in, followed by guard values; returns where it is among the words, none for null.
     unsafe fn put(
         &mut self,
         name: &str,
         column: *const f64,
         len: usize,
         output: bool,
-    ) -> *const f64 {
+    ) -> Option<usize> {
         if column.is_null() {
-            return column;
+            return None;
         }
         let start = self.words.len();
         // SAFETY: by the contract of the caller.
@@ -154,8 +170,7 @@ impl Guarded {
                 std::ptr::null_mut()
             },
         });
-        // SAFETY: `start` is within the words.
-        unsafe { self.words.as_ptr().add(start).cast() }
+        Some(start)
     }
 
     /// Returns a description of any write outside the outputs.

@@ -18,6 +18,11 @@ pub struct LawHistory {
 }
 
 impl LawHistory {
+    /// Whether it is one of so many interfaces.
+    pub(crate) fn fits(&self, interfaces: usize) -> bool {
+        self.bonded.len() <= interfaces
+    }
+
     /// Drops the deferred friction work of separated pairs once they outnumber the contacts.
     pub(super) fn forget_separated<S: Space>(&mut self, contacts: &[Contact<S>]) {
         let deferred = &mut self.negative_friction_work.0;

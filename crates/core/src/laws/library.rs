@@ -1,13 +1,15 @@
 //! A plugin: a shared library that is opened, validated and called at run time.
 
-use super::built_in::hex;
 use super::error::LawError;
 use super::kind::Kind;
+use super::linked::LawCode;
+use super::outside::{self, Disturbed};
 use super::plugin_table::{Field, fields, read_table, text};
 use super::{child, watch};
 use fretwork_abi as abi;
-use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// A call over a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,12 +69,16 @@ pub struct Plugin {
     pub variables: Vec<Field>,
     /// File of the library, or of the program for a built-in law.
     pub path: PathBuf,
-    /// SHA-256 of that file, in hexadecimal.
+    /// SHA-256 of that file, in hexadecimal; with [links](Self::links), of the list of all sums.
     pub sha256: String,
+    /// Libraries that it links to and that are not the system's: path and SHA-256.
+    pub links: Vec<(PathBuf, String)>,
     /// Whether the law is linked into the program.
     pub built_in: bool,
     pub(super) table: abi::FwPlugin,
     pub(super) label: watch::Label,
+    /// Shared by all clones.
+    pub(super) disturbed: Arc<Disturbed>,
 }
 
 // SAFETY: the table is read only, and the ABI requires every function to be callable from any thread at any
@@ -99,12 +105,16 @@ impl Plugin {
             path: path.to_owned(),
             reason,
         };
-        let digest = || {
-            let bytes = std::fs::read(path);
-            let bytes = bytes.map_err(|e| refuse(format!("it cannot be read ({e})")))?;
-            Ok(hex(&Sha256::digest(&bytes)))
+        let read = || {
+            let code = LawCode::of(path);
+            code.map_err(|e| {
+                refuse(format!(
+                    "it, or a library that it links to, cannot be read ({e})"
+                ))
+            })
         };
-        let sha256 = digest()?;
+        let code = read()?;
+        let sha256 = code.sha256.clone();
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
             return Err(LawError::Pinned {
                 path: path.to_owned(),
@@ -114,34 +124,44 @@ impl Plugin {
         }
         child::check_loads(path, &sha256).map_err(&refuse)?;
         // The trial may have taken seconds, in which the file can change.
-        if digest()? != sha256 {
+        if read()? != code {
             return Err(refuse(child::CHANGED.to_owned()));
         }
         let loading = watch::label(format!("the plugin {}", path.display()));
-        let loading = watch::enter(loading, 5);
-        // SAFETY: opening runs the library's initialisers; the user put it on the search path.
-        let library = unsafe { open_local(path) }.map_err(|e| {
-            refuse(format!(
-                "it is not a loadable library ({e}); build it as a `cdylib`"
-            ))
-        })?;
-        // SAFETY: the ABI defines the type of this symbol; a library with another type violates it.
-        let table = unsafe {
-            let entry = library
-                .get::<abi::FwEntry>(abi::ENTRY_SYMBOL)
-                .map_err(|_| {
+        let disturbed = Disturbed::default();
+        // A name without a folder would be searched for where the system has its libraries.
+        let absolute = std::path::absolute(path).map_err(|e| refuse(e.to_string()))?;
+        let load = || {
+            // SAFETY: opening runs the library's initialisers; the user put it on the search path.
+            let library = unsafe { open_local(&absolute) }.map_err(|e| {
+                refuse(format!(
+                    "it is not a loadable library ({}); build it as a `cdylib`",
+                    with_cause(&e)
+                ))
+            })?;
+            // SAFETY: the ABI defines the type of this symbol, of which it is known in addition that it may unwind; a library with
+            // another type violates it.
+            let table = unsafe {
+                let entry = library.get::<Entry>(abi::ENTRY_SYMBOL).map_err(|_| {
                     refuse(format!(
                         "it does not export `{}`; it is not a Fretwork plugin",
                         abi::ENTRY_SYMBOL
                     ))
                 })?;
-            entry()
+                entry()
+            };
+            // Never unloaded: threads may be running its code or hold its thread-local data.
+            std::mem::forget(library);
+            Ok(table)
         };
-        drop(loading);
-        // Never unloaded: threads may be running its code or hold its thread-local data.
-        std::mem::forget(library);
+        let table = outside::keep_folder(|| {
+            outside::call(loading, watch::LOADING, &disturbed.loading, load)
+        })?;
         // SAFETY: the ABI guarantees a complete static table.
-        unsafe { Self::from_table(table, path, &sha256, false) }
+        let mut plugin = unsafe { Self::from_table(table, path, &sha256, false) }?;
+        plugin.disturbed = Arc::new(disturbed);
+        plugin.links = code.links;
+        Ok(plugin)
     }
 
     /// Validates a table and copies the fields known to both versions of the ABI.
@@ -199,6 +219,8 @@ impl Plugin {
             path: path.to_owned(),
             sha256: sha256.to_owned(),
             built_in,
+            disturbed: Arc::default(),
+            links: Vec::new(),
             label: watch::label(format!("the {kind} law `{name}`")),
             name,
             table,
@@ -208,6 +230,12 @@ impl Plugin {
     }
 
     fn check(&self) -> Result<(), String> {
+        let unknown = self.flags & !abi::FLAGS;
+        if unknown != 0 {
+            return Err(format!(
+                "it sets flags that this program does not know ({unknown:#x}); it was built for a later plugin interface, or its table is wrong: build it with the header of this version"
+            ));
+        }
         let needed = self.kind.spec().functions;
         if let Some(call) = needed.iter().find(|call| !self.has_function(**call)) {
             return Err(format!(
@@ -262,6 +290,16 @@ impl Plugin {
         function.is_some()
     }
 
+    /// When the law left another control of floating point (rounding, subnormal numbers) to its caller, which puts its own back:
+    /// while its library was loaded, or in a call.
+    pub fn disturbs_floating_point(&self) -> Option<&'static str> {
+        if self.disturbed.calling.load(Ordering::Relaxed) {
+            return Some("in a call");
+        }
+        let loading = self.disturbed.loading.load(Ordering::Relaxed);
+        loading.then_some("while it is loaded, as libraries do that are built with -ffast-math")
+    }
+
     /// Whether the law has something to do at the end of a step.
     pub fn commits(&self) -> bool {
         self.has_function(Call::Commit)
@@ -270,6 +308,18 @@ impl Plugin {
     /// Returns whether the law sets the internal variables of new contacts itself.
     pub fn initialises(&self) -> bool {
         self.has_function(Call::Initialise)
+    }
+}
+
+/// The entry of a library, which may unwind.
+type Entry = unsafe extern "C-unwind" fn() -> *const abi::FwPlugin;
+
+/// An error with what the system says of it.
+fn with_cause(error: &dyn std::error::Error) -> String {
+    let text = error.to_string();
+    match error.source() {
+        Some(source) if !text.contains(&source.to_string()) => format!("{text}: {source}"),
+        _ => text,
     }
 }
 

@@ -134,7 +134,15 @@ impl SearchPath {
             let known = self.built_in.names().any(|law| law == (kind, name));
             known.then_some(Place::BuiltIn)
         };
-        library(own).or_else(built_in).or_else(|| library(others))
+        // Others may write to the folder of a program: what they put there replaces no law of the program itself.
+        let (trusted, doubted) = match library(own) {
+            Some(Place::Library(path)) if self.doubt(&path).is_some() => {
+                (None, Some(Place::Library(path)))
+            }
+            found => (found, None),
+        };
+        let found = trusted.or_else(built_in).or(doubted);
+        found.or_else(|| library(others))
     }
 
     fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
@@ -178,7 +186,7 @@ impl SearchPath {
     /// Returns whether a law belongs to the program itself, so that whoever can change it can change the
     /// program.
     pub fn is_own(&self, plugin: &Plugin) -> bool {
-        plugin.built_in || self.own(&plugin.path)
+        plugin.built_in || (self.own(&plugin.path) && self.doubt(&plugin.path).is_none())
     }
 
     fn own(&self, library: &Path) -> bool {
@@ -188,8 +196,13 @@ impl SearchPath {
 
     /// Returns why a library should not be opened, if there is a reason.
     fn doubt(&self, library: &Path) -> Option<String> {
-        let asked = !self.own(library) && !self.trusting;
-        asked.then(|| trust::doubt(library)).flatten()
+        if self.trusting {
+            None
+        } else if self.own(library) {
+            trust::doubt_beside_program(library)
+        } else {
+            trust::doubt(library)
+        }
     }
 
     /// Opens a library, unless others may write to it or to its folder.
@@ -229,6 +242,7 @@ impl SearchPath {
             for path in entries.flatten().map(|e| e.path()) {
                 if let Some((kind, name)) = parse(&path)
                     && path.is_file()
+                    && !(number < self.shipped && self.replaces_built_in(kind, &name, &path))
                 {
                     add(kind, name, Place::Library(path));
                 }
@@ -239,6 +253,12 @@ impl SearchPath {
             .for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
         out.sort();
         out
+    }
+
+    /// Whether a doubtful library beside the program has the name of a law of the program itself.
+    fn replaces_built_in(&self, kind: Kind, name: &str, library: &Path) -> bool {
+        let known = self.built_in.names().any(|law| law == (kind, name));
+        known && self.doubt(library).is_some()
     }
 
     /// Lists the laws that are libraries.

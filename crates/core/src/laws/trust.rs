@@ -1,13 +1,43 @@
 //! Decides whether a library may be opened: only if nobody but the user and the administrator can have
 //! placed or changed it.
 
+#[cfg(unix)]
+use super::linked;
 use std::path::Path;
 
 /// Returns why a library should not be opened, if others can write to it, or to a folder or link on its
-/// path.
+/// path; or to a library that it links to.
 #[cfg(unix)]
 pub(super) fn doubt(library: &Path) -> Option<String> {
-    on_the_way::doubt(library, on_the_way::me(), on_the_way::Place::of)
+    of_all(library, &[on_the_way::me()])
+}
+
+/// As [`doubt`], for a library in a folder of the program's: its owner is trusted too, since who owns the program can change it.
+#[cfg(unix)]
+pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
+    use std::os::unix::fs::MetadataExt;
+    let program = crate::program::file().and_then(std::fs::metadata);
+    let owners = [Some(on_the_way::me()), program.ok().map(|p| p.uid())];
+    of_all(library, &owners.into_iter().flatten().collect::<Vec<_>>())
+}
+
+#[cfg(unix)]
+fn of_all(library: &Path, owners: &[u32]) -> Option<String> {
+    let one = |path: &Path| on_the_way::doubt(path, owners, on_the_way::Place::of);
+    one(library).or_else(|| {
+        let links = linked::libraries(library).into_iter();
+        let doubted = links.filter_map(|path| {
+            let why = one(&path)?;
+            Some(format!("it links to {}: {why}", path.display()))
+        });
+        doubted.into_iter().next()
+    })
+}
+
+/// Permissions are not checked on systems without POSIX permissions.
+#[cfg(not(unix))]
+pub(super) fn doubt_beside_program(_: &Path) -> Option<String> {
+    None
 }
 
 /// Permissions are not checked on systems without POSIX permissions.
@@ -65,10 +95,10 @@ mod on_the_way {
     }
 
     /// Follows a path from the root, link by link, and returns the first component that users other than
-    /// `me` and the administrator may change.
+    /// these owners, of whom the first is the user, and the administrator may change.
     pub fn doubt(
         library: &Path,
-        me: u32,
+        owners: &[u32],
         place: impl Fn(&Path) -> Option<Place>,
     ) -> Option<String> {
         /// Maximum number of links; a circular path fails when it is opened.
@@ -99,8 +129,8 @@ mod on_the_way {
             {
                 return Some(open(path, &folder));
             }
-            if found.owner != me && found.owner != ROOT {
-                return Some(foreign(&here, &found, me));
+            if found.owner != ROOT && !owners.contains(&found.owner) {
+                return Some(foreign(&here, &found, owners[0]));
             }
             if let Some(target) = found.link {
                 links += 1;
@@ -154,7 +184,7 @@ mod on_the_way {
                     (PathBuf::from(path), place)
                 })
                 .collect();
-            doubt(Path::new(library), ME, |p| tree.get(p).cloned())
+            doubt(Path::new(library), &[ME], |p| tree.get(p).cloned())
         }
 
         const ROOTS: [(&str, u32, u32, &str); 2] = [("/", 0, 0o755, ""), ("/tmp", 0, 0o1777, "")];

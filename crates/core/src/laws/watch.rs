@@ -1,6 +1,6 @@
 //! A watchdog for plugin calls: native code that hangs cannot be stopped, but it can be reported.
 
-use std::sync::atomic::{AtomicPtr, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicPtr, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Mutex, mpsc};
 use std::time::Duration;
 
@@ -31,32 +31,57 @@ thread_local! {
 }
 
 /// Names of the calls, by index.
-const CALLS: [&str; 6] = [
+const CALLS: [&str; 7] = [
     "initialise",
     "prepare",
     "commit",
     "energy",
     "validate",
     "loading",
+    "fracture_energy",
 ];
 
 /// Label of a law in reports.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// Guard for a call in progress.
+/// Guard for a call in progress. Dropped without [`Inside::leave`], something unwinds out of the call, and the program ends.
+#[must_use]
 pub(super) struct Inside;
+
+impl Inside {
+    /// The call came back.
+    #[inline]
+    pub fn leave(self) {
+        MINE.with(|slot| slot.turns.fetch_add(1, Ordering::Relaxed));
+        std::mem::forget(self);
+    }
+}
 
 impl Drop for Inside {
     fn drop(&mut self) {
-        MINE.with(|slot| slot.turns.fetch_add(1, Ordering::Relaxed));
+        UNWOUND.store(true, Ordering::SeqCst);
+        std::process::abort();
     }
+}
+
+/// Whether the program ends because something unwound out of a law.
+static UNWOUND: AtomicBool = AtomicBool::new(false);
+
+/// Whether an exception, or the end of its thread, was about to pass from a law into its caller.
+pub fn was_unwound() -> bool {
+    UNWOUND.load(Ordering::SeqCst)
 }
 
 /// Creates a label. It is leaked on purpose, so that it can be read whenever a call ends.
 pub(super) fn label(text: String) -> Label {
     Label(Box::leak(Box::new(text)))
 }
+
+/// Indices of calls beside those of [`Call`](super::library::Call).
+pub(super) const VALIDATE: usize = 4;
+pub(super) const LOADING: usize = 5;
+pub(super) const FRACTURE_ENERGY: usize = 6;
 
 /// Marks the start of a call, by its index in `CALLS`.
 pub(super) fn enter(label: Label, call: usize) -> Inside {

@@ -185,8 +185,14 @@ impl<S: Space> Problem<S> {
         });
     }
 
-    /// W along and across the normal of a contact of two balls (1/kg), at a reach of their lengths.
+    /// W along and across the normal of a contact of two balls (1/kg), at a reach of their lengths. The bodies are looked up, also in a
+    /// release build: sweeps then take it for granted that rows name two different bodies of the problem, see
+    /// [`SolverBodies`](super::row::SolverBodies).
     fn of_balls(&self, contact: &ContactForm<S>, [i, j]: [f64; 2]) -> [f64; 2] {
+        assert_ne!(
+            contact.bodies[0], contact.bodies[1],
+            "a contact of a body with itself"
+        );
         let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
         let w_n = a.im + b.im;
         [w_n, w_n + a.is * (i * i) + b.is * (j * j)]
@@ -217,6 +223,11 @@ impl<S: Space> Problem<S> {
     }
 
     fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {
+        // As in `of_balls`: masses and lengths are looked up.
+        assert_ne!(
+            contact.bodies[0], contact.bodies[1],
+            "a contact of a body with itself"
+        );
         LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
     }
 }

@@ -12,7 +12,7 @@ use crate::contact::Network;
 use crate::energy::Energy;
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::HeatState;
-use crate::laws::{Interface, LawHistory};
+use crate::laws::LawHistory;
 use crate::momentum::Momentum;
 use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
@@ -109,24 +109,28 @@ impl<S: Space> State<S> {
         }
     }
 
-    /// Returns whether it is a state of this scene, as far as numbers of things tell: bodies, interfaces, scars, phases.
+    /// Returns whether it is a state of this scene, in which a step can be made: its lists are as long as those of the scene, indices
+    /// are in range, and numbers of motion are finite.
     fn fits(&self, scene: &Simulation<S>) -> bool {
         let built = &scene.state;
-        let driven = self.bodies.driven.iter().zip(&built.bodies.driven);
+        let scars = self.scars.iter().zip(&built.scars);
+        let heat = self.heat.iter().zip(&built.heat);
         self.bodies.len() == built.bodies.len()
-            && self.bodies.is_complete()
+            && self.bodies.fits(&built.bodies)
             && self.bodies.carriers == built.bodies.carriers
-            && self.bodies.driven.len() == built.bodies.driven.len()
-            && driven.into_iter().all(|(a, b)| a.body == b.body)
-            && self.network.names_bodies_below(built.bodies.len())
+            && self
+                .network
+                .fits(&built.network, &scene.shapes, &self.bodies)
             && self.received.len() == built.received.len()
             && self.started.len() == built.started.len()
             && self.scars.len() == built.scars.len()
-            && self.heat.as_ref().map(HeatState::lengths)
-                == built.heat.as_ref().map(HeatState::lengths)
-            && self.network.memory.len() == built.network.memory.len()
-            && (self.network).fits_interfaces(scene.laws.iter().map(Interface::variables))
-            && (self.control).fits(&scene.phases, &scene.laws, self.bodies.driven.len())
+            && scars.into_iter().all(|(a, b)| a.fits(b))
+            && self.heat.is_some() == built.heat.is_some()
+            && heat.into_iter().all(|(a, b)| a.fits(b))
+            && self.law_history.fits(scene.laws.len())
+            && self.time.is_finite()
+            && self.gravity.is_finite()
+            && (self.control).fits(&scene.phases, &scene.laws, &self.bodies.driven)
     }
 }
 

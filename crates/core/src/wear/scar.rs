@@ -53,6 +53,16 @@ pub struct WornThrough {
 }
 
 impl<S: Space> Scar<S> {
+    /// Whether it is a later state of a scar.
+    pub(crate) fn fits(&self, first: &Self) -> bool {
+        let count = first.vertices.len();
+        (&self.name, self.surface) == (&first.name, first.surface)
+            && [self.vertices.len(), self.depth.len(), self.shown.len()] == [count; 3]
+            && self.depth.iter().chain(&self.shown).all(|d| d.is_finite())
+            && self.deepest < count.max(1)
+            && self.pending.iter().all(|k| *k < count)
+    }
+
     /// Creates the scar of an unworn surface; `None` if the surface cannot wear.
     pub fn new(
         name: String,

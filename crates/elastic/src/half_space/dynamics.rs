@@ -391,7 +391,11 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         let read: Result<State, _> = postcard::from_bytes(saved);
         let total = self.velocity.len();
         match read {
-            Ok((q, v, f)) if [&q, &v, &f].iter().all(|x| x.len() == total) => {
+            Ok((q, v, f))
+                if [&q, &v, &f]
+                    .iter()
+                    .all(|x| x.len() == total && x.iter().all(|x| x.is_finite())) =>
+            {
                 self.start = [q.clone(), v.clone()];
                 (self.displacement, self.velocity, self.force) = (q, v, f);
                 true

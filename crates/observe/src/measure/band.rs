@@ -140,6 +140,10 @@ impl<S: Space> Observer<S> for Band<S> {
         Ok(())
     }
 
+    fn file_names(&self) -> Vec<String> {
+        vec![format!("{}.png", self.name)]
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let RunEnd { title, table, .. } = *end;
         let chart = |part: &str, name: &str, unit: &'static str, factor: f64| {

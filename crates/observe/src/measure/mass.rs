@@ -50,6 +50,10 @@ impl<S: Space> Observer<S> for Mass {
         vec![(format!("{}_rate", self.name), unit)]
     }
 
+    fn file_names(&self) -> Vec<String> {
+        vec![format!("{}.png", self.name)]
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let RunEnd { title, table, .. } = *end;
         let unit = if S::D == 2 { "kg/m" } else { "kg" };

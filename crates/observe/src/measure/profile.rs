@@ -165,6 +165,12 @@ impl<S: Space> Observer<S> for Profile<S> {
         Ok(())
     }
 
+    fn file_names(&self) -> Vec<String> {
+        [".csv", ".png"]
+            .map(|end| format!("{}{end}", self.name))
+            .to_vec()
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let title = end.title;
         let rows = self.rows();

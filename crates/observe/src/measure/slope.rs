@@ -71,6 +71,10 @@ impl<S: Space> Observer<S> for Slope {
         mean.map(|m| (self.name.clone(), m)).into_iter().collect()
     }
 
+    fn file_names(&self) -> Vec<String> {
+        vec![format!("{}.png", self.name)]
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let RunEnd { title, table, .. } = *end;
         let degrees = since(table, &self.name, 0.0);

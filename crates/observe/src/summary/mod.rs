@@ -45,6 +45,9 @@ pub struct PluginStamp {
     pub sha256: String,
     /// Path of the library.
     pub path: String,
+    /// Libraries that it links to and that are not the system's: path and SHA-256.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub links: Vec<String>,
     /// Whether it passes certification with the parameters of this run, see [`fretwork_core::certify`].
     pub certified: bool,
 }

@@ -6,6 +6,7 @@ use crate::case::{CellTouch, ElasticSpec, MeshSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
 use crate::holders;
 use crate::material::Sourced;
+use crate::names::word_fault;
 use crate::source::InputError;
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
 use fretwork_core::geometry::space::VectorLike;
@@ -32,8 +33,7 @@ impl<S: Dimensional> Builder<'_, S> {
 
     /// Names of bodies and of their held parts name columns and files.
     pub(super) fn check_elastic_names(&self) -> Result<(), InputError> {
-        let plain = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        let good = |name: &str| !name.is_empty() && name.chars().all(plain);
+        let good = |name: &str| word_fault(name).is_none();
         let rigid = self.case.bodies.iter().map(|b| b.name.as_str());
         let mut known: Vec<&str> = rigid.collect();
         let elastic = self.case.elastic.iter().enumerate();
@@ -43,7 +43,7 @@ impl<S: Dimensional> Builder<'_, S> {
         for (here, name) in elastic.chain(half_spaces) {
             if !good(name) || known.contains(&name.as_str()) {
                 let message = format!(
-                    "the name `{name}` of a deformable body names columns and files: it must be unique and made of letters, digits, `-` and `_`"
+                    "the name `{name}` of a deformable body names columns and files: it must be unique, made of letters, digits, `-` and `_`, and of 100 at most"
                 );
                 return Err(self.fail(format!("{here}.name"), message));
             }

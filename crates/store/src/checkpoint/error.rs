@@ -1,11 +1,15 @@
 //! Errors in resuming a run.
 
+use crate::folder_lock::LockError;
 use fretwork_observe::code::CodeError;
 use std::path::PathBuf;
 
 /// Reason why a run cannot be resumed from a folder.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ResumeError {
+    /// Another run is writing in the folder, or it cannot be owned.
+    #[error(transparent)]
+    Lock(#[from] LockError),
     /// The file cannot be read.
     #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Unreadable {
@@ -16,7 +20,7 @@ pub enum ResumeError {
     },
     /// All checkpoints in the file are damaged.
     #[error(
-        "the checkpoints in {} are damaged and cannot be resumed; to start again from the beginning omit --resume",
+        "the checkpoints in {} are damaged, and there is no other state to resume from; nothing was changed; to start again from the beginning omit --resume",
         path.display()
     )]
     Damaged {
@@ -75,7 +79,10 @@ impl ResumeError {
     pub fn is_input(&self) -> bool {
         matches!(
             self,
-            Self::Version { .. } | Self::Other { .. } | Self::Longer { .. }
+            Self::Version { .. }
+                | Self::Other { .. }
+                | Self::Longer { .. }
+                | Self::Lock(LockError::Held { .. })
         )
     }
 }

@@ -1,6 +1,7 @@
 //! Search of a results folder for a state to resume from.
 
 use super::{Frame, Identity, Kind, ResumeError};
+use crate::folder_lock::{FolderLock, RUN_LOCK};
 use crate::results::PreviousResults;
 use fretwork_observe::code::decode;
 use std::path::Path;
@@ -25,6 +26,8 @@ pub struct ResumePoint {
     pub number: u64,
     /// Serialized state.
     pub state: Vec<u8>,
+    /// The folder is this run's from then on, so that no other goes on from the same state.
+    pub lock: FolderLock,
 }
 
 /// The file that a run writes last, and removes before it starts: if it exists, all others are complete.
@@ -40,23 +43,34 @@ fn finished(folder: &Path, identity: &str) -> bool {
 /// Searches a folder for a run with this identity.
 ///
 /// # Errors
-/// A file cannot be read, its checkpoints are damaged, or it belongs to another version or case.
+/// A run is writing there, a file cannot be read, its checkpoints are damaged, or it belongs to another version or case.
 pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
         return Ok(Found::Nothing);
     }
+    let lock = FolderLock::own(folder, RUN_LOCK)?;
     let unreadable = |reason: String| ResumeError::Unreadable {
         path: path.clone(),
         reason,
     };
     let results = PreviousResults::open(&path).map_err(unreadable)?;
     let slots = results.checkpoints().map_err(unreadable)?;
-    let mut frames: Vec<Frame> = slots.iter().filter_map(|b| Frame::read(b)).collect();
+    let mut frames: Vec<Frame> = slots
+        .iter()
+        .flatten()
+        .filter_map(|b| Frame::read(b))
+        .collect();
     frames.sort_by_key(|f| f.number);
     let Some(frame) = frames.last() else {
         return Err(ResumeError::Damaged { path });
     };
+    // A sealed slot held a frame; one that was being written when the run was killed has no seal yet.
+    let written = |slot: &&Option<Vec<u8>>| {
+        slot.as_ref()
+            .is_none_or(|bytes| bytes.iter().take(Frame::SEAL).any(|b| *b != 0))
+    };
+    let damaged = slots.iter().filter(written).count() > frames.len();
     let ours = env!("CARGO_PKG_VERSION");
     if frame.version != ours || frame.format != Frame::FORMAT {
         let said = |version: &str, format: u32| format!("{version} (checkpoints of form {format})");
@@ -79,12 +93,15 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         return Ok(Found::Finished);
     }
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
-    Ok(match states.next_back() {
-        None => Found::Nothing,
-        Some(frame) => Found::State(ResumePoint {
+    match states.next_back() {
+        // To start over would replace what the run recorded.
+        None if damaged => Err(ResumeError::Damaged { path }),
+        None => Ok(Found::Nothing),
+        Some(frame) => Ok(Found::State(ResumePoint {
             results,
             number: frame.number,
             state: frame.state,
-        }),
-    })
+            lock,
+        })),
+    }
 }

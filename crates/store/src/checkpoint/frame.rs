@@ -45,6 +45,9 @@ impl Frame {
     /// Form of identities and states that this program writes: one more whenever anything of them changes.
     pub const FORMAT: u32 = 17;
 
+    /// First bytes of a frame, which are written when all others are on disk: zeros until then.
+    pub const SEAL: usize = MAGIC.len();
+
     /// Serializes the frame.
     pub fn bytes(&self) -> Vec<u8> {
         let kind: u32 = match self.kind {

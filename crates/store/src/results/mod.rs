@@ -32,6 +32,7 @@ pub use reader::Reader;
 pub use store::ResultsError;
 pub use view::{Cells, Part};
 
+use super::checkpoint::Frame;
 use super::summary::PluginStamp;
 use dataset::{Growing, Slot};
 use declare::MANY;
@@ -198,7 +199,8 @@ impl Results {
         let clock = Instant::now();
         // The rows that the checkpoint counts must be written first: without its first word the checkpoint is
         // invalid.
-        store.write(self.checkpoints[(number % 2) as usize], bytes, 8)?;
+        let slot = self.checkpoints[(number % 2) as usize];
+        store.write(slot, bytes, Frame::SEAL)?;
         self.flushed = Some((Instant::now(), clock.elapsed()));
         Ok(())
     }
@@ -367,6 +369,12 @@ fn write_origin(store: &mut Store, header: &Header) -> Result<(), ResultsError> 
         if !texts.is_empty() {
             store.texts(&format!("/plugins/{name}"), &texts, doc)?;
         }
+    }
+    let links: Vec<String> = header.plugins.iter().map(|p| p.links.join("\n")).collect();
+    if links.iter().any(|l| !l.is_empty()) {
+        let texts: Vec<&str> = links.iter().map(String::as_str).collect();
+        let doc = "libraries that it links to and that are not the system's, one a line: path and SHA-256";
+        store.texts("/plugins/links", &texts, doc)?;
     }
     Ok(())
 }

@@ -51,11 +51,11 @@ impl PreviousResults {
         &self.path
     }
 
-    /// The bytes of its checkpoints, intact or not; empty if they cannot be read.
+    /// The bytes of its checkpoints, intact or not: empty where none was written, none where they cannot be read.
     ///
     /// # Errors
     /// The file has no checkpoints: it was written by an older version, or is not a results file.
-    pub fn checkpoints(&self) -> Result<[Vec<u8>; 2], String> {
+    pub fn checkpoints(&self) -> Result<[Option<Vec<u8>>; 2], String> {
         let names = CHECKPOINTS.map(|name| name.trim_start_matches('/'));
         if !names
             .iter()
@@ -68,12 +68,15 @@ impl PreviousResults {
         }
         let length = std::fs::metadata(&self.path).map_or(0, |m| m.len());
         Ok(names.map(|name| {
-            let rows = self.shape(name).map_or(0, |s| s[0]);
+            let rows = self.shape(name).ok()?[0];
             // The declared size is not trusted: no more is allocated than the file can hold.
-            if rows == 0 || rows as u64 > length {
-                return Vec::new();
+            if rows as u64 > length {
+                return None;
             }
-            guard(|| self.file.dataset(name)?.read_slice::<u8>(&[0], &[rows])).unwrap_or_default()
+            if rows == 0 {
+                return Some(Vec::new());
+            }
+            guard(|| self.file.dataset(name)?.read_slice::<u8>(&[0], &[rows])).ok()
         }))
     }
 

@@ -11,6 +11,7 @@
 use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
 use super::declare::group;
 use super::growth::Growth;
+use crate::write_advice;
 use hdf5::H5File;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +27,7 @@ const MAX_BUFFERED: usize = 8 << 20;
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
     /// They cannot be written.
-    #[error("cannot write {}: {reason}; choose another folder with --out or make room on the disk", path.display())]
+    #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
         /// The file.
         path: PathBuf,

@@ -4,6 +4,10 @@ use super::SolverBody;
 use crate::geometry::space::Space;
 
 /// Velocities accessed by several threads, each at its own bodies.
+///
+/// Indices are not checked here, in the innermost loop, but where rows are made: [`Problem::push`](crate::solve::Problem::push) and
+/// `push_all` look up both bodies of each contact, which must differ, and a problem never loses a body. Rows of moments are checked
+/// where they are used ([`Self::alone`]).
 pub(in crate::solve) struct SolverBodies<S: Space> {
     first: *mut SolverBody<S>,
     len: usize,
@@ -25,7 +29,7 @@ impl<S: Space> SolverBodies<S> {
     #[inline(always)]
     pub fn at(&self, body: u32) -> *mut SolverBody<S> {
         debug_assert!((body as usize) < self.len);
-        // SAFETY: indices belong to bodies pushed before the contact.
+        // SAFETY: the index was looked up when the row was made, see above.
         unsafe { self.first.add(body as usize) }
     }
 
@@ -52,7 +56,7 @@ impl<S: Space> SolverBodies<S> {
     /// Runs `f` on the records of two bodies on a single thread; stores both.
     #[inline(always)]
     pub fn alone(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
-        debug_assert!(bodies[0] != bodies[1]);
+        assert!(bodies[0] != bodies[1] && bodies.iter().all(|b| (*b as usize) < self.len));
         let [a, b] = bodies.map(|k| self.at(k));
         // SAFETY: two different bodies, and no other thread is active.
         unsafe { f(&mut *a, &mut *b) }

@@ -13,7 +13,7 @@ pub use step_bounds::StepBounds;
 
 use super::{Scheme, Simulation};
 use crate::bodies::pressure::{Pushed, Servo};
-use crate::bodies::{Dof, HeldAxis};
+use crate::bodies::{Dof, Driven, HeldAxis};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::{Interface, Kind};
 use phases::Clock;
@@ -68,15 +68,15 @@ impl<S: Space> Control<S> {
     }
 
     /// Whether it is at one of these phases, and sets no other parameters than these laws have.
-    pub(super) fn fits(&self, phases: &[Phase<S>], laws: &[Interface], driven: usize) -> bool {
+    pub(super) fn fits(&self, phases: &[Phase<S>], laws: &[Interface], driven: &[Driven]) -> bool {
         let parameters = |law: &Interface| law.contact().parameters.len();
         let mut set = self.contact_parameters.keys();
         self.phase() <= phases.len()
             && self.servos.iter().all(|s| match s.pushed() {
-                Pushed::Body(place, _) => *place < driven,
+                Pushed::Body(place, dof) => driven.get(*place).is_some_and(|d| *dof < d.dofs.len()),
                 Pushed::Holder(_) => true,
             })
-            && self.gates.iter().all(|(place, _)| *place < driven)
+            && self.gates.iter().all(|(place, _)| *place < driven.len())
             && set.all(|(law, at)| laws.get(*law).is_some_and(|law| *at < parameters(law)))
     }
 

@@ -389,6 +389,11 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         Ok(())
     }
 
+    fn file_names(&self) -> Vec<String> {
+        let ends = [".csv", "_energy.csv", "_clusters.csv", ".png"];
+        ends.map(|end| format!("{}{end}", self.spec.name)).to_vec()
+    }
+
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let RunEnd { title, table, .. } = *end;
         let name = &self.spec.name;

@@ -1,0 +1,77 @@
+//! Whether contacts that were read are those of a scene: every index in range, every length right, every number finite. Detection
+//! and laws take this for granted.
+
+use super::memory::Memory;
+use super::network::{Contact, Key, Network};
+use crate::bodies::Bodies;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::{Space, VectorLike};
+
+impl<S: Space> Network<S> {
+    /// Whether it is a network of these shapes and bodies, with memory like that of `built`.
+    pub(crate) fn fits(&self, built: &Self, shapes: &Shapes<S>, bodies: &Bodies<S>) -> bool {
+        let below = |two: &[u32; 2]| two.iter().all(|b| (*b as usize) < bodies.len());
+        let law = |law: u16| usize::from(law) < self.memory.len();
+        let broken = self
+            .bond_breaks
+            .iter()
+            .all(|b| below(&b.bodies) && law(b.law));
+        let formed = self.bonds_formed.iter().all(|(b, l)| below(b) && law(*l));
+        let known = |name: u32| body_of(shapes, name).is_some();
+        let pair = |(a, b): &(u32, u32)| *a & Key::SURFACE == 0 && known(*a) && known(*b);
+        let surface = |k: &usize| *k < shapes.surfaces.len();
+        let memory = self.memory.iter().zip(&built.memory);
+        // Detection searches contacts by pair.
+        self.contacts.is_sorted_by_key(|c| c.key.pair())
+            && self.contacts.iter().all(|c| self.has(c, shapes))
+            && self.candidates.iter().all(pair)
+            && self.memory.len() == built.memory.len()
+            && memory.into_iter().all(|(m, built)| m.fits(built))
+            && broken
+            && formed
+            && self.worn.keys().all(surface)
+            && self.of_grains == built.of_grains
+            && [self.alert, self.skin, self.fast].iter().all(|x| *x >= 0.0)
+            && self.seen_at.iter().all(VectorLike::is_finite)
+    }
+
+    /// Whether a contact is one of these shapes.
+    fn has(&self, c: &Contact<S>, shapes: &Shapes<S>) -> bool {
+        let bodies = [c.key.candidate, c.key.antagonist].map(|name| body_of(shapes, name));
+        let vectors = [c.normal, c.arms[0], c.arms[1], c.impulse];
+        let memory = self.memory.get(usize::from(c.law));
+        bodies == c.bodies.map(Some)
+            && c.key.candidate & Key::SURFACE == 0
+            && memory.is_some_and(|m| c.memory().is_none_or(|slot| slot < m.bonds.len()))
+            && vectors.iter().all(VectorLike::is_finite)
+            && c.gap.is_finite()
+    }
+}
+
+/// The body of a ball, a piece or a surface by its name in a [`Key`].
+fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> Option<u32> {
+    let at = (name & !(Key::SURFACE | Key::PIECE)) as usize;
+    if name & Key::SURFACE != 0 {
+        return shapes.surfaces.get(at).map(|s| s.body);
+    }
+    if name & Key::PIECE != 0 {
+        return shapes.pieces.get(at).map(|p| p.body);
+    }
+    shapes.balls.get(at).map(|b| b.body)
+}
+
+impl<S: Space> Memory<S> {
+    /// Whether all columns have the slots of the bonds, and are those of the same laws.
+    fn fits(&self, built: &Self) -> bool {
+        let slots = self.bonds.len();
+        let rotations = if self.rotates { slots } else { 0 };
+        self.variables.len() == built.variables.len()
+            && self.variables.iter().all(|column| column.len() == slots)
+            && (self.rotates, self.compliant) == (built.rotates, built.compliant)
+            && self.rotations.len() == rotations
+            && self
+                .free_slots()
+                .iter()
+                .all(|slot| (*slot as usize) < slots)
+    }
+}

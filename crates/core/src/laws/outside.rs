@@ -1,0 +1,46 @@
+//! A call into the code of a law: watched, with the state of the thread and the process kept, and with an end for whatever would
+//! unwind out of it.
+
+use super::float_control::FloatControl;
+use super::watch::{self, Label};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What laws did to the state of their callers, which was put back.
+#[derive(Debug, Default)]
+pub(super) struct Disturbed {
+    /// Control of floating point, while the library was loaded.
+    pub loading: AtomicBool,
+    /// Control of floating point, in a call.
+    pub calling: AtomicBool,
+}
+
+/// Calls a law's function, by its index in [`watch`]. `f` calls it as one that may unwind: an exception, or the end of its thread
+/// (`pthread_exit`), ends the program here, before it passes through frames of Rust.
+#[inline]
+pub(super) fn call<R>(
+    label: Label,
+    number: usize,
+    disturbed: &AtomicBool,
+    f: impl FnOnce() -> R,
+) -> R {
+    let control = FloatControl::now();
+    let inside = watch::enter(label, number);
+    let answer = f();
+    inside.leave();
+    if control.restore() {
+        disturbed.store(true, Ordering::Relaxed);
+    }
+    answer
+}
+
+/// Runs what loads code; the folder of the process, to which paths are relative, is afterwards what it was.
+pub(super) fn keep_folder<R>(f: impl FnOnce() -> R) -> R {
+    let before = std::env::current_dir();
+    let answer = f();
+    if let Ok(before) = before
+        && std::env::current_dir().ok().as_ref() != Some(&before)
+    {
+        let _ = std::env::set_current_dir(before);
+    }
+    answer
+}

@@ -1,0 +1,106 @@
+//! That no two things of a run have the same name: columns of the statistics, and files of its folder.
+
+use super::clear::{FIGURES, OWN};
+use super::{RunError, run_observers};
+use crate::geometry::space::Space;
+use crate::scene::build::{Loaded, Scene};
+use crate::scene::case::Case;
+use crate::scene::source::{InputError, ValidationError};
+use fretwork_observe::Observers;
+use fretwork_store::folder_lock::RUN_LOCK;
+use std::collections::BTreeSet;
+
+/// Files and folders that a run has beside those that it [removes](super::clear) of an older one.
+const OTHERS: [&str; 5] = [
+    "results.h5.part",
+    "summary.part",
+    "frames",
+    "fclib",
+    RUN_LOCK,
+];
+
+/// What two things of one name are, and their name.
+type Twice = (&'static str, String);
+
+/// Refuses two columns or two files of one name, of the case and of who observes the run.
+///
+/// # Errors
+/// The name, at the line of the case that gives it.
+pub(super) fn check<S: Space>(loaded: &Loaded, observers: &Observers<S>) -> Result<(), RunError> {
+    let Some((what, name)) = twice(observers) else {
+        return Ok(());
+    };
+    match at_line(loaded, what, &name) {
+        Some(error) => Err(RunError::Input(Box::new(error))),
+        None => Err(RunError::NameTwice { what, name }),
+    }
+}
+
+/// Checks that no two columns or files of a run of a case have the same name.
+///
+/// # Errors
+/// The name, at the line of the case that gives it.
+pub fn check_names(loaded: &Loaded, scene: &Scene) -> Result<(), InputError> {
+    let twice = match scene {
+        Scene::Dim2(built) => twice(&run_observers(loaded, &built.simulation)),
+        Scene::Dim3(built) => twice(&run_observers(loaded, &built.simulation)),
+    };
+    let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
+    error.map_or(Ok(()), Err)
+}
+
+/// Two columns or two files of one name. Names of files that differ in capitals are the same file on some systems.
+fn twice<S: Space>(observers: &Observers<S>) -> Option<Twice> {
+    let mut columns = BTreeSet::new();
+    for column in observers.columns() {
+        if let Some(name) = columns.replace(column.name) {
+            return Some(("column of statistics.csv", name));
+        }
+    }
+    let own = OWN.iter().chain(&OTHERS).chain(&FIGURES);
+    let mut files: BTreeSet<String> = own.map(|name| (*name).to_owned()).collect();
+    for file in observers.file_names() {
+        if let Some(name) = files.replace(file.to_lowercase()) {
+            return Some(("file in the folder of the results", name));
+        }
+    }
+    None
+}
+
+/// The error at the line of the case that makes a name; none if it is of an observer of the library's user.
+fn at_line(loaded: &Loaded, what: &str, name: &str) -> Option<InputError> {
+    let message = format!("another {what} is named `{name}`; take another name here");
+    let path = path(&loaded.case, name)?;
+    Some(loaded.source.locate(ValidationError::new(path, message)))
+}
+
+/// The path of the name in a case from which the name of a column or a file is made: the longest that is in it, of a measure before
+/// that of a body.
+fn path(case: &Case, made: &str) -> Option<String> {
+    let measures = case.measures.iter().map(|m| m.name());
+    let elastic = case.elastic.iter().map(|b| b.name.as_str());
+    let half_spaces = case.half_spaces.iter().map(|b| b.name.as_str());
+    let bodies = case.bodies.iter().map(|b| b.name.as_str());
+    let lists: [(&str, Vec<&str>); 4] = [
+        ("bodies", bodies.collect()),
+        ("half_spaces", half_spaces.collect()),
+        ("elastic", elastic.collect()),
+        ("measures", measures.collect()),
+    ];
+    let plain = |text: &str| {
+        text.to_lowercase()
+            .replace(|c: char| !c.is_alphanumeric(), "_")
+    };
+    let made = plain(made);
+    let named = lists.iter().flat_map(|(list, names)| {
+        let path = move |k: usize| format!("{list}.{k}.name");
+        names
+            .iter()
+            .enumerate()
+            .map(move |(k, name)| (name.len(), path(k), *name))
+    });
+    let named = named.filter(|(_, _, name)| !name.is_empty() && made.contains(&plain(name)));
+    named
+        .max_by_key(|(length, ..)| *length)
+        .map(|(_, path, _)| path)
+}

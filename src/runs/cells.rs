@@ -1,0 +1,39 @@
+//! Texts in cells of CSV files, which spreadsheets open.
+
+/// Characters by which a formula begins.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// A text as a cell that no spreadsheet takes for a formula: one that begins like a formula, and is no number, gets an apostrophe.
+pub fn guarded(text: &str) -> String {
+    let formula = text.starts_with(FORMULA) && text.parse::<f64>().is_err();
+    if formula {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    }
+}
+
+/// The text of a [guarded] cell.
+pub fn unguarded(cell: &str) -> &str {
+    let text = cell.strip_prefix('\'');
+    text.filter(|text| text.starts_with(FORMULA))
+        .unwrap_or(cell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_is_no_formula_and_reads_back() {
+        for text in ["=1+1", "+x", "-x", "@a", "\t=1"] {
+            let cell = guarded(text);
+            assert!(cell.starts_with('\''), "{text}");
+            assert_eq!(unguarded(&cell), text);
+        }
+        for text in ["-1.5e-3", "+2", "coulomb", "'quoted'", ""] {
+            assert_eq!(guarded(text), text);
+            assert_eq!(unguarded(text), text);
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! What pages say of the program and what its help says of files, against the program and the files.
+
+use fretwork::laws::{Kind, Place, SearchPath};
+use fretwork::shipped::built_in;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// What a call of the program answers.
+fn answer(words: &[&str]) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
+    let output = command.args(words).current_dir(root()).output().unwrap();
+    assert!(output.status.success(), "{words:?}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// All pages: README and docs.
+fn pages() -> Vec<PathBuf> {
+    let mut out = vec![root().join("README.md")];
+    let mut folders = vec![root().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap().flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                out.push(path);
+            }
+        }
+    }
+    out
+}
+
+/// Subcommands of a command, as its help lists them.
+fn subcommands(help: &str) -> Vec<String> {
+    let list = help.split("\nCommands:\n").nth(1).unwrap_or_default();
+    let lines = list.lines().take_while(|l| l.starts_with("  "));
+    let names = lines.filter_map(|l| l.split_whitespace().next());
+    names.filter(|n| *n != "help").map(str::to_owned).collect()
+}
+
+/// The help of every command.
+fn helps() -> Vec<(String, String)> {
+    let mut out = Vec::new();
+    let mut open: Vec<Vec<String>> = vec![Vec::new()];
+    while let Some(words) = open.pop() {
+        let call: Vec<&str> = words.iter().map(String::as_str).chain(["--help"]).collect();
+        let help = answer(&call);
+        for name in subcommands(&help) {
+            open.push([&words[..], &[name]].concat());
+        }
+        out.push((words.join(" "), help));
+    }
+    out
+}
+
+/// Words that are paths of this repository.
+fn paths(text: &str) -> impl Iterator<Item = &str> {
+    let of_path = |c: char| c.is_ascii_alphanumeric() || "_-./".contains(c);
+    let words = text
+        .split(move |c| !of_path(c))
+        .map(|w| w.trim_end_matches('.'));
+    let folders = [
+        "cases/",
+        "studies/",
+        "fits/",
+        "docs/",
+        "tests/fclib/",
+        "materials/",
+        "examples/",
+    ];
+    words.filter(move |w| {
+        folders
+            .iter()
+            .any(|f| w.starts_with(f) && w.len() > f.len())
+    })
+}
+
+#[test]
+fn helps_name_files_that_are_there_and_every_kind_of_law() {
+    let helps = helps();
+    assert!(helps.len() > 15, "{}", helps.len());
+    for (command, help) in &helps {
+        for path in paths(help) {
+            assert!(root().join(path).exists(), "{command} --help names {path}");
+        }
+    }
+    let new = &helps.iter().find(|h| h.0 == "law new").unwrap().1;
+    for kind in Kind::BUILT_IN {
+        assert!(new.contains(kind.word()), "{kind} is not in: {new}");
+    }
+}
+
+/// Numbers before these words are numbers of shipped laws.
+#[test]
+fn pages_know_how_many_laws_there_are() {
+    let laws = SearchPath::new(&[]).with_built_in(built_in()).laws();
+    let own = laws.iter().filter(|law| law.2 == Place::BuiltIn).count();
+    let own = own.max(built_in().names().count());
+    let listed = answer(&["law", "list"]);
+    for (kind, name) in built_in().names() {
+        let line = |l: &str| l.split_whitespace().take(2).eq([kind.word(), name]);
+        assert!(listed.lines().any(line), "{kind} {name}");
+    }
+    let mut told = 0;
+    for page in pages() {
+        let text = read(&page);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        for three in words.windows(3) {
+            let Ok(number) = three[0].parse::<usize>() else {
+                continue;
+            };
+            if three[1] == "shipped"
+                && (three[2].starts_with("laws") || three[2].starts_with("ones"))
+            {
+                assert_eq!(number, own, "{}: {}", page.display(), three.join(" "));
+                told += 1;
+            }
+        }
+    }
+    assert!(told >= 2, "{told}");
+}
+
+/// Files that the README links to, and cases that it runs; it runs none that is not checked.
+#[test]
+fn the_readme_names_files_that_are_there() {
+    let text = read(&root().join("README.md"));
+    let links = text
+        .split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next());
+    let files = links.filter(|l| !l.starts_with("http") && !l.starts_with('#'));
+    let files: Vec<&str> = files.filter_map(|l| l.split('#').next()).collect();
+    assert!(files.len() > 30);
+    for file in files {
+        assert!(root().join(file).exists(), "{file}");
+    }
+    for line in text
+        .lines()
+        .filter(|l| l.starts_with("cargo run --release -- "))
+    {
+        for path in paths(line) {
+            assert!(root().join(path).exists(), "{line}");
+        }
+    }
+}
+
+/// The case by which the README and the help show `trade` is one whose results are trusted.
+#[test]
+fn the_example_of_trade_is_a_case_that_can_be_trusted() {
+    let text = read(&root().join("README.md"));
+    let line = text
+        .lines()
+        .find(|l| l.starts_with("cargo run --release -- trade "))
+        .unwrap();
+    let case = paths(line).next().unwrap();
+    assert!(answer(&["trade", "--help"]).contains(case));
+    let out = std::env::temp_dir().join(format!("fretwork-facts-{}", std::process::id()));
+    let folder = out.to_str().unwrap();
+    let run = [
+        "run",
+        case,
+        "--strict",
+        "--no-report",
+        "--json",
+        "--out",
+        folder,
+    ];
+    let sets = ["--set", "output.frames=0", "--set", "output.figures=false"];
+    answer(&[&run[..], &sets].concat());
+    std::fs::remove_dir_all(&out).ok();
+}

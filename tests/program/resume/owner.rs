@@ -1,0 +1,110 @@
+//! A folder is one run's: another that begins there, or goes on, or a page that is made of it meanwhile, is refused and changes nothing.
+
+use super::common::{Folder, IN_PLACE, Job, files, last_frame, said, same};
+use fretwork::record::checkpoint::Kind;
+use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Long enough to be met.
+const SETS: [&str; 3] = [
+    "output.checkpoint=Steps(50)",
+    "output.frames=0",
+    "output.every=1",
+];
+
+const JOB: Job<'static> = Job {
+    case: "verification/energy",
+    sets: &SETS,
+};
+
+fn report(out: &Path) -> std::process::Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
+    command.arg("report").arg(out).output().unwrap()
+}
+
+fn refused(output: &std::process::Output, words: &str) {
+    let told = said(output, 2);
+    assert!(told.contains(words), "{told}");
+}
+
+/// Whether a run owns the folder.
+fn held(out: &Path) -> bool {
+    FolderLock::read(out, RUN_LOCK).is_err()
+}
+
+/// What is done in the folder while a run, new or resumed, writes there.
+fn all_refused(out: &Path) {
+    let words = "another run is writing in";
+    let before = files(out).len();
+    refused(&JOB.run(out, &[]), words);
+    refused(&JOB.run(out, &["--resume"]), words);
+    refused(&report(out), "a run is writing in it");
+    assert_eq!(files(out).len(), before);
+}
+
+#[test]
+fn a_folder_is_one_runs() {
+    let whole = Folder::new("owner-whole");
+    JOB.done(&whole.0, &[]);
+    let out = Folder::new("owner");
+    for more in [&[][..], &["--resume"]] {
+        let mut child = JOB.start(&out.0, more);
+        let begun = Instant::now();
+        while last_frame(&out.0).is_none_or(|f| f.kind != Kind::State) || !held(&out.0) {
+            assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        // Held still, so that it does not end meanwhile.
+        let stop = |number: i32| {
+            // SAFETY: no memory is touched; the child has not been waited for, so the number is its own.
+            assert_eq!(unsafe { libc::kill(child.id() as libc::pid_t, number) }, 0);
+        };
+        stop(libc::SIGSTOP);
+        all_refused(&out.0);
+        stop(libc::SIGCONT);
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    // The system releases what a killed run held; the bits are those of a run that nobody met.
+    JOB.done(&out.0, &["--resume"]);
+    same(&whole.0, &out.0);
+    said(&report(&out.0), 0);
+}
+
+/// A damaged state of a finished run is not a run to be started over: neither at its end nor with a later one.
+#[test]
+fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
+    const LATER: [&str; 4] = [SETS[0], SETS[1], SETS[2], "time.end=0.2"];
+    for in_place in [false, true] {
+        let out = Folder::new("damaged-finished");
+        let mut command = JOB.command(&out.0, &[]);
+        if in_place {
+            command.env(IN_PLACE, "0");
+        }
+        said(&command.output().unwrap(), 0);
+        let path = out.0.join("results.h5");
+        let mut bytes = std::fs::read(&path).unwrap();
+        // The frame of the state, behind its head; that of the end has no state.
+        let heads = bytes
+            .windows(8)
+            .enumerate()
+            .filter(|(_, w)| w == b"FRETWORK");
+        let states = heads.map(|(at, _)| at).filter(|at| bytes[at + 12] == 1);
+        let at = states.last().expect("a frame with a state");
+        bytes[at + 100] ^= 1;
+        std::fs::write(&path, &bytes).unwrap();
+        let later = Job {
+            case: JOB.case,
+            sets: &LATER,
+        };
+        let told = said(&later.run(&out.0, &["--resume"]), 1);
+        assert!(
+            told.contains("damaged") && told.contains("nothing was changed"),
+            "{told}"
+        );
+        assert!(std::fs::read(&path).unwrap() == bytes);
+        assert!(out.0.join("summary.json").exists());
+    }
+}
