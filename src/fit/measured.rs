@@ -3,6 +3,7 @@
 use super::FitError;
 use super::branches::laid_out;
 use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
+use fretwork_scene::sample::table::number;
 use fretwork_study::fit::residuals::Measurement;
 use std::path::Path;
 
@@ -63,16 +64,7 @@ pub fn read(
         let record = record.map_err(|e| fail(e.to_string()))?;
         let number = |k: usize| {
             let text = record.get(k).unwrap_or_default();
-            text.parse::<f64>()
-                .ok()
-                .filter(|v| v.is_finite())
-                .ok_or_else(|| {
-                    fail(format!(
-                        "point {}, `{}`: `{text}` is no number",
-                        line + 1,
-                        names[k]
-                    ))
-                })
+            number(text, &names[k]).map_err(|why| fail(format!("point {}: {why}", line + 1)))
         };
         let row = [number(x)?, number(y)?, sigma.map_or(Ok(0.0), number)?];
         if spec

@@ -19,6 +19,7 @@ mod fclib;
 mod fit;
 mod grains;
 mod growth;
+mod half_space_page;
 mod heat;
 mod holders;
 mod law_drive;

@@ -7,6 +7,7 @@ use super::nearest_places::NearestPlaces;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
+use super::resolution::{self, Resolution};
 use super::statistics::Column;
 use super::summary::Summary;
 use super::tractions::{SurfaceState, loaded, signed};
@@ -31,6 +32,8 @@ pub struct Deformable {
     distortions: Vec<Option<[f64; 2]>>,
     /// Of each body the largest share of a force on its border.
     borders: Vec<f64>,
+    /// Elements across the contact of each.
+    resolutions: Vec<Resolution>,
     /// Contacts that act on nearest places.
     nearest: NearestPlaces,
     /// Largest strain and rotation of grains that deform, and the names of their materials.
@@ -115,6 +118,7 @@ impl Deformable {
     /// Of the dynamical systems of the simulation of a case.
     pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
         let systems = || first_bodies(s);
+        let rolls = case.half_spaces.iter().any(|b| b.rolling.is_some());
         let named = systems().flat_map(|system| {
             let holders = system.holders().into_iter();
             holders.map(|h| format!("{}_{}_{}", system.name(), h.part, ["x", "y", "z"][h.axis]))
@@ -124,6 +128,9 @@ impl Deformable {
             bodies: systems().map(|s| s.name().to_owned()).collect(),
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
             borders: vec![0.0; systems().count()],
+            resolutions: systems()
+                .map(|system| Resolution::new(system.name(), rolls))
+                .collect(),
             nearest: NearestPlaces::default(),
             grains: strain_of_grains(s),
             materials: case
@@ -213,6 +220,9 @@ impl<S: Space> Observer<S> for Deformable {
         for (most, system) in self.distortions.iter_mut().zip(systems()) {
             *most = larger(*most, system.small_strain());
         }
+        for (k, resolution) in self.resolutions.iter_mut().enumerate() {
+            resolution.add(s, k, s.state.energy.friction);
+        }
         for (most, system) in self.borders.iter_mut().zip(systems()) {
             *most = system.load_at_border().unwrap_or(0.0).max(*most);
         }
@@ -263,6 +273,8 @@ impl<S: Space> Observer<S> for Deformable {
                 });
             }
         }
+        let touch = self.resolutions.iter().filter(|r| r.across > 0.0);
+        summary.resolution.extend(touch.cloned());
         summary.nearest_places = Some(self.nearest).filter(|n| n.contacts > 0);
         let strain = larger(self.grains, strain_of_grains(end.simulation));
         if let Some([strain, rotation]) = strain {
@@ -276,12 +288,20 @@ impl<S: Space> Observer<S> for Deformable {
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         let nearest = self.nearest.state();
-        encode(&(&self.distortions, &self.borders, self.grains, nearest))
+        let resolutions: Vec<_> = self.resolutions.iter().map(Resolution::state).collect();
+        let kept = (&self.distortions, &self.borders, self.grains, nearest);
+        encode(&(kept, resolutions))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        let nearest;
-        (self.distortions, self.borders, self.grains, nearest) = decode(from)?;
+        let (nearest, resolutions): (_, Vec<resolution::State>);
+        (
+            (self.distortions, self.borders, self.grains, nearest),
+            resolutions,
+        ) = decode(from)?;
+        for (own, state) in self.resolutions.iter_mut().zip(resolutions) {
+            own.restore(state);
+        }
         self.nearest = NearestPlaces::from_state(nearest);
         Ok(())
     }

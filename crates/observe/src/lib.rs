@@ -33,6 +33,7 @@ pub mod output;
 pub mod picture;
 pub mod placement;
 pub mod quantity;
+pub mod resolution;
 pub mod run_state;
 pub mod scars;
 pub mod scatter;

@@ -1,6 +1,7 @@
 //! Validation of a case's jumps over cycles.
 
 use super::case::{BodySpec, Case};
+use super::holders;
 use super::processes::held;
 use super::source::ValidationError;
 use fretwork_core::bodies::{Dof, TimeFunction};
@@ -33,7 +34,9 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
         return Err(ValidationError::new("jump", message));
     }
     repeats(case, jump)?;
-    let wears = case.bodies.iter().any(|b| b.wears.is_some());
+    let wears = case.bodies.iter().any(|b| b.wears.is_some())
+        || case.elastic.iter().any(|b| b.wears.is_some())
+        || case.half_spaces.iter().any(|b| b.wears.is_some());
     let damages = case
         .interfaces
         .iter()
@@ -96,18 +99,36 @@ fn repeats(case: &Case, jump: &JumpSpec) -> Result<(), ValidationError> {
         return Err(ValidationError::new("gravity_drive", message));
     }
     let begins = test.start + f64::from(jump.after) * cycle;
+    let check = |path: String, dof: &Dof, translates: bool| {
+        let Some(why) = reason_not_periodic(dof, translates, cycle, begins) else {
+            return Ok(());
+        };
+        let message = format!(
+            "a jump skips whole cycles of {cycle:e} s from {begins:e} s on, so all drives must repeat with each cycle, \
+             but {why}; keep it constant from then on, give it a period that divides the cycle, or leave `jump` out"
+        );
+        Err(ValidationError::new(path, message))
+    };
+    let dimension = case.dimension as usize;
     for body in &case.bodies {
-        let names = BodySpec::names(case.dimension as usize);
-        for (k, dof) in body.ordered(case.dimension as usize).iter().enumerate() {
-            if let Some(why) = reason_not_periodic(dof, k < case.dimension as usize, cycle, begins)
-            {
-                let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
-                let message = format!(
-                    "a jump skips whole cycles of {cycle:e} s from {begins:e} s on, so all drives must repeat with each cycle, \
-                     but {why}; keep it constant from then on, give it a period that divides the cycle, or leave `jump` out"
-                );
-                return Err(ValidationError::new(path, message));
+        let names = BodySpec::names(dimension);
+        for (k, dof) in body.ordered(dimension).iter().enumerate() {
+            let path = format!("bodies.{}.dofs.{}", body.name, names[k]);
+            check(path, dof, k < dimension)?;
+        }
+    }
+    for (path, _, axes) in holders::own(case) {
+        for (axis, dof) in ["x", "y", "z"].iter().zip(axes) {
+            if let Some(dof) = dof {
+                check(format!("{path}.{axis}"), dof, true)?;
             }
+        }
+    }
+    for (k, body) in case.half_spaces.iter().enumerate() {
+        if let Some(rolling) = &body.rolling {
+            // Rolling at one speed is the same in each cycle.
+            let path = format!("half_spaces.{k}.rolling");
+            check(path, &Dof::Velocity(rolling.clone()), false)?;
         }
     }
     Ok(())

@@ -16,6 +16,7 @@ pub mod circuit;
 mod deep;
 pub mod gmsh;
 mod heat;
+mod height_grid;
 mod holders;
 pub mod inputs;
 pub mod interfaces;

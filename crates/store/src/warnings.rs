@@ -124,6 +124,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     for body in &summary.border_loads {
         serious("LOAD AT BORDER", body.warning());
     }
+    serious("COARSE CONTACT", coarse(summary, true));
     serious("ALIASED DRIVE", drives(summary, true));
     let missed = missed(summary);
     let generic = || missed.seen(summary.steps, summary.solver.tolerance);
@@ -260,6 +261,15 @@ fn phases(summary: &Summary) -> Option<String> {
             missed.join(", ")
         )
     })
+}
+
+/// The contact whose elements leave most doubt of the heat, where that is a reason not to trust it or a note alone. Two bodies that
+/// touch each other have one contact.
+fn coarse(summary: &Summary, serious: bool) -> Option<String> {
+    let all = summary.resolution.iter();
+    let worst = all.max_by(|a, b| a.heat_error.total_cmp(&b.heat_error))?;
+    let (reason, text) = worst.warning()?;
+    (reason == serious).then_some(text)
 }
 
 /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.
@@ -422,6 +432,7 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     note("SHALLOW HALF-SPACES", heat.and_then(HeatChecks::shallow));
     note("HEAT OUT OF RANGE", heat.and_then(HeatChecks::outside));
     let nearest = summary.nearest_places.as_ref();
+    note("COARSE CONTACT", coarse(summary, false));
     note("NEAREST PLACES", nearest.and_then(NearestPlaces::warning));
     note("COARSE DRIVE", drives(summary, false));
     note("POSITION CORRECTION", correction(summary));

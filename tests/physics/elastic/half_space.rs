@@ -1,7 +1,9 @@
 //! Elastic half-spaces against the closed forms of contact mechanics: Hertz, Westergaard, Cattaneo and Mindlin, Carter, and the creep
 //! curve of an elliptic contact.
 
+mod defaults;
 mod punch;
+mod resolution;
 mod rolling;
 
 use super::*;

@@ -9,6 +9,7 @@
 
 use super::*;
 use cpu_time::ThreadTime;
+use fretwork::solve::Options;
 use nalgebra::Vector2;
 
 /// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under 178.9 N/mm.
@@ -208,6 +209,26 @@ fn hertz_on_a_rigid_cylinder() {
 #[test]
 fn hertz_between_two_bodies() {
     hertz(Counter::Steel);
+}
+
+/// The default solver, whose error is measured against velocities that the load would give the cylinder, leaves no point with another
+/// pressure than a tight tolerance.
+#[test]
+fn defaults_have_the_pressure_of_each_point() {
+    let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
+    let [tight, default] = [false, true].map(|default| {
+        let mut s = pressed(Counter::Steel, 8, 4, 0.0);
+        if default {
+            s.options.solver = Options::default();
+        }
+        go(&mut s, 12);
+        tractions(&s, 8)
+    });
+    assert_eq!(tight.len(), default.len());
+    let differ = tight.iter().zip(&default).map(|(a, b)| (a[1] - b[1]).abs());
+    let most = differ.fold(0.0, f64::max) / p0;
+    println!("{most:e} of p0 at most");
+    assert!(most < 0.005, "{most}");
 }
 
 /// Where points lie anywhere on the segments of the other body, pressures of single points are those of Hertz too: contacts act on the place

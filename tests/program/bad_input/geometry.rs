@@ -83,6 +83,29 @@ fn surfaces_of_the_other_dimension() {
     );
 }
 
+/// Heights written in lines are the rows of the grid.
+#[test]
+fn a_height_field_that_is_transposed() {
+    let field = "HeightField(points: (4, 4), spacing: (0.1, 0.1), rms: 1e-4)";
+    let lines = |heights: &str| {
+        let field = format!("HeightField(points: (4, 3), spacing: (0.1, 0.1), heights: {heights})");
+        with(
+            SOLID,
+            "HeightField(points: (4, 4), spacing: (0.1, 0.1), rms: 1e-4)",
+            &field,
+        )
+    };
+    assert!(SOLID.contains(field));
+    refused(
+        &lines("‸[\n0.0, 0.0, 1e-5,\n0.0, 0.0, 1e-5,\n0.0, 0.0, 1e-5,\n0.0, 0.0, 1e-5]"),
+        &["4 heights along x in 3 rows", "transposed"],
+    );
+    refused(
+        &lines("‸[\n0.0, 0.0, 1e-5,\n1.0, 0.0, 2e-5,\n2.0, 0.0, 1e-5,\n3.0, 0.0, 1e-5]"),
+        &["places x, y"],
+    );
+}
+
 #[test]
 fn a_height_field_of_absurd_size() {
     refused(

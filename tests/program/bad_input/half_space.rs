@@ -319,19 +319,62 @@ fn profiles() {
     refused_beside(
         &file,
         &[("heights.txt", "0.0 0.0, 1e-6\n")],
-        &["has 3 heights, and there are 20 cells, 20 along x"],
-    );
-    refused_beside(
-        &file,
-        &[("heights.txt", "0.0 level 0.0\n")],
-        &["`level` in heights.txt is no number"],
+        &["3 heights in 1 line of 3, and there are 20 cells, 20 along x"],
     );
     let endless = "0.0 ".repeat(19) + "inf";
-    refused_beside(
-        &profile("‸Heights(file: \"heights.txt\")"),
-        &[("heights.txt", &endless)],
-        &["not finite"],
-    );
+    for (text, line, says) in [
+        (
+            "# a scan\n0.0 level 0.0\n",
+            2,
+            "`level` is not a finite number",
+        ),
+        (&endless, 1, "`inf` is not a finite number"),
+        ("0,5 0,25\n", 1, "decimal point"),
+    ] {
+        refused_in("heights.txt", &unmarked(&file), (text, line), &[says]);
+    }
+}
+
+/// A file of heights fits the cells by its rows and columns, and not by its count of numbers alone.
+#[test]
+fn heights_of_other_rows() {
+    let file = |cells: &str| {
+        let profile = format!("profile: Heights(file: ‸\"h.txt\"), {cells}");
+        area(
+            "x: (from: 0.0, to: 0.2, size: 0.05), y: (from: 0.0, to: 0.2, size: 0.05)",
+            &profile,
+        )
+    };
+    let wide = file("x: (from: 0.0, to: 0.2, size: 0.05), y: (from: 0.0, to: 0.15, size: 0.05)");
+    let rows = "# a scan, in metres\n1e-6 2e-6 3e-6 4e-6\n5e-6 6e-6 7e-6 8e-6\n\n9e-6 1e-5 1.1e-5 1.2e-5\n";
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    trial.write("h.txt", rows);
+    trial.write("case.ron", &unmarked(&wide));
+    let output = trial.call(&["check", "case.ron"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    let turned = "1e-6 2e-6 3e-6\n4e-6 5e-6 6e-6\n7e-6 8e-6 9e-6\n1e-5 1.1e-5 1.2e-5\n";
+    refused_beside(&wide, &[("h.txt", turned)], &["transposed"]);
+    let places = "0 0 1e-6\n1 0 2e-6\n2 0 3e-6\n3 0 4e-6\n";
+    refused_beside(&wide, &[("h.txt", places)], &["places x, y and heights z"]);
+    let commas = "1,0 2,0 3,0 4,0\n".repeat(3);
+    refused_in("h.txt", &unmarked(&wide), (&commas, 1), &["decimal point"]);
+}
+
+fn unmarked(case: &str) -> String {
+    case.replace('‸', "")
+}
+
+/// The case is refused at a line of a file beside it.
+#[track_caller]
+fn refused_in(file: &str, case: &str, (text, line): (&str, usize), words: &[&str]) {
+    let trial = Trial::new();
+    trial.write("materials/stone.ron", STIFF);
+    trial.write(file, text);
+    trial.write("case.ron", case);
+    let said = trial.refuses(&trial.path("case.ron"), &[], words);
+    assert!(said.contains(&format!("{file}:{line}:")), "{said}");
 }
 
 #[test]

@@ -35,6 +35,8 @@ const NEWTON: u32 = 40;
 /// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as in a
 /// column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
+/// How often a method that factorises is asked for a smaller error.
+const ATTEMPTS: u32 = 4;
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
 
@@ -161,24 +163,33 @@ impl<S: Space> SolveContext<'_, S> {
     /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance, the method
     /// continues.
     fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
-        const ATTEMPTS: u32 = 4;
         let mut report = nlgs::arrange(problem, self.options);
-        let mut tolerance = self.options.tolerance;
-        for _ in 0..ATTEMPTS {
-            let left = self
-                .options
-                .max_iterations
-                .saturating_sub(report.iterations);
+        let (tolerance, most) = (self.options.tolerance, self.options.max_iterations);
+        self.improve_until(problem, &mut report, method, (tolerance, most, ATTEMPTS));
+        Report {
+            used: method,
+            ..report
+        }
+    }
+
+    /// Improves the solution until its error over bodies is within the tolerance, each time by that much more in the measure of the
+    /// method, which has not the tractions of systems in it; in some iterations and attempts at most.
+    fn improve_until(
+        &self,
+        problem: &mut Problem<S>,
+        report: &mut Report,
+        method: Method,
+        (mut tolerance, most, attempts): (f64, u32, u32),
+    ) {
+        let mut left = most;
+        for _ in 0..attempts {
             if report.converged || left == 0 {
                 break;
             }
             let next = self.improve(problem, method, tolerance, left);
+            left = left.saturating_sub(next.iterations);
             report.add(&next);
-            tolerance *= 0.3;
-        }
-        Report {
-            used: method,
-            ..report
+            tolerance *= 0.3 * (self.options.tolerance / report.error).min(1.0);
         }
     }
 
@@ -355,7 +366,13 @@ impl<S: Space> SolveContext<'_, S> {
             problem.adopt(&impulses, &moments);
         }
         let tolerance = 0.3 * self.options.tolerance;
-        report.add(&self.improve(problem, method, tolerance, steps.min(left)));
+        let attempts = if problem.of_systems.is_empty() {
+            1
+        } else {
+            ATTEMPTS
+        };
+        let limits = (tolerance, steps.min(left), attempts);
+        self.improve_until(problem, report, method, limits);
         if !report.converged && report.error > before.error {
             problem.restore(&saved);
             report.add(&before);

@@ -7,6 +7,7 @@ use super::row::{
     SolverBody, SystemRow,
 };
 use super::rows::Rows;
+use super::traction::Tractions;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// One contact in the standard local form. Impulses are in N s, velocities in m/s.
@@ -269,6 +270,7 @@ pub struct Problem<S: Space> {
     pub(super) bonded_levers: Rows<LeverRow<S, Bonded<S>>>,
     /// Contacts with dynamical systems; they run after those above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
+    pub(super) tractions: Tractions,
     /// The dynamical systems, as far as contacts see them.
     pub(super) systems: Vec<NodalSystem<S>>,
     /// Memory of large systems that were solved before.
@@ -292,6 +294,7 @@ impl<S: Space> Default for Problem<S> {
             levers: Rows::default(),
             bonded_levers: Rows::default(),
             of_systems: Vec::new(),
+            tractions: Tractions::default(),
             systems: Vec::new(),
             loaded: Vec::new(),
             moments: Vec::new(),
@@ -331,6 +334,7 @@ impl<S: Space> Problem<S> {
         self.levers.clear();
         self.bonded_levers.clear();
         self.of_systems.clear();
+        self.tractions.clear();
         self.clear_systems();
         self.moments.clear();
         self.places.clear();

@@ -30,11 +30,8 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
     first += levers.len();
     bonded_levers.measure(&solver_bodies, first, parallel, &mut sums);
     first += bonded_levers.len();
-    for (k, row) in problem.of_systems.iter().enumerate() {
-        sums.add(
-            &row.residual(&problem.solver_bodies, &problem.systems),
-            first + k,
-        );
+    if !problem.of_systems.is_empty() {
+        measure_systems(problem, first, &mut sums);
     }
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     for row in &problem.moments {
@@ -43,6 +40,19 @@ pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sum
         sums.add_moment(&row.residual(pn, &i, &j, &problem.systems));
     }
     sums
+}
+
+/// Adds the contacts with systems, which are counted from `first`.
+fn measure_systems<S: Space>(problem: &mut Problem<S>, first: usize, sums: &mut Sums) {
+    let mut tractions = std::mem::take(&mut problem.tractions);
+    tractions.begin(problem);
+    for (k, row) in problem.of_systems.iter().enumerate() {
+        let residual = row.residual(&problem.solver_bodies, &problem.systems);
+        sums.add(&residual, first + k);
+        tractions.add(row, &residual);
+    }
+    sums.traction = tractions.worst(&problem.of_systems);
+    problem.tractions = tractions;
 }
 
 /// Computes the reference values of the error.

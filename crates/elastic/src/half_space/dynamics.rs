@@ -238,6 +238,16 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         Nodes::on_facet(&weights).unwrap_or_else(|| contactor.nodes.clone())
     }
 
+    /// That of its places: what rolls passes through them.
+    fn contactor_velocity(&self, contactor: &Contactor, velocity: &[f64]) -> (S::Vector, S::Spin) {
+        let terms = contactor.nodes.terms();
+        let elastic = terms.fold(S::Vector::zero(), |sum, (cell, weight)| {
+            sum + self.entries(velocity, cell as usize) * weight
+        });
+        let held = self.entries(velocity, self.fixed.grid.len());
+        (elastic + held, S::Spin::zero())
+    }
+
     fn expected_velocity(&self, _contactor: &Contactor, free: &[f64]) -> (S::Vector, S::Spin) {
         (self.entries(free, self.fixed.grid.len()), S::Spin::zero())
     }

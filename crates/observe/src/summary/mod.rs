@@ -22,6 +22,7 @@ use crate::friction::Cycle;
 use crate::heat::HeatChecks;
 use crate::jump::JumpSummary;
 use crate::nearest_places::NearestPlaces;
+use crate::resolution::Resolution;
 use crate::scars::ScarSummary;
 use crate::scatter::Scatter;
 pub use crate::solving::SolverSummary;
@@ -206,6 +207,9 @@ pub struct Summary {
     /// Loads on the border of half-spaces; left out without any.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub border_loads: Vec<BorderLoad>,
+    /// Elements across the contacts of deformable bodies; left out without any.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub resolution: Vec<Resolution>,
     /// Contacts between deformable bodies that act on the nearest place; left out without any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_places: Option<NearestPlaces>,

@@ -273,6 +273,11 @@ impl Summary {
     /// Further results of the case.
     fn others(&self, lines: &mut Lines, verbose: bool) {
         lines.all(self.biaxial.iter().flat_map(Outcome::lines));
+        let worst = self.resolution.iter();
+        let worst = worst.max_by(|a, b| a.heat_error.total_cmp(&b.heat_error));
+        if let Some(contact) = worst {
+            lines.add("elements across", contact.line());
+        }
         for (name, text) in &self.findings {
             lines.add(name, text);
         }

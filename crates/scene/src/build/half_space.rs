@@ -3,9 +3,10 @@
 use super::surface::Roughness;
 use super::{Builder, Dimensional, Origin};
 use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
+use crate::height_grid;
 use crate::material::Sourced;
 use crate::source::InputError;
-use fretwork_core::bodies::{Dof, DynamicalSystem};
+use fretwork_core::bodies::{Dof, DynamicalSystem, TimeFunction};
 use fretwork_elastic::half_space::{
     Cells, Fills, Grid, HalfSpaceError, HalfSpaceSpec as Parts, Profile, Reach,
 };
@@ -13,6 +14,9 @@ use std::collections::BTreeMap;
 
 /// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 - theta)/theta in a step, and near 1/2 single steps win energy.
 const MIN_THETA: f64 = 0.55;
+
+/// Creepage of one surface over another that may come on top of rolling by one cell a step.
+const MOST_CREEPAGE: f64 = 0.01;
 
 impl<S: Dimensional> Builder<'_, S> {
     /// The half-spaces of the case, in its order.
@@ -190,17 +194,23 @@ impl<S: Dimensional> Builder<'_, S> {
     fn check_rolling(
         &self,
         here: &str,
-        rolling: &fretwork_core::bodies::TimeFunction,
+        rolling: &TimeFunction,
         grid: &Grid,
     ) -> Result<(), InputError> {
         if let Some(why) = rolling.fault() {
             return Err(self.fail(here, why));
         }
-        let (h, end) = (self.case.time.step, self.case.time.end);
-        let times = (0..=1000).map(|k| f64::from(k) * 1e-3 * end);
-        let fastest = times.map(|t| rolling.value(t).abs()).fold(0.0, f64::max);
-        // A creepage on top of a velocity of one cell a step is no matter.
-        if fastest * h > 1.1 * grid.size[0] {
+        let h = self.case.time.step;
+        let fastest = match rolling {
+            TimeFunction::Constant(x) => x.abs(),
+            TimeFunction::Ramp { from, to, .. } => from.abs().max(to.abs()),
+            TimeFunction::Sine {
+                amplitude, offset, ..
+            } => amplitude.abs() + offset.abs(),
+            TimeFunction::Table(points) => points.iter().fold(0.0, |m, p| p.1.abs().max(m)),
+        };
+        // A small creepage on top of a velocity of one cell a step is no matter.
+        if fastest * h > (1.0 + MOST_CREEPAGE) * grid.size[0] {
             let message = format!(
                 "at {fastest} m/s the surface rolls by {:.3e} m in a step, more than a cell of {:.3e} m: shorten `time.step` to {:.3e} s or make the cells larger",
                 fastest * h,
@@ -274,34 +284,9 @@ impl<S: Dimensional> Builder<'_, S> {
                 Ok(Profile::Heights(heights))
             }
             HalfSpaceProfile::Heights { file, scale } => {
-                let at = format!("{here}.file");
-                let path = self.folder.join(file);
-                let text = std::fs::read_to_string(&path).map_err(|e| {
-                    self.fail(
-                        at.as_str(),
-                        format!("{} cannot be read: {e}", path.display()),
-                    )
-                })?;
-                let words = text.split(|c: char| c.is_whitespace() || c == ',' || c == ';');
-                let heights: Result<Vec<f64>, _> = words
-                    .filter(|w| !w.is_empty())
-                    .map(|w| w.parse::<f64>().map(|z| z * scale).map_err(|_| w))
-                    .collect();
-                let heights = heights.map_err(|word| {
-                    self.fail(
-                        at.as_str(),
-                        format!("`{word}` in {file} is no number; the file has heights alone"),
-                    )
-                })?;
-                if heights.len() != grid.len() {
-                    let message = format!(
-                        "{file} has {} heights, and there are {} cells, {} along x",
-                        heights.len(),
-                        grid.len(),
-                        grid.cells[0]
-                    );
-                    return Err(self.fail(at, message));
-                }
+                let heights = height_grid::read(&self.folder.join(file), grid.cells)
+                    .map_err(|e| self.source.named_at(&format!("{here}.file"), e))?;
+                let heights = heights.into_iter().map(|z| z * scale).collect();
                 Ok(Profile::Heights(heights))
             }
         }

@@ -3,8 +3,8 @@
 use super::{Builder, Built, Loaded, Scene};
 use crate::case::{ShapeSpec, Side};
 use crate::sample::deposit::Deposits;
-use crate::source::InputError;
-use crate::{profile, profile_file, standard};
+use crate::source::{InputError, split_path};
+use crate::{height_grid, profile, profile_file, standard};
 use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polygon::Polygon;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
@@ -376,7 +376,10 @@ impl<S: Dimensional> Builder<'_, S> {
         }
         let heights = match rms {
             Some(rms) => profile::noise(count, rms, self.case.seed ^ 0x5eed),
-            None => heights.to_vec(),
+            None => {
+                self.refuse_other_rows(here, heights, points)?;
+                heights.to_vec()
+            }
         };
         let p = self.shapes.periodic.period;
         let fits = |axis: usize, n: usize, s: f64| {
@@ -384,6 +387,31 @@ impl<S: Dimensional> Builder<'_, S> {
         };
         let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
         S::height_field(points, spacing, heights, periodic).map_err(bad)
+    }
+
+    /// Rejects heights whose lines in the case are the columns of the grid, or places with heights.
+    fn refuse_other_rows(
+        &self,
+        here: &str,
+        heights: &[f64],
+        (nx, ny): (usize, usize),
+    ) -> Result<(), InputError> {
+        let at = format!("{here}.heights");
+        let text = self.source.text();
+        let path = split_path(&at).unwrap_or_default();
+        let Ok(node) = self.source.tree().find(text, &path) else {
+            return Ok(());
+        };
+        let entries = node.group().map_or(&[][..], |list| list.entries.as_slice());
+        let spans: Vec<_> = entries.iter().map(|e| e.value.span.clone()).collect();
+        let rows = height_grid::rows_of_list(text, &spans, heights);
+        match height_grid::misfit(&rows, [nx, ny]) {
+            Some(why) => Err(self.fail(
+                at,
+                format!("the grid has {nx} heights along x in {ny} rows: {why}"),
+            )),
+            None => Ok(()),
+        }
     }
 
     /// Rejects a rough profile that would take long to generate.

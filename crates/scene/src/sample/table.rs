@@ -148,22 +148,42 @@ fn parse_row(
     fail: &impl Fn(String) -> InputError,
 ) -> Result<Vec<f64>, InputError> {
     if record.len() != header.len() {
+        let words: Vec<&str> = record.iter().collect();
+        let (values, columns) = (words.len(), header.len());
+        // Numbers with decimal commas are read as two.
+        let halves = values > columns && words.iter().all(|w| !w.contains('.'));
+        let why = if halves {
+            "; if commas stand for decimal points, write points"
+        } else {
+            ""
+        };
         return Err(fail(format!(
-            "this line has {} values and the header {} columns",
-            record.len(),
-            header.len()
+            "this line has {values} values and the header {columns} columns{why}"
         )));
     }
     let mut row = Vec::with_capacity(record.len());
     for (word, column) in record.iter().zip(header) {
-        let number = word.parse().ok().filter(|x: &f64| x.is_finite());
-        let number = number.ok_or_else(|| {
-            fail(format!("the value `{word}` of `{column}` is not a number"))
-                .expected("a finite number")
-        })?;
+        let number = number(word, column).map_err(|why| fail(why).expected("a finite number"))?;
         row.push(number * metres.get(row.len()).copied().unwrap_or(1.0));
     }
     Ok(row)
+}
+
+/// A finite number of a table.
+///
+/// # Errors
+/// The reason, in a sentence.
+pub fn number(word: &str, column: &str) -> Result<f64, String> {
+    let number = word.parse().ok().filter(|x: &f64| x.is_finite());
+    number.ok_or_else(|| match word.replacen(',', ".", 1).parse::<f64>() {
+        Ok(_) if word.contains(',') => decimal_comma(word),
+        _ => format!("the value `{word}` of `{column}` is not a number"),
+    })
+}
+
+/// What is said of a number with a decimal comma.
+pub fn decimal_comma(word: &str) -> String {
+    format!("`{word}` has a comma within; write numbers with a decimal point")
 }
 
 /// Splits a column's name into its name and its unit in metres.
@@ -270,6 +290,8 @@ mod tests {
             ),
             ("x,radius\n1,2\n\n# c\n1,NaN\n", 5, "`NaN` of `radius`"),
             ("x,radius\n1,2,3\n", 2, "3 values and the header 2 columns"),
+            ("x,radius\n1,5,2,5\n", 2, "decimal points, write points"),
+            ("x,radius\n\"1,5\",\"2,5\"\n", 2, "decimal point"),
             ("x,radius,radus\n1,2,3\n", 1, "unknown column `radus`"),
             ("x,x,radius\n1,2,3\n", 1, "`x` is there twice"),
             ("x\n1\n", 1, "`radius` is missing"),

@@ -173,7 +173,10 @@ impl<S: Space> Narrow<'_, S> {
             apart = self.shapes.periodic.shortest(apart);
         }
         let local = S::unrotate(&rotation, &apart);
-        let margin = self.reach(found.old());
+        let mut margin = self.reach(found.old());
+        if ball.radius == 0.0 && !surface.shape.is_closed() {
+            margin = margin.max(self.behind(found.old()));
+        }
         let touches = &mut scratch.touches;
         touches.clear();
         surface.shape.touches(&local, ball.radius + margin, touches);
@@ -287,6 +290,18 @@ impl<S: Space> Narrow<'_, S> {
             }
         }
         found.drop_others(|k| taken[k]);
+    }
+
+    /// Distance within which a point is found again that was pressed behind an open surface by much of the alert distance (m), as errors of
+    /// the solution do; 0 for others.
+    fn behind(&self, old: &[Contact<S>]) -> f64 {
+        let alert = self.network.alert;
+        let deepest = old.iter().fold(0.0, |d: f64, c| d.max(-c.gap));
+        if deepest > 0.25 * alert {
+            2.0 * deepest + alert
+        } else {
+            0.0
+        }
     }
 
     /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the same

@@ -170,6 +170,28 @@ impl<S: Space> SystemRow<S> {
         &self.terms
     }
 
+    /// The systems that it acts on.
+    pub fn systems(&self) -> impl Iterator<Item = u32> {
+        self.points.iter().flatten().map(|(system, _, _)| *system)
+    }
+
+    /// Its rigid bodies, with the least inverse mass along an axis of each (1/kg).
+    pub fn rigid_masses(&self) -> impl Iterator<Item = (u32, f64)> {
+        self.rigid_sides().map(|(side, _)| {
+            let along = (0..S::D).map(|k| side.inverse_mass[k]);
+            (side.body, along.fold(f64::INFINITY, f64::min))
+        })
+    }
+
+    /// The compliance of its law and of its sides, of which `sides` is known (1/kg); not above that of the natural map.
+    pub fn compliance_beside(&self, sides: f64) -> f64 {
+        let limits = self.contact.limits();
+        if limits.rho <= 0.0 {
+            return 0.0;
+        }
+        (sides + limits.compliance[0]).min(1.0 / limits.rho)
+    }
+
     /// Whether a side is a rigid body, by side.
     pub fn is_rigid(&self) -> [bool; 2] {
         std::array::from_fn(|side| self.rigid[side].is_some())

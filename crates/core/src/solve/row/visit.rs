@@ -152,6 +152,7 @@ impl Measure {
                 slip: self.slip[k],
                 worst: self.worst[k],
                 worst_at: first + self.worst_at[k] as usize,
+                ..Sums::default()
             });
         }
         out

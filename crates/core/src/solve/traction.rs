@@ -1,0 +1,147 @@
+//! Error of single tractions on dynamical systems.
+//!
+//! The norms of [`super::error`] compare residuals with all velocities of a step. Where a load moves a holder of little mass, u_free = h P/m
+//! is far above the velocities of the surface, and residuals that are small beside it leave pressures that are wrong from cell to cell.
+//! A residual r_c is worth a traction r_c/w_c, with w_c the compliance of the contact against its neighbours, without the motion
+//! that all of them share. The error is the largest of these over the largest impulse on the same system,
+//!
+//! ```text
+//! max_c |r_c|/w_c / max |p|      w_c = sum_a weight_a^2 (C_aa - C_ab)
+//! ```
+//!
+//! where b is the touched node before or after a in the list of the system whose motion is most like that of a. It is the error of systems
+//! that touch at many points; one that touches at few, as a grain, takes part as a rigid body does.
+
+use super::form::Problem;
+use super::nodal::NodalSystem;
+use super::row::{Residual, SystemRow};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+
+/// Contacts from which on a body or a system is a surface that touches, with a motion that its contacts share.
+const MANY: u32 = 8;
+/// Least compliance of a node against its neighbours, over its own: of nodes that move as one.
+const LEAST: f64 = 1e-3;
+
+/// See the module. It is that of the contacts of a problem until these change.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Tractions {
+    /// 1/w_c of each contact with a system (kg); 0 where that touches at few points.
+    stiffness: Vec<f64>,
+    /// Whether each system touches at many points.
+    many: Vec<bool>,
+    /// Squared error of each contact (N^2 s^2), and its squared residual (m^2/s^2).
+    errors: Vec<[f64; 2]>,
+    /// Largest squared impulse on each system (N^2 s^2).
+    largest: Vec<f64>,
+}
+
+impl Tractions {
+    /// Forgets the contacts.
+    pub fn clear(&mut self) {
+        self.stiffness.clear();
+    }
+
+    /// Begins a measurement.
+    pub fn begin<S: Space>(&mut self, problem: &Problem<S>) {
+        if self.stiffness.len() != problem.of_systems.len() {
+            (self.stiffness, self.many) = stiffness(problem);
+        }
+        self.errors.clear();
+        self.largest.clear();
+        self.largest.resize(problem.systems.len(), 0.0);
+    }
+
+    /// Adds the next contact.
+    pub fn add<S: Space>(&mut self, row: &SystemRow<S>, residual: &Residual) {
+        let (n, t) = row.impulse();
+        let impulse = n * n + t.dot(&t);
+        for system in row.systems() {
+            let largest = &mut self.largest[system as usize];
+            *largest = largest.max(impulse);
+        }
+        let stiffness = self.stiffness[self.errors.len()];
+        let error = residual.squared * stiffness * stiffness;
+        self.errors.push([error, residual.squared]);
+    }
+
+    /// The largest error, and the squared residual of that contact (m^2/s^2); none where nothing is loaded.
+    pub fn worst<S: Space>(&self, rows: &[SystemRow<S>]) -> [f64; 2] {
+        let mut worst = [0.0; 2];
+        for (row, [error, residual]) in rows.iter().zip(&self.errors) {
+            let touching = row.systems().filter(|k| self.many[*k as usize]);
+            let loads = touching.map(|k| self.largest[k as usize]);
+            let load = loads.fold(f64::INFINITY, f64::min);
+            if load > 0.0 && load.is_finite() && error / load > worst[0] {
+                worst = [error / load, *residual];
+            }
+        }
+        [worst[0].sqrt(), worst[1]]
+    }
+}
+
+/// 1/w_c of each contact with a system (kg), and whether each system touches at many points.
+fn stiffness<S: Space>(problem: &Problem<S>) -> (Vec<f64>, Vec<bool>) {
+    let rows = &problem.of_systems;
+    let mut contacts = vec![0u32; problem.systems.len()];
+    let mut of_bodies = vec![0u32; problem.masses.len()];
+    let mut touched: Vec<Vec<u32>> = vec![Vec::new(); problem.systems.len()];
+    for row in rows {
+        row.systems().for_each(|k| contacts[k as usize] += 1);
+        for (body, _) in row.rigid_masses() {
+            of_bodies[body as usize] += 1;
+        }
+        for term in row.terms() {
+            touched[term.system as usize].push(term.node);
+        }
+    }
+    let many: Vec<bool> = contacts.iter().map(|n| *n >= MANY).collect();
+    if !many.contains(&true) {
+        return (vec![0.0; rows.len()], many);
+    }
+    for nodes in &mut touched {
+        nodes.sort_unstable();
+        nodes.dedup();
+    }
+    let own = problem.systems.iter().zip(&touched).zip(&many);
+    let own: Vec<Vec<f64>> = own
+        .map(|((system, nodes), many)| against_neighbours(system, nodes, *many))
+        .collect();
+    let of_row = |row: &SystemRow<S>| {
+        if !row.systems().any(|k| many[k as usize]) {
+            return 0.0;
+        }
+        let of_nodes = row.terms().iter().map(|term| {
+            let system = term.system as usize;
+            let at = touched[system].partition_point(|a| *a < term.node);
+            term.weight * term.weight * own[system][at]
+        });
+        let bodies = row.rigid_masses();
+        let bodies = bodies.filter(|(body, _)| of_bodies[*body as usize] < MANY);
+        let sides = of_nodes.sum::<f64>() + bodies.map(|(_, inverse)| inverse).sum::<f64>();
+        let w = row.compliance_beside(sides);
+        if w > 0.0 { 1.0 / w } else { 0.0 }
+    };
+    (rows.iter().map(of_row).collect(), many)
+}
+
+/// Compliance of nodes of a system along the axis where it is least (1/kg), where they are `many` without the motion that they share
+/// with a neighbour in their list.
+fn against_neighbours<S: Space>(system: &NodalSystem<S>, nodes: &[u32], many: bool) -> Vec<f64> {
+    let of_node = |at: usize| {
+        let own = system.block(nodes[at], nodes[at]);
+        let before = at.checked_sub(1).and_then(|at| nodes.get(at));
+        let neighbours = before.into_iter().chain(nodes.get(at + 1)).filter(|_| many);
+        let neighbours: Vec<S::Matrix> = neighbours.map(|b| system.block(nodes[at], *b)).collect();
+        let along = |k: usize| {
+            let alone = own.entry(k, k);
+            let shared = neighbours.iter().map(|block| block.entry(k, k));
+            let shared = shared.fold(0.0, f64::max);
+            (alone - shared).max(LEAST * alone)
+        };
+        // What is held along an axis has no compliance there.
+        let axes = (0..S::D).map(along).filter(|w| *w > 0.0);
+        let least = axes.fold(f64::INFINITY, f64::min);
+        if least.is_finite() { least } else { 0.0 }
+    };
+    (0..nodes.len()).map(of_node).collect()
+}

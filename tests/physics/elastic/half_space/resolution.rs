@@ -1,0 +1,138 @@
+//! What a run says of the heat of partial slip by the elements across its strips, against Cattaneo and Mindlin, and Carter.
+
+use super::rolling::rolling;
+use super::*;
+use fretwork_observe::resolution::Resolution;
+
+const LOAD: f64 = 178.9e3;
+const A: f64 = 1e-3;
+
+/// Heat of a cycle of the force +-Q of a line contact over that of the closed form, and what the run says of it.
+///
+/// Relative displacements far away under a force that rises from zero are d(Q) = K int -ln(c/a) dQ plus a part that is linear in Q, with K
+/// = 2/(pi E*) of two bodies and c/a = sqrt(1 - Q/(mu P)) (Johnson, sections 2.4 and 7.2), and by Mindlin and Deresiewicz a loop has d_max -
+/// 2 d((Q_max - Q)/2) on its way back: its area is the heat.
+fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
+    let size = A / n as f64;
+    let half = (1.4 * n as f64).round() * size;
+    let cells = grid([size, 1.0], [half, 0.5]);
+    let mut s = empty::<Dim2>(mu, "[0.0, 1.0]");
+    put(&mut s, half_space(RAIL, cells, &[Dof::Fixed, Dof::Fixed]));
+    let period = 100.0 * STEP;
+    let axes = [
+        Dof::Force(TimeFunction::Sine {
+            amplitude: share * mu * LOAD,
+            frequency: 1.0 / period,
+            phase: 0.0,
+            offset: 0.0,
+            start: 20.0 * STEP,
+        }),
+        Dof::Force(ramp(-LOAD, 0, 10)),
+    ];
+    let cylinder = HalfSpaceSpec {
+        name: "upper",
+        fills: Fills::Above,
+        profile: Profile::Paraboloid([0.5, f64::INFINITY]),
+        mass: 10.0,
+        touching: Cells::Points,
+        ..half_space(RAIL, cells, &axes)
+    };
+    put(&mut s, cylinder);
+    go(&mut s, 120);
+    let mut seen = Resolution::new("lower", false);
+    let before = s.state.energy.friction;
+    for _ in 0..100 {
+        go(&mut s, 1);
+        seen.add(&s, 0, s.state.energy.friction - before);
+    }
+    let heat = s.state.energy.friction - before;
+    let per_force = 2.0 / (PI * 0.5 * RAIL.plane_strain());
+    let limit = mu * LOAD;
+    // int_0^x -ln(1 - y)/2 dy
+    let displacement = |q: f64| {
+        let left = 1.0 - q / limit;
+        0.5 * per_force * limit * (left * left.max(1e-300).ln() + q / limit)
+    };
+    let most = share * limit;
+    let count = 4000;
+    let area = (0..count).map(|k| {
+        let q = most * (2.0 * (f64::from(k) + 0.5) / f64::from(count) - 1.0);
+        let half = |q: f64| displacement(0.5 * q);
+        2.0 * (displacement(most) - half(most - q) - half(most + q)) * 2.0 * most / f64::from(count)
+    });
+    (heat / area.sum::<f64>(), seen)
+}
+
+#[test]
+fn the_heat_of_a_cycle_is_within_what_is_said() {
+    for (n, share) in [
+        (4, 0.3),
+        (4, 0.5),
+        (5, 0.3),
+        (5, 0.5),
+        (8, 0.3),
+        (8, 0.7),
+        (16, 0.5),
+        (16, 0.9),
+    ] {
+        let (ratio, seen) = loop_of_a_line(n, share, 0.6);
+        println!(
+            "{n} over a, Q/(mu P) {share}: heat {ratio:.4} of the closed form; {}",
+            seen.line()
+        );
+        let bound = seen.heat_error + 0.01;
+        assert!((ratio - 1.0).abs() < bound, "{ratio} {bound}");
+        let strip = n as f64 * (1.0 - (1.0 - share).sqrt());
+        assert_eq!(seen.warning().is_some_and(|w| w.0), strip < 1.5, "{strip}");
+    }
+}
+
+#[test]
+fn the_heat_of_rolling_is_short_by_what_is_said() {
+    let (mu, radius) = (0.3, 0.5);
+    for (n, s) in [(5, 0.1), (5, 0.4), (10, 0.2), (10, 0.7), (20, 0.2)] {
+        let size = A / f64::from(n);
+        let creepage = s * mu * A / radius;
+        let cells = grid([size, 1.0], [1.4 * A, 0.5]);
+        let mut run = rolling::<Dim2>(cells, [radius, f64::INFINITY], LOAD, mu, creepage, size);
+        go(&mut run, 16 * n as usize);
+        let before = run.state.energy.friction;
+        let mut seen = Resolution::new("lower", true);
+        for _ in 0..10 {
+            go(&mut run, 1);
+            seen.add(&run, 0, run.state.energy.friction - before);
+        }
+        let q = mean(&tractions(&run, size), 0, |_| 1.0) * LOAD;
+        let ratio = (run.state.energy.friction - before) / (10.0 * size * q * creepage);
+        println!(
+            "{n} over a, s {s}: heat {ratio:.4} of Q xi V; {}",
+            seen.line()
+        );
+        let told = 1.0 - seen.heat_error;
+        assert!((ratio - told).abs() < 0.08, "{ratio} {told}");
+    }
+}
+
+/// Coulomb's law holds in every contact, so that the force along the surface is mu P at most, also where surfaces slip by a large part of
+/// a cell in a step.
+#[test]
+fn friction_of_rolling_is_not_above_its_limit() {
+    let (mu, n) = (0.3, 10);
+    let size = A / f64::from(n);
+    for creepage in [-1.0, -0.5, 0.01, 0.05, 0.5] {
+        let cells = grid([size, 1.0], [1.4 * A, 0.5]);
+        let mut s = rolling::<Dim2>(cells, [0.5, f64::INFINITY], LOAD, mu, creepage, size);
+        go(&mut s, 8);
+        for _ in 0..60 {
+            go(&mut s, 1);
+            let (mut q, mut p) = (0.0, 0.0);
+            for t in tractions(&s, size) {
+                q += t.on.x * size;
+                p -= t.on.y * size;
+            }
+            // Normals are inclined by the slope of the wheel, 2e-3 at most.
+            assert!(q.abs() <= 1.005 * mu * p, "{creepage}: {} mu", q / (mu * p));
+            near(LOAD, p, 0.01);
+        }
+    }
+}
