@@ -1,6 +1,7 @@
 //! What a step reports.
 
 use super::coupling::CouplingReport;
+use super::impossible::Impossible;
 use super::projection::Projected;
 use crate::laws::Totals;
 use crate::solve;
@@ -34,6 +35,8 @@ pub struct StepReport {
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
+    /// Imposed motions that nothing could obey, if there were any.
+    pub impossible: Option<Box<Impossible>>,
     /// Wall-clock time.
     pub timing: Timing,
 }
