@@ -19,8 +19,22 @@ use std::f64::consts::FRAC_PI_2;
 const ANGLES: usize = 19;
 /// Reduced radius of the bond on the bench (m), where the scene has no contact any more.
 const RADIUS: f64 = 1e-3;
+/// Share of rotation in the work on a bond from which its energy is compared with that of a pull that also turns it: what laws
+/// declare is that of openings.
+const TURNS: f64 = 1e-3;
+/// Bonds broken by rotation that are compared; the rest are not.
+const TURNED: usize = 32;
 /// Speed at which critical openings are sought (m/s).
 const SLOW: f64 = 1e-6;
+
+/// A bond that broke as it turned: its opening normal and across (m), twist and bending (rad), area, and what it released (J).
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Turned {
+    opening: [f64; 2],
+    rotation: [f64; 2],
+    area: f64,
+    released: f64,
+}
 
 /// Broken bonds of an interface.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -31,10 +45,14 @@ struct Broken {
     /// Those that began at their gap.
     begun_open: u64,
     released: f64,
-    /// What the law declares for them; not a number where it declares nothing.
+    /// Part of it that is compared with what follows.
+    opened: f64,
+    /// What the law declares for those that opened; not a number where it declares nothing.
     declared: f64,
     /// Their areas by angle.
     areas: Vec<f64>,
+    /// Those that turned.
+    turned: Vec<Turned>,
 }
 
 impl Broken {
@@ -46,7 +64,20 @@ impl Broken {
         self.broken += 1;
         self.at_once += u64::from(b.damage_before <= 0.0);
         self.begun_open += u64::from(b.life.given > 0.0);
-        self.released += b.life.fracture + b.life.given;
+        let released = b.life.fracture + b.life.given;
+        self.released += released;
+        if b.life.turning() > TURNS {
+            if self.turned.len() < TURNED {
+                self.turned.push(Turned {
+                    opening: b.opening,
+                    rotation: b.rotation,
+                    area: b.area,
+                    released,
+                });
+            }
+            return;
+        }
+        self.opened += released;
         let angle = b.opening[1].atan2(b.opening[0].max(0.0));
         let declared = law.declared_fracture_energy(angle);
         self.declared += declared.map_or(f64::NAN, |g| g * b.area);
@@ -56,6 +87,28 @@ impl Broken {
         let share = place - low as f64;
         self.areas[low] += b.area * (1.0 - share);
         self.areas[low + 1] += b.area * share;
+    }
+
+    /// What those that turned released, and what slow pulls to the same openings and rotations take for them; `None` where a pull does not
+    /// break a bond.
+    fn by_turning_pulls(
+        &self,
+        law: &Interface,
+        dimension: usize,
+    ) -> Result<Option<[f64; 2]>, LawError> {
+        let mut sums = [0.0; 2];
+        for turned in &self.turned {
+            let bench = Bench::new(law.clone(), dimension as u32, RADIUS);
+            let mut bench = bench.of_area(turned.area);
+            let Some(energy) =
+                bench.slow_fracture_energy_towards(turned.opening, turned.rotation)?
+            else {
+                return Ok(None);
+            };
+            sums[0] += turned.released;
+            sums[1] += energy * turned.area;
+        }
+        Ok(Some(sums))
     }
 
     /// What a slow pull takes for them.
@@ -113,10 +166,13 @@ impl Fracture {
                     && !law.bonds_remember()
                     && bench.fracture_energy_is_constant().unwrap_or(false);
             }
-            out.released_over_declared = out
-                .declared
-                .filter(|e| *e > 0.0)
-                .map(|e| broken.released / e);
+            out.compared = broken.opened;
+            if let Ok(Some([released, energy])) = broken.by_turning_pulls(law, S::D) {
+                out.compared += released;
+                out.declared = out.declared.map(|e| e + energy);
+            }
+            out.released_over_declared =
+                out.declared.filter(|e| *e > 0.0).map(|e| out.compared / e);
         }
         let Ok(Some(scale)) = bench.scale(SLOW) else {
             return out;

@@ -13,7 +13,7 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::momentum::Momentum;
 use fretwork_core::process::cycle::CycleClock;
 use fretwork_core::solve;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::{ImpossibleMotions, Simulation, StepReport};
 
 /// Broken bonds over bonds made.
 pub fn damage_ratio<S: Space>(s: &Simulation<S>) -> f64 {
@@ -87,6 +87,7 @@ pub struct RunState {
     clock: Option<CycleClock>,
     counts: Counts,
     solver: SolverSummary,
+    impossible: ImpossibleMotions,
     iterations: u64,
     couplings: u64,
     /// Number of contacts in the last step; none before it.
@@ -107,6 +108,7 @@ impl RunState {
                 method: options.method.name().to_owned(),
                 ..SolverSummary::default()
             },
+            impossible: ImpossibleMotions::default(),
             iterations: 0,
             couplings: 0,
             contacts: None,
@@ -123,6 +125,7 @@ impl RunState {
     fn put(&self, counts: &Counts, summary: &mut Summary) {
         counts.put(summary);
         summary.solver.clone_from(&self.solver);
+        summary.impossible_motions.clone_from(&self.impossible);
         let steps = counts.steps.max(1) as f64;
         summary.solver.coupling_iterations_mean = self.couplings as f64 / steps;
         summary.solver.iterations_mean = self.iterations as f64 / steps;
@@ -151,6 +154,8 @@ impl<S: Space> Observer<S> for RunState {
         let used = report.solver.used.name().to_owned();
         *solver.steps_by_method.entry(used).or_default() += 1;
         solver.choice.add(&report.solver);
+        solver.several_steps += u64::from(report.solver.several);
+        self.impossible.add(s, report);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         solver.laws.add(&report.agreement);
@@ -246,11 +251,21 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
-        encode(&(&self.solver, self.iterations, self.couplings))
+        encode(&(
+            &self.solver,
+            &self.impossible,
+            self.iterations,
+            self.couplings,
+        ))
     }
 
     fn restore(&mut self, from: &[u8]) -> Result<(), CodeError> {
-        (self.solver, self.iterations, self.couplings) = decode(from)?;
+        (
+            self.solver,
+            self.impossible,
+            self.iterations,
+            self.couplings,
+        ) = decode(from)?;
         self.contacts = None;
         Ok(())
     }

@@ -70,6 +70,8 @@ pub struct SolverSummary {
     pub error_parts: ErrorPartsOfRun,
     /// Steps that did not reach the tolerance.
     pub unconverged_steps: u64,
+    /// Steps of which another solution was found, of more energy than the one that was taken.
+    pub several_steps: u64,
     /// Steps in which damage and opening did not reach the coupling's tolerance.
     pub uncoupled_steps: u64,
     /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
@@ -114,6 +116,7 @@ mod tests {
             velocity,
             contact_law: 3.0 * velocity,
             slip_energy,
+            ..ErrorParts::default()
         };
         // A step at rest says nothing.
         run.add(&step(7.0, 0.0));

@@ -87,11 +87,12 @@ impl Missed {
     }
 }
 
-/// Steps of a run that missed the tolerance.
+/// Steps of a run that missed the tolerance, without those that no solver could solve.
 pub fn missed(summary: &Summary) -> Missed {
     let solver = &summary.solver;
+    let impossible = summary.impossible_motions.squeezed_steps;
     Missed {
-        steps: solver.unconverged_steps,
+        steps: solver.unconverged_steps.saturating_sub(impossible),
         first: solver.first_unconverged,
         error: solver.error_max,
     }
@@ -116,7 +117,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     let heat = summary.heat.as_ref();
     let account = heat.and_then(|h| h.account(LEDGER));
     serious("HEAT DOES NOT ADD UP", account);
+    serious("IMPOSSIBLE MOTION", summary.impossible_motions.warning());
     serious("TOO FAST", summary.step_size.warning());
+    serious("FOUND OVERLAPPING", summary.step_size.sunk_warning());
     serious("MOTION LOST", summary.step_size.rounding_warning());
     for body in &summary.small_strain {
         serious("NOT SMALL STRAIN", body.warning());
@@ -441,6 +444,16 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     let uncertainty = &summary.uncertainty;
     note("ESTIMATED ERROR", estimated_error(uncertainty));
     note("ERROR NOT KNOWN", unknown_error(uncertainty));
+    let several = summary.solver.several_steps;
+    note(
+        "NOT UNIQUE",
+        (several > 0).then(|| {
+            format!(
+                "{several} steps had several solutions, since more contacts carry a load than its balance determines; the one with the smaller kinetic \
+                 energy was taken, in which contacts stick where they can; compliant contacts (docs/compliant.md) have one"
+            )
+        }),
+    );
     let over = summary.solver.overlap_after;
     note(
         "OVERLAP",

@@ -18,6 +18,8 @@ pub struct Break<S: Space> {
     pub place: S::Vector,
     /// Normal opening at failure, and norm of the tangential one (m).
     pub opening: [f64; 2],
+    /// Twist and norm of the bending at failure (rad); 0 for a bond that does not resist rotation.
+    pub rotation: [f64; 2],
     /// Area (m^2; m in 2D).
     pub area: f64,
     /// Energy still stored if it broke because its contact moved out of range, 0 where damage broke it (J;
@@ -49,6 +51,13 @@ pub struct Life {
 }
 
 impl Life {
+    /// Returns the fraction of rotation in the work of opening, sliding and rotation; recovered work does not count.
+    pub fn turning(&self) -> f64 {
+        let [open, slide, turn] = self.work.map(|w| w.max(0.0));
+        let all = open + slide + turn;
+        if all > 0.0 { turn / all } else { 0.0 }
+    }
+
     /// Returns the fraction of sliding in the work of opening and sliding, 0 (mode I) to 1 (mode II);
     /// recovered work does not count.
     pub fn mode_mix(&self) -> f64 {

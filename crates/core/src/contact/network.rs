@@ -368,12 +368,19 @@ impl<S: Space> Network<S> {
         let Some(bond) = self.bond(contact) else {
             return;
         };
+        let memory = &self.memory[contact.law as usize];
+        let rotation = contact.memory().and_then(|k| memory.rotations.get(k));
+        let rotation = rotation.map_or([0.0; 2], |rotation| {
+            let (twist, bend) = S::split_spin(&contact.normal, rotation);
+            [twist, bend.norm()]
+        });
         self.bond_breaks.push(Break {
             key: contact.key,
             bodies: contact.bodies,
             law: contact.law,
             place: contact.arms[0],
             opening: [bond.opening_n, bond.opening_t.norm()],
+            rotation,
             area: bond.area,
             torn: 0.0,
             damaged: bond.damage >= 1.0,

@@ -3,13 +3,15 @@
 
 use super::network::Contact;
 use crate::bodies::Bodies;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
 /// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as found late.
 const LATE: f64 = 0.01;
 /// The same for springs, which overlap by that much under load; more is too soft for a contact (`fretwork check`).
 const LATE_SPRING: f64 = 0.05;
+/// Overlap over what the bodies move relative to each other in a step, above which it did not come about by their speed.
+const NOT_BY_SPEED: f64 = 2.0;
 /// Time and bodies of the first occurrence of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Occurrence {
@@ -48,6 +50,13 @@ pub struct StepSizeDiagnostics {
     pub deepest: f64,
     /// First occurrence.
     pub first_late: Option<Occurrence>,
+    /// Number of contacts first found as deep, of bodies that do not move that far in a step: they sank into each other, or
+    /// met from behind a surface.
+    pub sunk: u64,
+    /// Deepest of these penetrations, as a fraction of the radius.
+    pub deepest_sunk: f64,
+    /// First occurrence.
+    pub first_sunk: Option<Occurrence>,
     /// Number of times that two bodies penetrated within a step by more than a quarter of the thinner one's
     /// half thickness.
     pub passed: u64,
@@ -78,23 +87,52 @@ impl StepSizeDiagnostics {
     /// Records a contact that is found for the first time, of a pair that already penetrates by `known` (m)
     /// elsewhere: a body that rests slightly too deep in a surface meets the next facet at the same depth,
     /// which is not due to its speed. `size` is the reduced radius of the bodies (m): that of the contact is the part of a face
-    /// that a point stands for, which may be much smaller.
+    /// that a point stands for, which may be much smaller. Bodies that move less than the overlap in the time `h` (s) between two
+    /// detections did not get there by their speed.
     pub(super) fn record_late<S: Space>(
         &mut self,
         contact: &Contact<S>,
         [known, size]: [f64; 2],
         compliant: bool,
-        time: f64,
+        [time, h]: [f64; 2],
         bodies: &Bodies<S>,
     ) {
+        let known = known.max(0.0);
         let depth = -contact.gap / size;
         let allowed = if compliant { LATE_SPRING } else { LATE };
-        if depth > allowed + known.max(0.0) / size {
-            self.late += 1;
-            self.deepest = self.deepest.max(depth);
-            self.first_late
-                .get_or_insert_with(|| Occurrence::new(time, bodies, &contact.bodies));
+        if depth <= allowed + known / size {
+            return;
         }
+        let of_side = |side: usize| {
+            let b = contact.bodies[side] as usize;
+            bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], &contact.arms[side])
+        };
+        let moved = h * (of_side(0) - of_side(1)).norm();
+        // Velocities of points of dynamical systems are not known here.
+        let carried = contact
+            .bodies
+            .iter()
+            .any(|b| bodies.carrier(*b as usize).is_some());
+        let sank = !carried && -contact.gap - known > NOT_BY_SPEED * moved;
+        let (count, deepest, first) = if sank {
+            (&mut self.sunk, &mut self.deepest_sunk, &mut self.first_sunk)
+        } else {
+            (&mut self.late, &mut self.deepest, &mut self.first_late)
+        };
+        *count += 1;
+        *deepest = deepest.max(depth);
+        first.get_or_insert_with(|| Occurrence::new(time, bodies, &contact.bodies));
+    }
+
+    /// Returns the warning about bodies that sank into each other, if there were any.
+    pub fn sunk_warning(&self) -> Option<String> {
+        let first = self.first_sunk.as_ref()?;
+        Some(format!(
+            "{} contacts were first seen overlapping, by up to {:.2e} of the radius, of bodies that do not move as far in a step, {}: bodies              at rest sank into each other by the error of the solver (take a smaller solver.tolerance, or solver.norm Velocity), or a              surface faces the wrong way (anticlockwise corners of the triangles of a mesh, seen from outside)",
+            self.sunk,
+            self.deepest_sunk,
+            first.text()
+        ))
     }
 
     /// Records two bodies that the step could not keep apart.
@@ -217,6 +255,8 @@ mod tests {
         for x in [0.0, 1.0] {
             bodies.add_ball(Vector2::new(x, 0.0), 1e-6, 1e3);
         }
+        // Faster than any of these overlaps in a second.
+        bodies.velocity[0] = Vector2::new(0.0, -1.0);
         let mut found = StepSizeDiagnostics::default();
         for (depth, compliant, late) in [(2e-9, false, 0), (2e-8, true, 0), (2e-8, false, 1)] {
             let geometry = ContactGeometry {
@@ -231,9 +271,36 @@ mod tests {
                 feature: 0,
             };
             let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
-            found.record_late(&contact, [0.0, 1e-6], compliant, 1.0, &bodies);
+            found.record_late(&contact, [0.0, 1e-6], compliant, [1.0, 1.0], &bodies);
             assert_eq!(found.late, late);
         }
-        assert!((found.deepest - 0.02).abs() < 1e-12);
+        assert!((found.deepest - 0.02).abs() < 1e-12 && found.sunk == 0);
+    }
+
+    /// A body at 1e-9 m/s that overlaps by 2e-8 m after a second did not get there by its speed.
+    #[test]
+    fn overlaps_of_slow_bodies_are_no_sign_of_speed() {
+        let mut bodies = Bodies::<Dim2>::default();
+        for x in [0.0, 1.0] {
+            bodies.add_ball(Vector2::new(x, 0.0), 1e-6, 1e3);
+        }
+        let geometry = ContactGeometry {
+            gap: -2e-8,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::zeros(); 2],
+            radius: 1e-6,
+        };
+        let key = Key {
+            candidate: Key::PIECE,
+            antagonist: Key::PIECE | 1,
+            feature: 0,
+        };
+        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+        for (speed, sunk) in [(1e-9, 1), (2e-8, 0)] {
+            bodies.velocity[0] = Vector2::new(0.0, -speed);
+            let mut found = StepSizeDiagnostics::default();
+            found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], &bodies);
+            assert_eq!((found.sunk, found.late), (sunk, 1 - sunk), "{speed}");
+        }
     }
 }

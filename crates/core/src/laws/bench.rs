@@ -119,6 +119,13 @@ impl Bench {
         }
     }
 
+    /// Contacts of this area (m^2; m in 2D) instead of the one that goes with the radius.
+    #[must_use]
+    pub fn of_area(mut self, area: f64) -> Self {
+        self.area = area;
+        self
+    }
+
     /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm m); of steel by default.
     #[must_use]
     pub fn of_material(mut self, material: [f64; 2]) -> Self {

@@ -16,7 +16,8 @@ use super::nlgs::{self, Options, Report};
 use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
 use super::standard::{self, Standard};
-use crate::geometry::space::Space;
+use super::sticking::Search;
+use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
 /// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
@@ -49,6 +50,8 @@ pub struct AutoState {
     interior_first: bool,
     /// How often the interior point is still to be skipped, and was to be skipped after its last failure.
     passed_over: [u32; 2],
+    /// When another solution is sought.
+    pub(super) search: Search,
 }
 
 impl Default for AutoState {
@@ -57,6 +60,7 @@ impl Default for AutoState {
             patience: 1.0,
             interior_first: false,
             passed_over: [0; 2],
+            search: Search::default(),
         }
     }
 }
@@ -97,18 +101,29 @@ pub fn solve<S: Space>(
         moments,
         options,
     };
-    match options.method {
+    let mut report = match options.method {
         Method::Nlgs => context.sweep(problem, false, options.max_iterations),
         Method::Anderson => context.sweep(problem, true, options.max_iterations),
         Method::Auto => context.auto(problem, auto_state),
         method => context.solve_by(problem, method),
+    };
+    if !report.unbounded {
+        context.prefer_sticking(problem, &mut report, auto_state);
+        return report;
+    }
+    if context.grew(problem) {
+        return context.give_up(problem, &report);
+    }
+    Report {
+        unbounded: false,
+        ..report
     }
 }
 
-struct SolveContext<'a, S: Space> {
-    forms: &'a [ContactForm<S>],
+pub(super) struct SolveContext<'a, S: Space> {
+    pub(super) forms: &'a [ContactForm<S>],
     moments: &'a [MomentForm<S>],
-    options: &'a Options,
+    pub(super) options: &'a Options,
 }
 
 /// How methods that factorise and Gauss-Seidel alternate.
@@ -122,7 +137,7 @@ struct Alternation {
 
 impl<S: Space> SolveContext<'_, S> {
     /// Runs the Gauss-Seidel iteration over bodies, with an iteration limit.
-    fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
+    pub(super) fn sweep(&self, problem: &mut Problem<S>, accelerated: bool, most: u32) -> Report {
         let options = Options {
             accelerated,
             max_iterations: most,
@@ -139,7 +154,7 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Improves the solution by a matrix method, whose tolerance applies to its own error measure.
-    fn improve(
+    pub(super) fn improve(
         &self,
         problem: &mut Problem<S>,
         method: Method,
@@ -193,6 +208,52 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
+    /// Whether the impulses grew in this solve, beyond what shifts of velocities and bonds explain. Otherwise bodies hold each other: at rest
+    /// velocities are rounding errors.
+    fn grew(&self, problem: &Problem<S>) -> bool {
+        /// Growth, squared: a load that comes in one step, by whatever wedges, is far below it.
+        const GROWTH: f64 = 1e12;
+        let (mut now, mut explained) = (0.0, 0.0);
+        for (k, form) in self.forms.iter().enumerate() {
+            let p = problem.solution(k).impulse;
+            now += p.dot(&p);
+            explained += form.impulse.dot(&form.impulse);
+            if let Some(e) = &form.elastic {
+                explained += e.a_n * e.a_n + e.a_t.dot(&e.a_t);
+            }
+            let [c_n, c_t] = form.compliance;
+            if c_n > 0.0 {
+                explained += (form.shift_n / c_n).powi(2);
+            }
+            if c_t > 0.0 {
+                explained += form.shift_t.dot(&form.shift_t) / (c_t * c_t);
+            }
+        }
+        now > GROWTH * explained
+    }
+
+    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from the start: they are finite, and say where bodies
+    /// close in.
+    fn give_up(&self, problem: &mut Problem<S>, so_far: &Report) -> Report {
+        const SWEEPS: u32 = 10;
+        self.start_anew(problem);
+        let mut report = *so_far;
+        report.add(&self.sweep(problem, false, SWEEPS));
+        Report {
+            converged: false,
+            unbounded: true,
+            used: so_far.used,
+            ..report
+        }
+    }
+
+    /// Goes back to the impulses of the forms.
+    pub(super) fn start_anew(&self, problem: &mut Problem<S>) {
+        let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
+        let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
+        problem.adopt(&impulses, &moments);
+    }
+
     /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they cost.
     fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
         let options = self.options;
@@ -223,7 +284,7 @@ impl<S: Space> SolveContext<'_, S> {
         }
         let mut report = self.sweep(problem, true, options.max_iterations.min(sweeps));
         let left = options.max_iterations - report.iterations;
-        if report.converged || left == 0 {
+        if report.converged || report.unbounded || left == 0 {
             return report;
         }
         let hyperstaticity = hyperstaticity(problem, self.forms);
@@ -290,7 +351,8 @@ impl<S: Space> SolveContext<'_, S> {
         let after = report.iterations;
         let (mut newton, mut inside) = (Attempt::No, Attempt::No);
         let mut round = 0;
-        while !report.converged && report.iterations < options.max_iterations {
+        let ended = |r: &Report| r.converged || r.unbounded;
+        while !ended(report) && report.iterations < options.max_iterations {
             let first = round == 0 && interior && auto_state.interior_first;
             if first {
                 inside = self.interior(problem, report, auto_state);
@@ -300,10 +362,10 @@ impl<S: Space> SolveContext<'_, S> {
             // The iterate of Gauss-Seidel may be a poor start for Newton: every other attempt starts from
             // the initial impulses.
             let anew = round % 2 == 1;
-            if !report.converged {
+            if !ended(report) {
                 newton = self.attempt(problem, report, Method::Newton, steps, anew);
             }
-            if !report.converged && interior {
+            if !ended(report) && interior {
                 inside = self.interior(problem, report, auto_state);
                 interior = false;
             }
@@ -314,7 +376,7 @@ impl<S: Space> SolveContext<'_, S> {
                 interior: inside,
             };
             let left = options.max_iterations.saturating_sub(report.iterations);
-            if !report.converged && left > 0 {
+            if !ended(report) && left > 0 {
                 let more = sweeps.saturating_mul(HYPERSTATIC << round.min(16));
                 report.add(&self.sweep(problem, true, left.min(more)));
             }
@@ -361,9 +423,7 @@ impl<S: Space> SolveContext<'_, S> {
             ..*report
         };
         if anew {
-            let impulses: Vec<_> = self.forms.iter().map(|f| Some(f.impulse)).collect();
-            let moments: Vec<_> = self.moments.iter().map(|m| Some(m.moment)).collect();
-            problem.adopt(&impulses, &moments);
+            self.start_anew(problem);
         }
         let tolerance = 0.3 * self.options.tolerance;
         let attempts = if problem.of_systems.is_empty() {

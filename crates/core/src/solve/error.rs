@@ -12,16 +12,21 @@
 //! transmitted through a packing. The second part detects this: f is the unbalanced fraction of the step's
 //! work, so that f^2 is the kinetic energy of the part that is not supported, relative to the part that is.
 //!
+//! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in small sets only: where a heavy body rests on
+//! light ones, p/rho is far above all velocities, and powers of opposite sign, of a body that rocks, have no sum.
+//!
 //! [`Norm::Power`]: error = sum_c |p_c . r_c| / sum_c |p_t,c . (u_t,c + s_t,c)|, the power of the residuals over that of slip, for
 //! contacts that are springs. `Balance` compares residuals with p/rho, which with scaled inertia is far above the velocities of a slow
 //! flow; this compares the heat that they make with the heat of friction. Where nothing slips, at rest and where
 //! sliding turns, the error of `Balance` times 5e5 takes its place.
 //!
 //! r_c is the residual of the natural map or [`lost`], whichever is larger. The work of the step is bounded
-//! below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an error.
+//! below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an error. It contains the work on the
+//! compliance of contacts, sum_c c |p_c|^2, as W does in the matrix form: in a column of springs that holds itself |v - v_free|_M^2 vanishes.
 //!
-//! For bodies that move fast together the relative velocities are rounding errors; those below the rounding
-//! of the body velocities count as zero.
+//! For bodies that move fast together, and for impulses that hold each other, the relative velocities are rounding errors; those below
+//! the rounding of the body velocities, or of the impulses' effects on single contacts, count as zero. Impulses that leave nothing
+//! but rounding of the velocities are no solution, see [`Sums::drowned`].
 //!
 //! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least that of their single tractions, see
 //! [`super::traction`], times the default tolerance of the norm over 1e-3: at defaults they are right to 1e-3 of the largest.
@@ -66,7 +71,7 @@ impl Norm {
     pub fn formula(self) -> &'static str {
         match self {
             Self::Balance => {
-                "max(|r|/max(|u|, |u_free|, |p/rho|), (sum p.r / |v - v_free|_M^2)^2), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
+                "max(|r|/max(|u|, |u_free|, |p/rho|), (sum p.r / |v - v_free|_M^2)^2, (sum |p.r| / (max(1, N/20) |v - v_free|_M^2))^2), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
             }
             Self::Velocity => {
                 "|r|/max(|u|, |u_free|), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
@@ -111,6 +116,12 @@ pub fn unbounded(residual: f64) -> f64 {
 const TRACTION: f64 = 1e-3;
 /// Errors of single tractions below it count as zero, whatever the tolerance.
 const FINEST: f64 = 1e-6;
+/// Squared relative rounding error of a relative velocity.
+pub(super) const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
+
+/// Contacts of a set up to which powers of residuals of either sign may not exceed what their sum may. Beyond it they may in proportion to their
+/// number, which a packing in two or three dimensions does not reach.
+const FEW: f64 = 20.0;
 
 /// Error of [`Norm::Power`] over that of [`Norm::Balance`] where nothing slips: 0.5 asks for 1e-6.
 const AT_REST: f64 = 5e5;
@@ -124,8 +135,10 @@ pub struct Scale {
     pub energy: f64,
     /// Squared rounding error of all relative velocities (m^2/s^2): residuals below it count as zero.
     pub noise: f64,
-    /// |v - v_free|_M^2 (J).
+    /// |v - v_free|_M^2, and the work on the compliance of contacts (J).
     pub work: f64,
+    /// Number of contacts.
+    pub contacts: usize,
 }
 
 impl Scale {
@@ -135,6 +148,7 @@ impl Scale {
         self.energy += other.energy;
         self.noise += other.noise;
         self.work += other.work;
+        self.contacts += other.contacts;
     }
 }
 
@@ -149,6 +163,8 @@ pub struct ErrorParts {
     pub contact_law: f64,
     /// Heat of slip, sum |p_t.(u_t + s_t)| (J).
     pub slip_energy: f64,
+    /// Energy that the residuals take, |sum p.r| (J).
+    pub residual_energy: f64,
 }
 
 /// Sums over contacts, added in a fixed order that does not depend on the number of threads.
@@ -213,6 +229,15 @@ impl Sums {
         }
     }
 
+    /// Whether the velocities are lost in the rounding of the impulses that should have made them: those of a problem without a
+    /// solution grow until then, where W p, of bodies that are squeezed, vanishes. `free` as in [`Scale`].
+    pub fn drowned(&self, free: f64) -> bool {
+        /// Rounding over velocities, squared: beyond it the residual counts as zero, too.
+        const ALL: f64 = 4.0;
+        let velocity = self.velocity.max(free);
+        velocity > 0.0 && ROUNDINGS * self.impulse > ALL * velocity
+    }
+
     /// Returns the part of the error that needs no sum over bodies.
     fn local(&self, norm: Norm, free: f64) -> f64 {
         over(self.residual.sqrt(), self.against(norm, free))
@@ -245,7 +270,7 @@ impl Sums {
                 self.residual.sqrt(),
                 self.velocity.max(scale.free).sqrt(),
             ))),
-            Norm::Balance => self.balance(local, scale),
+            Norm::Balance => self.balance(local, scale).max(self.rocking(scale)),
             Norm::Power if self.slip > 0.0 => {
                 (self.unbalanced / self.slip).min(AT_REST * self.balance(local, scale))
             }
@@ -275,10 +300,17 @@ impl Sums {
             velocity: self.local(Norm::Velocity, scale.free),
             contact_law: self.error_of_all(Norm::Power, scale),
             slip_energy: self.slip,
+            residual_energy: self.power.abs(),
         }
     }
 
-    /// The error in the norm Balance. Where no load is transmitted the work itself is an error, relative to the upper bound of the
+    /// Third part of the error in the norm Balance.
+    fn rocking(&self, scale: &Scale) -> f64 {
+        let allowed = (scale.contacts as f64 / FEW).max(1.0);
+        over(self.unbalanced, allowed * scale.work.max(scale.energy)).powi(2)
+    }
+
+    /// The first two parts of the error in the norm Balance. Where no load is transmitted the work itself is an error, relative to the upper bound of the
     /// contacts' work.
     fn balance(&self, local: f64, scale: &Scale) -> f64 {
         local.max(over(self.power, scale.work.max(scale.energy)).powi(2))

@@ -1,6 +1,6 @@
 //! Sums for the error of a step's problem, at the current velocities.
 
-use super::error::{Scale, Sums};
+use super::error::{ROUNDINGS, Scale, Sums};
 use super::form::Problem;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
@@ -55,8 +55,18 @@ fn measure_systems<S: Space>(problem: &mut Problem<S>, first: usize, sums: &mut 
     problem.tractions = tractions;
 }
 
-/// Computes the reference values of the error.
-pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale, parallel: bool) -> Scale {
+/// Unbalanced share of the work of the step below which it matters to no tolerance, being squared.
+const BALANCED: f64 = 1e-6;
+/// Contacts up to which powers of either sign matter, see [`super::error`].
+const FEW: usize = 500;
+
+/// Computes the reference values of the error that has these sums.
+pub(super) fn scale<S: Space>(
+    problem: &mut Problem<S>,
+    free: Scale,
+    sums: &Sums,
+    parallel: bool,
+) -> Scale {
     let count = problem.solver_bodies.len();
     let parts = map_ranges(pays(parallel, count, WORK), count, CHUNK, |bodies| {
         let of = |b: usize| {
@@ -70,7 +80,34 @@ pub(super) fn scale<S: Space>(problem: &Problem<S>, free: Scale, parallel: bool)
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
     }
-    Scale { work, ..free }
+    // Contacts yield little beside the motion of bodies, except where these hold each other: only then this is worth a pass.
+    let few = problem.contacts() <= FEW;
+    let unbalanced = if few {
+        sums.unbalanced
+    } else {
+        sums.power.abs()
+    };
+    if unbalanced > BALANCED * work.max(free.energy) {
+        work += yields(problem);
+    }
+    Scale {
+        work,
+        noise: free.noise + ROUNDINGS * sums.impulse,
+        contacts: problem.contacts(),
+        ..free
+    }
+}
+
+/// The work on the compliance of contacts.
+fn yields<S: Space>(problem: &mut Problem<S>) -> f64 {
+    let of_systems = problem.of_systems.iter();
+    let of_systems = of_systems.map(|row| row.yields(&problem.solver_bodies, &problem.systems));
+    let of_systems: f64 = of_systems.sum();
+    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
+    problem.full.yields(&solver_bodies)
+        + problem.levers.yields(&solver_bodies)
+        + problem.bonded_levers.yields(&solver_bodies)
+        + of_systems
 }
 
 /// Computes the reference values that depend on the free velocities; leaves these in the body records.

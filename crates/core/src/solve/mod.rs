@@ -28,6 +28,7 @@ mod rows;
 pub mod schedule;
 pub mod side;
 pub mod standard;
+mod sticking;
 mod traction;
 
 pub use choose::{AutoState, solve};

@@ -58,6 +58,10 @@ pub struct Report {
     pub parts: ErrorParts,
     /// Whether the error is within the tolerance.
     pub converged: bool,
+    /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]: the problem has no solution.
+    pub unbounded: bool,
+    /// Whether another solution, of more energy, was found first: the step has several.
+    pub several: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
     /// The method that ended the solve.
@@ -84,12 +88,13 @@ pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Re
     let free = free_velocity(problem, options.parallel);
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
-    let scale = scale(problem, free, options.parallel);
+    let scale = scale(problem, free, &sums, options.parallel);
     let error = sums.error(options.norm, &scale);
     Report {
         error,
         parts: sums.parts(&scale),
         converged: error <= options.tolerance,
+        unbounded: sums.drowned(free.free),
         worst: problem.pushed(sums.worst_at),
         ..Report::default()
     }
@@ -138,9 +143,10 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             problem.settle_systems();
         }
         let mut sums = measure(problem, options.parallel);
+        let scale_now = scale(problem, free, &sums, options.parallel);
         if ended
-            || sums.error(options.norm, &scale(problem, free, options.parallel))
-                <= options.tolerance
+            || sums.drowned(free.free)
+            || sums.error(options.norm, &scale_now) <= options.tolerance
         {
             if !fresh {
                 problem.reload(options.parallel);
@@ -149,11 +155,12 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 }
                 sums = measure(problem, options.parallel);
             }
-            let scale = scale(problem, free, options.parallel);
+            let scale = scale(problem, free, &sums, options.parallel);
             report.error = sums.error(options.norm, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
-            if ended || report.converged {
+            report.unbounded = sums.drowned(free.free);
+            if ended || report.converged || report.unbounded {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;
             }

@@ -225,6 +225,18 @@ impl<R> Rows<R> {
         parts.iter().for_each(|part| sums.merge(part));
     }
 
+    /// The work on the compliance of the contacts, see [`Row::yields`].
+    pub fn yields<S: Space>(&self, solver_bodies: &SolverBodies<S>) -> f64
+    where
+        R: Row<S>,
+    {
+        let of = |row: &R| {
+            let (a, b) = solver_bodies.read(row.bodies());
+            row.yields(&a, &b)
+        };
+        self.rows.iter().map(of).sum()
+    }
+
     /// The scales of the error from the free velocities, which are the current ones.
     pub fn free<S: Space>(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool) -> Scale
     where

@@ -5,7 +5,7 @@ use super::{Scheme, Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
-use crate::laws::{Interface, SpringForm, Totals};
+use crate::laws::{Interface, SpringForm};
 use crate::threads::{count, map_chunks, pays};
 use std::time::Instant;
 
@@ -33,7 +33,7 @@ impl<S: Space> Simulation<S> {
         self.commit_laws(&info, &mut report)?;
         self.book_expansion();
         self.conduct()?;
-        self.book(&start, &report.totals);
+        self.book(&start, &mut report);
         self.book_momentum(&start);
         self.move_to_end();
         self.end_step(&mut report)?;
@@ -177,8 +177,10 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Ends the step of dynamical systems and books the step in the energy ledger.
-    fn book(&mut self, start: &StepStart<S>, totals: &Totals) {
+    fn book(&mut self, start: &StepStart<S>, report: &mut StepReport) {
         let received = self.received();
+        self.watch_imposed(&received, report);
+        let totals = &report.totals;
         let Scheme { h, theta } = self.options.scheme;
         let mut work = start.work(
             &self.state.bodies,

@@ -2,6 +2,7 @@
 
 use super::agreement::Agreement;
 use super::coupling::CouplingReport;
+use super::impossible::Impossible;
 use super::projection::Projected;
 use crate::laws::Totals;
 use crate::solve;
@@ -37,6 +38,8 @@ pub struct StepReport {
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
+    /// Imposed motions that nothing could obey, if there were any.
+    pub impossible: Option<Box<Impossible>>,
     /// Wall-clock time.
     pub timing: Timing,
 }

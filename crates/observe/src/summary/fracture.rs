@@ -43,7 +43,11 @@ pub struct BondEnergies {
     pub torn: u64,
     /// Energy that the bonds broken by damage released, all that was stored at the break included (J; J/m in 2D).
     pub released: f64,
-    /// Fracture energy of their laws for their areas and openings (J; J/m in 2D).
+    /// Part of it that is compared with the next: all, unless bonds were broken by rotation in great numbers (J; J/m in 2D).
+    #[serde(skip)]
+    pub compared: f64,
+    /// Fracture energy of their laws for their areas and openings; where bonds were also turned, the work of a slow pull that opens and
+    /// turns them in the same proportion (J; J/m in 2D).
     pub declared: Option<f64>,
     /// Where the latter comes from.
     pub reference: Reference,
@@ -91,7 +95,7 @@ impl FractureSummary {
         };
         let known = || interfaces.iter().filter(|b| b.comparable);
         let declared: f64 = known().filter_map(|b| b.declared).sum();
-        let released: f64 = known().map(|b| b.released).sum();
+        let released: f64 = known().map(|b| b.compared).sum();
         Self {
             released_over_declared: (declared > 0.0 && !jumps).then(|| released / declared),
             interfaces,

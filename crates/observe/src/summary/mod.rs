@@ -28,6 +28,7 @@ use crate::scatter::Scatter;
 pub use crate::solving::SolverSummary;
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
+use fretwork_core::step::ImpossibleMotions;
 use fretwork_core::step::control::Begun;
 use fretwork_scene::sampling::UnresolvedDrive;
 use fretwork_scene::wear_coefficient::WearCoefficient;
@@ -219,6 +220,9 @@ pub struct Summary {
     /// Diagnostics of whether the step was small enough to detect every contact in time.
     #[serde(rename = "haste")]
     pub step_size: StepSizeDiagnostics,
+    /// Imposed motions that nothing could obey; left out without any.
+    #[serde(skip_serializing_if = "ImpossibleMotions::is_empty")]
+    pub impossible_motions: ImpossibleMotions,
     /// Interfaces whose transport law is not asked, in sentences.
     #[serde(skip)]
     pub without_heat: Vec<String>,

@@ -409,7 +409,8 @@ impl<S: Space> Part<S> {
                 Event::New(contact, sizes) => {
                     let compliant = network.memory[contact.law as usize].compliant;
                     let step_size = &mut network.step_size;
-                    step_size.record_late(&contact, sizes, compliant, scene.time, scene.bodies);
+                    let times = [scene.time, scene.h];
+                    step_size.record_late(&contact, sizes, compliant, times, scene.bodies);
                 }
             }
         }

@@ -44,7 +44,19 @@ impl Bench {
     /// # Errors
     /// The law's error.
     pub fn slow_fracture_energy(&mut self, angle: f64) -> Result<Option<f64>, LawError> {
-        self.work_to_break(angle, SLOW, 0.0)
+        self.work_to_break(&Direction::at(angle), SLOW, 0.0)
+    }
+
+    /// The same for a bond that opens and turns in proportion: to an opening normal and across (m), with a twist and a bending (rad).
+    ///
+    /// # Errors
+    /// The law's error.
+    pub fn slow_fracture_energy_towards(
+        &mut self,
+        opening: [f64; 2],
+        rotation: [f64; 2],
+    ) -> Result<Option<f64>, LawError> {
+        self.work_to_break(&Direction { opening, rotation }, SLOW, 0.0)
     }
 
     /// Whether the energy to break a new bond depends on neither speed nor pressure, by pulls in both modes.
@@ -53,12 +65,13 @@ impl Bench {
     /// The law's error.
     pub fn fracture_energy_is_constant(&mut self) -> Result<bool, LawError> {
         for angle in [0.0, std::f64::consts::FRAC_PI_2] {
-            let Some(slow) = self.work_to_break(angle, SLOW, 0.0)? else {
+            let to = Direction::at(angle);
+            let Some(slow) = self.work_to_break(&to, SLOW, 0.0)? else {
                 continue;
             };
-            let pressure = self.peak(angle)?;
+            let pressure = self.peak(&to)?;
             for (speed, pressure) in [(SLOW * FASTER, 0.0), (SLOW, pressure)] {
-                let other = self.work_to_break(angle, speed, pressure)?;
+                let other = self.work_to_break(&to, speed, pressure)?;
                 if !other.is_some_and(|w| (w / slow - 1.0).abs() < SAME) {
                     return Ok(false);
                 }
@@ -68,18 +81,18 @@ impl Bench {
     }
 
     /// Largest traction of a slow pull (Pa).
-    fn peak(&mut self, angle: f64) -> Result<f64, LawError> {
-        let pull = self.pull(coarse(), angle, SLOW, 0.0)?;
+    fn peak(&mut self, to: &Direction) -> Result<f64, LawError> {
+        let pull = self.pull(coarse(), to, SLOW, 0.0)?;
         Ok(pull.peak)
     }
 
     fn work_to_break(
         &mut self,
-        angle: f64,
+        to: &Direction,
         speed: f64,
         pressure: f64,
     ) -> Result<Option<f64>, LawError> {
-        let search = self.pull(coarse(), angle, speed, pressure)?;
+        let search = self.pull(coarse(), to, speed, pressure)?;
         let (Some(broken), true) = (search.broken, search.peak > 0.0) else {
             return Ok(None);
         };
@@ -88,7 +101,7 @@ impl Bench {
         let rise = (1..=STEPS).map(|k| near * k as f64 / steps);
         let ratio = (1.06 * broken / near).max(1.0);
         let rest = (1..=STEPS).map(|k| near * ratio.powf(k as f64 / steps));
-        let fine = self.pull(rise.chain(rest), angle, speed, pressure)?;
+        let fine = self.pull(rise.chain(rest), to, speed, pressure)?;
         Ok(fine.broken.map(|_| fine.work))
     }
 
@@ -96,7 +109,7 @@ impl Bench {
     fn pull(
         &mut self,
         openings: impl Iterator<Item = f64>,
-        angle: f64,
+        to: &Direction,
         speed: f64,
         pressure: f64,
     ) -> Result<Pull, LawError> {
@@ -104,15 +117,17 @@ impl Bench {
         let mut pull = Pull::default();
         let (mut before, mut carried) = (0.0, 0.0);
         for u in openings {
-            let opening = [u * angle.cos(), u * angle.sin(), 0.0];
+            let ([n, t], [twist, bend]) = (to.opening, to.rotation);
+            let opening = [u * n, u * t, 0.0];
             let motion = Motion {
                 opening,
+                rotation: [u * twist, u * bend, 0.0],
                 gap: opening[0],
                 pressure,
                 ..Motion::default()
             };
             let answer = self.step(&mut state, &[motion], (u - before) / speed)?[0];
-            let traction = along(&answer, angle);
+            let traction = to.along(&answer);
             pull.work += 0.5 * (traction + carried) * (u - before);
             if traction > pull.peak {
                 (pull.peak, pull.peak_at) = (traction, u);
@@ -124,6 +139,33 @@ impl Bench {
             }
         }
         Ok(pull)
+    }
+}
+
+/// The direction of a pull: opening normal and across, twist and bending, per unit of the way. The way is the opening where that is of
+/// length one.
+#[derive(Clone, Copy, Debug)]
+struct Direction {
+    opening: [f64; 2],
+    rotation: [f64; 2],
+}
+
+impl Direction {
+    /// Without rotation, at an angle (rad) from the normal.
+    fn at(angle: f64) -> Self {
+        Self {
+            opening: [angle.cos(), angle.sin()],
+            rotation: [0.0; 2],
+        }
+    }
+
+    /// Traction along the opening, with the moment along the rotation: work per unit of the way (J/m^2).
+    fn along(&self, answer: &Answer) -> f64 {
+        let ([n, t], [twist, bend]) = (self.opening, self.rotation);
+        answer.traction[0] * n
+            + answer.traction[1] * t
+            + answer.moment[0] * twist
+            + answer.moment[1] * bend
     }
 }
 
@@ -143,9 +185,4 @@ struct Pull {
 fn coarse() -> impl Iterator<Item = f64> {
     let steps = ((LAST / FIRST).ln() / 1.05f64.ln()).ceil() as i32;
     (0..=steps).map(|k| FIRST * 1.05f64.powi(k))
-}
-
-/// Traction along the opening (Pa).
-fn along(answer: &Answer, angle: f64) -> f64 {
-    answer.traction[0] * angle.cos() + answer.traction[1] * angle.sin()
 }

@@ -67,6 +67,7 @@ fn step(
             law: 0,
             place: Vector2::zeros(),
             opening: [0.0; 2],
+            rotation: [0.0; 2],
             area: 1.0,
             torn: 0.0,
             damaged: true,

@@ -148,6 +148,7 @@ impl<'a, const D: usize> Form<'a, D> {
             energy: self.energy,
             noise: 0.0,
             work,
+            contacts: self.len(),
         };
         // The projection of NaN gives 0, and so does division by infinity: neither must pass as a zero
         // error.

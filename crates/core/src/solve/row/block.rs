@@ -41,6 +41,14 @@ pub(in crate::solve) trait OnBlock<S: Space>:
         )
     }
 
+    /// See [`super::Row::yields`], at a relative velocity.
+    fn yields(&self, un: f64, ut: &S::Tangent) -> f64 {
+        let (state, [c_n, c_t]) = (self.state(), self.limits().compliance);
+        let (en, et) = self.bond(un, ut);
+        let (sn, st) = (state.pn - en, state.pt - et);
+        c_n * sn * sn + c_t * st.dot(&st)
+    }
+
     /// See [`super::Row::solution`], at a relative velocity.
     fn solution(&self, un: f64, ut: &S::Tangent) -> ContactSolution<S> {
         let state = self.state();

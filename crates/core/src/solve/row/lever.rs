@@ -123,6 +123,11 @@ impl<S: Space, C: OnBlock<S>> Row<S> for LeverRow<S, C> {
         self.contact.residual(un, &ut)
     }
 
+    fn yields(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
+        let (un, ut) = self.levers.relative(&self.contact.state().n, a, b);
+        self.contact.yields(un, &ut)
+    }
+
     fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S> {
         let (un, ut) = self.levers.relative(&self.contact.state().n, a, b);
         self.contact.solution(un, &ut)

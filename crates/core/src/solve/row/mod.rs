@@ -98,6 +98,10 @@ pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
     /// Returns the friction coefficient.
     fn friction(&self) -> f64;
     fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual;
+    /// Returns the work on the compliance of the unilateral part, c |p|^2 (J).
+    fn yields(&self, _: &SolverBody<S>, _: &SolverBody<S>) -> f64 {
+        0.0
+    }
     /// Returns the solution at the current velocities: the bond's part follows from them, the unilateral
     /// part is the rest.
     fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S>;

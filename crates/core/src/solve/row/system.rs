@@ -231,6 +231,12 @@ impl<S: Space> SystemRow<S> {
         self.contact.residual(un, &ut)
     }
 
+    /// See [`super::Row::yields`].
+    pub fn yields(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> f64 {
+        let (un, ut) = self.parts(solver_bodies, systems);
+        self.contact.yields(un, &ut)
+    }
+
     pub fn solution(
         &self,
         solver_bodies: &[SolverBody<S>],
@@ -257,7 +263,7 @@ impl<S: Space> SystemRow<S> {
             free: speed,
             energy: self.contact.limits().rho * speed,
             noise: super::visit::noise(own, self.contact.limits().mu),
-            work: 0.0,
+            ..Scale::default()
         }
     }
 }

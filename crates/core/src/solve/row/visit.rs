@@ -5,7 +5,7 @@
 use super::lanes::{self, Moving, Records, Tuple, Wide};
 use super::{Row, SolverBodies, SolverBody};
 use crate::geometry::space::{Space, VectorLike, least};
-use crate::solve::error::{Scale, Sums};
+use crate::solve::error::{ROUNDINGS, Scale, Sums};
 
 /// An operation on rows.
 pub trait Visit {
@@ -219,8 +219,6 @@ pub struct Free {
     noise: [f64; APART],
 }
 
-/// Squared rounding error of a relative velocity.
-const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
 /// The natural map multiplies the rounding error of a slip by mu; mu is capped here for that purpose.
 const MAX_FRICTION: f64 = 1e6;
 
@@ -233,7 +231,7 @@ impl Free {
             free,
             energy,
             noise,
-            work: 0.0,
+            ..Scale::default()
         }
     }
 }

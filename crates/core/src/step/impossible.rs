@@ -1,0 +1,217 @@
+//! Imposed motions that nothing can obey: bodies driven into each other, or into others that have nowhere to go.
+
+use super::{Simulation, StepReport};
+use crate::bodies::Bodies;
+use crate::contact::Contact;
+use crate::geometry::space::{Space, VectorLike};
+use serde::{Deserialize, Serialize};
+
+/// Residual velocities over those of the contacts from which impulses do not do what they should: a thousand layers share the motion of a lid.
+const NOT_OBEYED: f64 = 0.03;
+/// Share of the work of the drives that goes into the residuals, at least, and how much of it is not accounted for by these and by slip,
+/// at most, where they squeeze what does not yield.
+const WASTED: f64 = 0.2;
+const UNEXPLAINED: f64 = 0.3;
+/// Share of the work of all drives, or of the largest impulse, from which a body is named.
+const NAMED: f64 = 0.05;
+/// Overlap of two bodies with imposed motion, over the length of the smaller one, that is no rounding of their paths.
+const OVERLAP: f64 = 1e-3;
+
+/// Two bodies whose motions are both imposed, and that overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenOverlap {
+    /// The bodies.
+    pub bodies: [u32; 2],
+    /// Depth at the end of the step (m).
+    pub depth: f64,
+}
+
+/// What a step could not obey.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Impossible {
+    /// Bodies that squeeze others without bound: those that do the work first, then those against which they press; empty where
+    /// none do.
+    pub squeezing: Vec<u32>,
+    /// The deepest overlap of two bodies whose motions are both imposed, if there is one that grows.
+    pub overlap: Option<DrivenOverlap>,
+}
+
+/// Impossible motions over a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImpossibleMotions {
+    /// Steps in which imposed motions squeezed others without bound.
+    pub squeezed_steps: u64,
+    /// End of the first of them (s).
+    pub squeezed_at: f64,
+    /// The bodies that did so, in the first of these steps.
+    pub squeezing: Vec<String>,
+    /// Steps in which bodies whose motions are both imposed moved into each other.
+    pub overlapping_steps: u64,
+    /// End of the first of them (s).
+    pub overlapping_at: f64,
+    /// The bodies with the largest overlap.
+    pub overlapping: Vec<String>,
+    /// Largest overlap of them (m).
+    pub overlap: f64,
+}
+
+impl ImpossibleMotions {
+    /// Whether all motions were possible.
+    pub fn is_empty(&self) -> bool {
+        self.squeezed_steps == 0 && self.overlapping_steps == 0
+    }
+
+    /// Adds a step of a simulation, given after it.
+    pub fn add<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
+        let Some(step) = report.impossible.as_deref() else {
+            return;
+        };
+        let name = |b: &u32| s.state.bodies.name(*b);
+        if !step.squeezing.is_empty() {
+            if self.squeezed_steps == 0 {
+                self.squeezed_at = s.state.time;
+                self.squeezing = step.squeezing.iter().map(name).collect();
+            }
+            self.squeezed_steps += 1;
+        }
+        if let Some(overlap) = step.overlap {
+            if self.overlapping_steps == 0 {
+                self.overlapping_at = s.state.time;
+            }
+            self.overlapping_steps += 1;
+            if overlap.depth > self.overlap {
+                self.overlap = overlap.depth;
+                self.overlapping = overlap.bodies.iter().map(name).collect();
+            }
+        }
+    }
+
+    /// What to tell the user; `None` if all motions were possible.
+    pub fn warning(&self) -> Option<String> {
+        let squeezed = (self.squeezed_steps > 0).then(|| {
+            format!(
+                "in {} steps, the first ends at t = {:.6e} s, {} squeezed bodies that can neither yield nor escape: no finite \
+                 forces do that, and those of the run mean nothing; move a body by Force instead of a motion, use a compliant contact \
+                 law (docs/compliant.md), or impose less displacement",
+                self.squeezed_steps,
+                self.squeezed_at,
+                self.squeezing.join(" and ")
+            )
+        });
+        let overlapping = (self.overlapping_steps > 0).then(|| {
+            format!(
+                "{}, whose motions are both imposed, moved into each other by up to {:.2e} m, from t = {:.6e} s on: a rigid contact \
+                 between them carries nothing; move one of them by Force, use a compliant contact law (docs/compliant.md), or impose \
+                 motions that keep them apart",
+                self.overlapping.join(" and "),
+                self.overlap,
+                self.overlapping_at
+            )
+        });
+        let told: Vec<String> = [squeezed, overlapping].into_iter().flatten().collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+}
+
+/// Work that a driven body does on others by its imposed motion in a step (J), and the length of the impulse on it (N s).
+struct Push {
+    body: u32,
+    work: f64,
+    impulse: f64,
+}
+
+impl<S: Space> Simulation<S> {
+    /// Looks whether the imposed motions of the step could be obeyed, given the impulses and moments on the driven bodies.
+    pub(super) fn watch_imposed(&self, received: &[(S::Vector, S::Spin)], report: &mut StepReport) {
+        let impossible = Impossible {
+            squeezing: self.squeezing(received, report),
+            overlap: self.driven_overlap(),
+        };
+        if impossible != Impossible::default() {
+            report.impossible = Some(Box::new(impossible));
+        }
+    }
+
+    /// The bodies that squeeze others without bound.
+    fn squeezing(&self, received: &[(S::Vector, S::Spin)], report: &StepReport) -> Vec<u32> {
+        let solver = &report.solver;
+        if solver.converged || !(solver.unbounded || solver.parts.velocity > NOT_OBEYED) {
+            return Vec::new();
+        }
+        let pushes = self.pushes(received);
+        let work: f64 = pushes.iter().map(|p| p.work).sum();
+        if !solver.unbounded {
+            let wasted = solver.parts.residual_energy;
+            let left = (work - wasted - solver.parts.slip_energy).abs();
+            if !(work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
+                return Vec::new();
+            }
+        }
+        let most = pushes.iter().fold(0.0, |m: f64, p| m.max(p.impulse));
+        let works = |p: &&Push| p.work > NAMED * work && p.work > 0.0;
+        let holds = |p: &&Push| !works(p) && p.impulse > NAMED * most;
+        let (first, then) = (pushes.iter().filter(works), pushes.iter().filter(holds));
+        first.chain(then).map(|p| p.body).collect()
+    }
+
+    /// What driven bodies do to others.
+    fn pushes(&self, received: &[(S::Vector, S::Spin)]) -> Vec<Push> {
+        let bodies = &self.state.bodies;
+        let of = |(driven, (impulse, moment)): (&crate::bodies::Driven, &(S::Vector, S::Spin))| {
+            let b = driven.body as usize;
+            let along = |k: usize| -impulse[k] * bodies.velocity[b][k];
+            let imposed = (0..S::D).filter(|k| bodies.inverse_mass[b][*k] == 0.0);
+            let turning = if bodies.inverse_inertia[b] == 0.0 {
+                -moment.dot(&bodies.spin[b])
+            } else {
+                0.0
+            };
+            Push {
+                body: driven.body,
+                work: imposed.map(along).sum::<f64>() + turning,
+                impulse: impulse.norm(),
+            }
+        };
+        bodies.driven.iter().zip(received).map(of).collect()
+    }
+
+    /// The deepest overlap that grows of two bodies whose motions are imposed and whose contacts are rigid. (Springs and bonds between such
+    /// bodies carry.)
+    fn driven_overlap(&self) -> Option<DrivenOverlap> {
+        let bodies = &self.state.bodies;
+        let at_rest =
+            |b: usize| bodies.velocity[b] == S::Vector::zero() && bodies.spin[b] == S::Spin::zero();
+        let driven = bodies.driven.iter().map(|d| d.body as usize);
+        let immovable: Vec<usize> = driven.filter(|b| bodies.immovable(*b)).collect();
+        if immovable.len() < 2 || immovable.iter().all(|b| at_rest(*b)) {
+            return None;
+        }
+        let mut stays = vec![false; bodies.len()];
+        immovable.iter().for_each(|b| stays[*b] = true);
+        let contacts = self.state.network.contacts.iter().enumerate();
+        let between = contacts.filter(|(_, c)| c.bodies.iter().all(|b| stays[*b as usize]));
+        let deep = between.filter_map(|(k, contact)| {
+            let depth = self.depth_of_driven(k, contact, bodies)?;
+            Some(DrivenOverlap {
+                bodies: contact.bodies,
+                depth,
+            })
+        });
+        deep.reduce(|a, b| if b.depth > a.depth { b } else { a })
+    }
+
+    /// Depth at the end of the step of a rigid contact that closes, where it is no rounding (m).
+    fn depth_of_driven(&self, k: usize, contact: &Contact<S>, bodies: &Bodies<S>) -> Option<f64> {
+        let law = &self.laws[contact.law as usize];
+        let bonded = self.state.network.bond(contact).is_some_and(|b| b.intact());
+        if law.compliant() || bonded {
+            return None;
+        }
+        let closing = contact.normal.dot(self.workspace.solved.after.get(k)?);
+        let scheme = &self.options.scheme;
+        let depth = -contact.gap - scheme.theta * scheme.h * closing;
+        let length = |side: usize| bodies.length[contact.bodies[side] as usize];
+        let size = length(0).min(length(1));
+        (closing < 0.0 && depth > OVERLAP * size).then_some(depth)
+    }
+}

@@ -1,0 +1,153 @@
+//! Contacts that hold each other: columns of springs between fixed plates, and stacks of unlike weights.
+
+use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
+use fretwork::step::Simulation;
+use std::path::Path;
+
+/// A column of grains with springs, squeezed between fixed plates so that each contact overlaps by the same.
+fn column<S: Dimensional>(grains: usize, law: &str, rest: &str) -> Simulation<S> {
+    let at = |z: f64| {
+        if S::D == 2 {
+            format!("0.0, {z:e}")
+        } else {
+            format!("0.0, 0.0, {z:e}")
+        }
+    };
+    let height = |k: usize| RADIUS - OVERLAP + k as f64 * (2.0 * RADIUS - OVERLAP);
+    let list: Vec<String> = (0..grains)
+        .map(|k| format!("(at: [{}], radius: {RADIUS:e})", at(height(k))))
+        .collect();
+    let (up, down) = if S::D == 2 {
+        ("0.0, 1.0", "0.0, -1.0")
+    } else {
+        ("0.0, 0.0, 1.0", "0.0, 0.0, -1.0")
+    };
+    let text = format!(
+        r#"(
+    name: "column", dimension: {}, detection: (alert: 1e-5, skin: 1e-5),
+    materials: {{"grain": "verification_grain"}},
+    interfaces: [(name: "all", between: ("grain", "grain"), contact: "linear-contact", parameters: (contact: {{{law}}}))],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HalfSpace(normal: [{up}])]),
+        (name: "roof", material: "grain", shapes: [HalfSpace(normal: [{down}])], position: [{}]),
+    ],
+    grains: [List(material: "grain", grains: [{}])],
+    output: (frames: 0, views: 0, figures: false),
+    {rest}
+)"#,
+        S::D,
+        at(height(grains - 1) + RADIUS - OVERLAP),
+        list.join(", ")
+    );
+    let loaded = load_text("column.ron", &text, Path::new("."), &[]);
+    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
+    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+}
+
+/// Radius of the grains, and overlap of each contact (m).
+const RADIUS: f64 = 1e-3;
+const OVERLAP: f64 = 2.5e-6;
+
+fn stays<S: Dimensional>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
+    let law = format!(r#""stiffness": {stiffness:e}, "restitution": 0.1, "mu": {mu}"#);
+    let mut s: Simulation<S> = column(grains, &law, rest);
+    let wanted = stiffness * OVERLAP;
+    for _ in 0..60 {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        let solver = &report.solver;
+        assert!(
+            solver.converged && solver.iterations < 1000 && !solver.unbounded,
+            "{}D, {grains} grains, {stiffness:e} N/m, {rest}, step {}: {solver:?}",
+            S::D,
+            s.state.steps
+        );
+        for received in &s.state.received {
+            let force = received.0[S::D - 1].abs() / s.options.scheme.h;
+            assert!(
+                (force / wanted - 1.0).abs() < 1e-6,
+                "{force} N, not {wanted}"
+            );
+        }
+    }
+}
+
+/// All forces are k times the overlap, from the first step on: what balances each other leaves no velocity by which an error could be
+/// measured, and is no error.
+#[test]
+fn a_column_of_springs_holds_itself() {
+    for (grains, stiffness) in [(1, 1e6), (3, 1e6), (3, 1e4), (10, 1e6), (30, 1e5)] {
+        for theta in [0.5, 1.0] {
+            for solver in [
+                "",
+                "norm: Balance",
+                "method: Nlgs, norm: Balance",
+                "method: Newton",
+            ] {
+                let rest =
+                    format!("time: (step: 1e-3, end: 1.0, theta: {theta}), solver: ({solver})");
+                stays::<Dim2>(grains, stiffness, 0.0, &rest);
+                stays::<Dim3>(grains, stiffness, 0.4, &rest);
+            }
+        }
+    }
+}
+
+/// Five cubes of 0.2 m with one of another density on top, a little off their axis: how far the top one moves (m), and sweeps.
+fn top_of_stack(density: f64, solver: &str, time: f64) -> (f64, f64) {
+    let cubes: Vec<String> = (0..5)
+        .map(|k| {
+            format!(
+                "(at: [0.0, 0.0, {}], size: (0.2, 0.2, 0.2))",
+                0.1 + 0.2 * f64::from(k)
+            )
+        })
+        .collect();
+    let mass = density * 0.008;
+    let text = format!(
+        r#"(
+    name: "stack", dimension: 3, gravity: [0.0, 0.0, -9.81], time: (step: 5e-3, end: 100.0), solver: ({solver}),
+    materials: {{"grain": "verification_grain"}},
+    interfaces: [(name: "all", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": 0.5}}))],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])]),
+        (name: "top", material: "grain", mass: {mass:e}, position: [0.01, 0.02, 1.1], shapes: [Box(size: (0.2, 0.2, 0.2))],
+            dofs: (x: Free, y: Free, z: Free, rx: Free, ry: Free, rz: Free)),
+    ],
+    grains: [Polyhedra(material: "grain", grains: [{}])],
+    output: (frames: 0, views: 0, figures: false),
+)"#,
+        cubes.join(", ")
+    );
+    let loaded = load_text("stack.ron", &text, Path::new("."), &[]);
+    let built = loaded.and_then(|l| l.build_in::<Dim3>(&search_path()));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation;
+    let top = s
+        .state
+        .bodies
+        .driven
+        .iter()
+        .find(|d| d.name == "top")
+        .unwrap()
+        .body as usize;
+    let start = s.state.bodies.position[top];
+    let steps = (time / s.options.scheme.h).round() as usize;
+    let mut sweeps = 0;
+    for _ in 0..steps {
+        sweeps += s.step().unwrap_or_else(|e| panic!("{e}")).solver.iterations;
+    }
+    let moved = s.state.bodies.position[top] - start;
+    (moved.norm(), f64::from(sweeps) / steps as f64)
+}
+
+/// Blocks at rest stay at the default tolerance: within a two-hundredth of their size in a second, whatever lies on top.
+#[test]
+fn light_blocks_carry_heavy_ones() {
+    for ratio in [1.0, 10.0, 100.0, 1000.0] {
+        let (moved, sweeps) = top_of_stack(1e3 * ratio, "", 1.0);
+        println!("ratio {ratio}: {moved:e} m, {sweeps} sweeps a step");
+        assert!(moved < 1e-3, "ratio {ratio}: {moved:e} m");
+    }
+}

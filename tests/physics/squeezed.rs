@@ -1,0 +1,155 @@
+//! Imposed motions that nothing can obey: no finite impulses are a solution, and a run says so with the names of the bodies.
+
+use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
+use fretwork::step::{ImpossibleMotions, Simulation};
+use std::path::Path;
+
+/// A lid over a floor with grains between them; the solver's settings and the contact law.
+fn pressed<S: Dimensional>(lid: &str, grains: &str, solver: &str, law: &str) -> Simulation<S> {
+    let (up, down, over, axis) = if S::D == 2 {
+        ("[0.0, 1.0]", "[0.0, -1.0]", "[0.0, 0.02]", "y")
+    } else {
+        (
+            "[0.0, 0.0, 1.0]",
+            "[0.0, 0.0, -1.0]",
+            "[0.0, 0.0, 0.02]",
+            "z",
+        )
+    };
+    let text = format!(
+        r#"(
+    name: "pressed", dimension: {}, time: (step: 1e-4, end: 1.0), solver: ({solver}),
+    materials: {{"grain": "verification_grain"}},
+    interfaces: [(name: "all", between: ("grain", "grain"), {law})],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HalfSpace(normal: {up})]),
+        (name: "lid", material: "grain", mass: 1.0, position: {over}, shapes: [HalfSpace(normal: {down})], dofs: ({axis}: {lid})),
+    ],
+    grains: [List(material: "grain", grains: [{grains}])],
+    output: (frames: 0, views: 0, figures: false),
+)"#,
+        S::D
+    );
+    let loaded = load_text("pressed.ron", &text, Path::new("."), &[]);
+    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
+    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+}
+
+const DRIVEN: &str = "Displacement(Ramp(from: 0, to: -5e-3, start: 0, end: 0.05))";
+const RIGID: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.3})"#;
+const SPRINGS: &str = r#"contact: "linear-contact", parameters: (contact: {"stiffness": 1e6, "restitution": 0.5, "mu": 0.3})"#;
+
+/// One grain, two beside each other, and a column of two.
+fn grains(dimension: usize) -> [&'static str; 3] {
+    if dimension == 2 {
+        [
+            "(at: [0.0, 0.01], radius: 0.01)",
+            "(at: [0.0, 0.01], radius: 0.01), (at: [0.03, 0.01], radius: 0.01)",
+            "(at: [0.0, 0.005], radius: 0.005), (at: [0.0, 0.015], radius: 0.005)",
+        ]
+    } else {
+        [
+            "(at: [0.0, 0.0, 0.01], radius: 0.01)",
+            "(at: [0.0, 0.0, 0.01], radius: 0.01), (at: [0.03, 0.0, 0.01], radius: 0.01)",
+            "(at: [0.0, 0.0, 0.005], radius: 0.005), (at: [0.0, 0.0, 0.015], radius: 0.005)",
+        ]
+    }
+}
+
+/// What a run of some steps says of its imposed motions, and the largest force on the lid (N).
+fn told<S: Dimensional>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64) {
+    let (mut told, mut force) = (ImpossibleMotions::default(), 0.0f64);
+    for _ in 0..steps {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        told.add(s, &report);
+        let received = s.state.received.iter().map(|r| r.0[S::D - 1].abs());
+        force = received.fold(force, f64::max);
+    }
+    (told, force / s.options.scheme.h)
+}
+
+fn cannot_be_obeyed<S: Dimensional>() {
+    for list in grains(S::D) {
+        for method in ["Auto", "Anderson", "Newton", "Interior", "Nlgs"] {
+            let solver = format!("method: {method}, max_iterations: 2000");
+            let mut s: Simulation<S> = pressed(DRIVEN, list, &solver, RIGID);
+            let (told, force) = told(&mut s, 3);
+            let name = format!("{}D, {method}, {list}: {told:?}, {force:e} N", S::D);
+            assert!(told.squeezed_steps == 3, "{name}");
+            assert_eq!(told.squeezing, ["body `lid`", "body `floor`"], "{name}");
+            let text = told.warning().unwrap();
+            assert!(
+                text.contains("`lid` and body `floor` squeezed") && text.contains("by Force"),
+                "{text}"
+            );
+            assert!(!text.contains("time.step"), "{text}");
+            // The impulse that stops a grain at the speed of the lid is 4e-4 N s at most; some thousand sweeps add that much each.
+            assert!(force < 1e5, "{name}");
+        }
+    }
+}
+
+#[test]
+fn grains_between_driven_plates_cannot_yield() {
+    cannot_be_obeyed::<Dim2>();
+    cannot_be_obeyed::<Dim3>();
+}
+
+/// With a force in place of the motion, or springs in place of rigid contacts, all is possible.
+fn can_be_obeyed<S: Dimensional>() {
+    for (lid, law) in [("Force(-10.0)", RIGID), (DRIVEN, SPRINGS)] {
+        for list in grains(S::D) {
+            let mut s: Simulation<S> = pressed(lid, list, "", law);
+            let (told, _) = told(&mut s, 20);
+            assert!(told.is_empty(), "{lid}, {list}: {told:?}");
+        }
+    }
+}
+
+#[test]
+fn forces_and_springs_can() {
+    can_be_obeyed::<Dim2>();
+    can_be_obeyed::<Dim3>();
+}
+
+/// Two driven bodies that move into each other are named; with springs between them they are not, nor where they part or slide.
+#[test]
+fn driven_bodies_that_overlap_are_named() {
+    let scene = |motion: &str, law: &str| -> Simulation<Dim3> {
+        let text = format!(
+            r#"(
+    name: "blocks", dimension: 3, time: (step: 1e-3, end: 1.0),
+    materials: {{"grain": "verification_grain"}},
+    interfaces: [(name: "all", between: ("grain", "grain"), {law})],
+    bodies: [
+        (name: "lower", material: "grain", shapes: [Box(size: (0.02, 0.02, 0.02))]),
+        (name: "upper", material: "grain", position: [0.0, 0.0, 0.02], shapes: [Box(size: (0.02, 0.02, 0.02))], dofs: ({motion})),
+    ],
+    output: (frames: 0, views: 0, figures: false),
+)"#
+        );
+        let loaded = load_text("blocks.ron", &text, Path::new("."), &[]);
+        let built = loaded.and_then(|l| l.build_in::<Dim3>(&search_path()));
+        built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    };
+    let down = "z: Velocity(-0.1)";
+    let (told_of, _) = told(&mut scene(down, RIGID), 10);
+    // 1e-3 m after ten steps.
+    assert!((told_of.overlap / 1e-3 - 1.0).abs() < 0.01, "{told_of:?}");
+    let text = told_of.warning().unwrap();
+    assert!(
+        text.contains("`lower`") && text.contains("`upper`") && text.contains("both imposed"),
+        "{text}"
+    );
+    for (motion, law) in [
+        (down, SPRINGS),
+        ("z: Velocity(0.1)", RIGID),
+        ("x: Velocity(0.1)", RIGID),
+    ] {
+        let (told_of, _) = told(&mut scene(motion, law), 10);
+        assert!(told_of.is_empty(), "{motion}, {law}: {told_of:?}");
+    }
+}
