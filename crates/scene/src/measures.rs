@@ -211,7 +211,7 @@ fn check_bodies(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationErro
 }
 
 /// Names of columns and figures that every run may have.
-const RESERVED: [&str; 56] = [
+const RESERVED: [&str; 57] = [
     "step",
     "time",
     "cycle",
@@ -221,6 +221,7 @@ const RESERVED: [&str; 56] = [
     "iterations",
     "error",
     "converged",
+    "overlap",
     "bonds_intact",
     "bonds_broken",
     "damage_ratio",

@@ -14,7 +14,7 @@ use fretwork_scene::methods::{Demands, Service};
 /// Residual of the energy ledger, and of the account of heat, relative to the largest energy or heat, above which it is not explained by
 /// rounding: ledgers close to 1e-9 and better, also over millions of steps.
 pub const LEDGER: f64 = 1e-6;
-/// Penetration after a projection, as a fraction of the smaller body's length, that is worth a note.
+/// Overlap of rigid contacts, over the radius of the smaller grain, from which they are not where the model says.
 const OVERLAP: f64 = 1e-2;
 /// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
 const LOOSE: f64 = 1e-3;
@@ -116,6 +116,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     let account = heat.and_then(|h| h.account(LEDGER));
     serious("HEAT DOES NOT ADD UP", account);
     serious("TOO FAST", summary.step_size.warning());
+    serious("OVERLAP", overlap(summary));
     serious("MOTION LOST", summary.step_size.rounding_warning());
     for body in &summary.small_strain {
         serious("NOT SMALL STRAIN", body.warning());
@@ -231,6 +232,23 @@ fn phases(summary: &Summary) -> Option<String> {
         format!(
             "the run ended before the phases {}; let it run longer (time.end)",
             missed.join(", ")
+        )
+    })
+}
+
+/// Rigid bodies that overlap.
+fn overlap(summary: &Summary) -> Option<String> {
+    let solver = &summary.solver;
+    (solver.overlap_max > OVERLAP).then(|| {
+        let left = if solver.overlap_after > OVERLAP {
+            format!(", {:.1e} after they were taken out", solver.overlap_after)
+        } else {
+            String::new()
+        };
+        format!(
+            "rigid bodies overlap by up to {:.1e} of the radius of the smaller one{left}; take a smaller time.step or solver.tolerance, or \
+             take overlaps out by `solver: (projection: 0.005)`",
+            solver.overlap_max
         )
     })
 }
@@ -363,15 +381,6 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     let uncertainty = &summary.uncertainty;
     note("ESTIMATED ERROR", estimated_error(uncertainty));
     note("ERROR NOT KNOWN", unknown_error(uncertainty));
-    let over = summary.solver.overlap_after;
-    note(
-        "OVERLAP",
-        (over > OVERLAP).then(|| {
-            format!(
-                "removing overlaps left up to {over:.1e} of a body's length; take a smaller time.step"
-            )
-        }),
-    );
     notes
 }
 

@@ -135,6 +135,14 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn any_depth(&self) -> bool {
         false
     }
+    /// Returns whether it bends towards what touches it, as the inside of a drum does.
+    fn is_hollow(&self) -> bool {
+        false
+    }
+    /// Returns how much farther from a hollow surface the second of two places is than the first (m).
+    fn distance_gained(&self, _from: &S::Vector, _to: &S::Vector) -> f64 {
+        0.0
+    }
     /// Returns the surface as a receding one; `None` if it cannot wear.
     fn receding(&self) -> Option<&dyn Recede<S>> {
         None

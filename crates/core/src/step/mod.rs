@@ -48,6 +48,7 @@ mod report;
 mod run;
 mod simulation;
 mod state;
+mod swerve;
 mod systems;
 mod turning;
 mod workspace;

@@ -34,6 +34,8 @@ pub struct StepReport {
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
+    /// Deepest overlap at detection, after a projection, see [`super::Simulation::deepest_overlap`].
+    pub overlap: f64,
     /// Wall-clock time.
     pub timing: Timing,
 }

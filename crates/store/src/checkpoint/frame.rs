@@ -43,7 +43,7 @@ const BODY: usize = 80;
 
 impl Frame {
     /// Form of identities and states that this program writes: one more whenever anything of them changes.
-    pub const FORMAT: u32 = 16;
+    pub const FORMAT: u32 = 17;
 
     /// Serializes the frame.
     pub fn bytes(&self) -> Vec<u8> {
