@@ -15,6 +15,7 @@ mod bonded;
 mod compliant;
 mod elastic;
 mod extremes;
+mod flush;
 mod hollow;
 mod library;
 mod masonry;
