@@ -4,7 +4,9 @@ use super::narrow::{Narrow, Scratch};
 use super::renewal::{Found, Touch};
 use super::{SLACK, held};
 use crate::contact::network::{Contact, ContactGeometry, Key};
-use crate::geometry::convex::passing::{PairMotion, keep_apart, keep_ball_apart};
+use crate::geometry::convex::passing::{
+    PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
+};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -119,6 +121,16 @@ impl<S: Space> Narrow<'_, S> {
                 tolerances,
                 out,
             );
+            if !(out.is_empty() || tolerances.held || surface.shape.deforms()) {
+                let bodies = [piece.body, surface.body];
+                let motion = self.motion(bodies, [self.centres[balls + k], origin]);
+                let motion = motion.seen_from(&rotation);
+                let rounding = piece.rounding;
+                let surface = surface.shape.as_ref();
+                keep_apart_from_surface::<S>(
+                    core, surface, &place, rounding, tolerances, &motion, out,
+                );
+            }
             for m in out.iter_mut() {
                 m.normal = S::rotate(&rotation, &m.normal);
                 m.on_candidate = S::rotate(&rotation, &m.on_candidate);

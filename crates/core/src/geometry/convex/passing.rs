@@ -6,10 +6,14 @@
 //! leaves most room at its end takes their place: the axis along which the bodies stay separate the longest.
 
 use super::{ContactPoint, ContactTolerances, Core};
+use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
 /// Room that a plane must leave more than the nearest points do, and depth of a closing that matters, as a fraction of the slack.
 const ALIKE: f64 = 1e-3;
+
+/// Share of a distance by which a place may be in front of a plane to count as behind it.
+const BEHIND: f64 = 1e-9;
 
 /// Relative motion of a pair in a step, to first order.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +25,15 @@ pub struct PairMotion<S: Space> {
 }
 
 impl<S: Space> PairMotion<S> {
+    /// The motion in the axes of a frame.
+    #[must_use]
+    pub fn seen_from(&self, rotation: &S::Rotation) -> Self {
+        Self {
+            shift: S::unrotate(rotation, &self.shift),
+            turns: self.turns.map(|turn| S::unrotate_spin(rotation, &turn)),
+        }
+    }
+
     /// Displacement of a point of the candidate relative to one of the antagonist, each from its centre (m).
     fn of(&self, on_candidate: &S::Vector, on_antagonist: &S::Vector) -> S::Vector {
         let [turn, other] = &self.turns;
@@ -212,6 +225,60 @@ pub fn keep_ball_apart<S: Space>(
         let [left, _] = motion.left(&plane, apart);
         if gap >= -tolerances.slack && left > room {
             (room, *point) = (left, plane);
+        }
+    }
+}
+
+/// The same for a core at `at` in the frame of a surface, whose points it passes: a plane keeps it apart from the faces around a
+/// point, if they lie behind it.
+pub fn keep_apart_from_surface<S: Space>(
+    core: &S::Core,
+    surface: &dyn Surface<S>,
+    at: &S::Vector,
+    rounding: f64,
+    tolerances: &ContactTolerances,
+    motion: &PairMotion<S>,
+    out: &mut [ContactPoint<S::Vector>],
+) {
+    let alike = ALIKE * tolerances.slack;
+    let mut fan = Fan::default();
+    for point in out {
+        let [least, change] = motion.left(point, at);
+        if change >= -alike || least >= -alike {
+            continue;
+        }
+        fan.normals.clear();
+        fan.spokes.clear();
+        surface.fan(&point.on_antagonist, alike, &mut fan);
+        let beside = beside::<S>(point, rounding, at, motion);
+        let own = core.normals().iter().map(|n| -*n);
+        let foot = point.on_antagonist;
+        let mut room = least + alike;
+        for n in fan.normals.iter().copied().chain(own).chain(beside) {
+            let rises = |spoke: &S::Vector| spoke.dot(&n) > BEHIND * spoke.norm() + alike;
+            if fan.spokes.is_empty() || fan.spokes.iter().any(rises) {
+                continue;
+            }
+            let (mut gap, mut left, mut lowest) = (f64::INFINITY, f64::INFINITY, foot);
+            for p in core.corners() {
+                let from = *at + *p - foot;
+                if n.dot(&from) < gap {
+                    (gap, lowest) = (n.dot(&from), *at + *p);
+                }
+                left = left.min(n.dot(&(from + motion.of(p, &foot))));
+            }
+            (gap, left) = (gap - rounding, left - rounding);
+            if gap >= -tolerances.slack && left > room {
+                room = left;
+                *point = ContactPoint {
+                    on_candidate: lowest - n * rounding,
+                    on_antagonist: lowest - n * (rounding + gap),
+                    normal: n,
+                    gap,
+                    facing: false,
+                    ..*point
+                };
+            }
         }
     }
 }
