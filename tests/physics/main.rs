@@ -17,6 +17,8 @@ mod elastic;
 mod extremes;
 mod imposed;
 mod held;
+mod flush;
+mod hollow;
 mod library;
 mod masonry;
 mod midpoint;

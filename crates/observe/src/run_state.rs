@@ -93,7 +93,7 @@ pub struct RunState {
     /// Number of contacts in the last step; none before it.
     contacts: Option<usize>,
     /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance was reached.
-    last: [f64; 4],
+    last: [f64; 5],
 }
 
 impl RunState {
@@ -112,7 +112,7 @@ impl RunState {
             iterations: 0,
             couplings: 0,
             contacts: None,
-            last: [0.0; 4],
+            last: [0.0; 5],
         }
     }
 
@@ -159,6 +159,7 @@ impl<S: Space> Observer<S> for RunState {
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);
         solver.laws.add(&report.agreement);
+        solver.overlap_max = solver.overlap_max.max(report.overlap);
         if let Some(p) = &report.projected {
             solver.projected_steps += 1;
             solver.overlap_before = solver.overlap_before.max(p.before);
@@ -176,6 +177,7 @@ impl<S: Space> Observer<S> for RunState {
             f64::from(report.solver.iterations),
             report.solver.error,
             f64::from(u8::from(report.solver.converged)),
+            report.overlap,
         ];
     }
 
@@ -191,6 +193,11 @@ impl<S: Space> Observer<S> for RunState {
             c("iterations", "", "sweeps of the solver"),
             c("error", "", "error of the solution"),
             c("converged", "", "1 if the tolerance was reached"),
+            c(
+                "overlap",
+                "",
+                "deepest overlap of rigid contacts, over the radius of the smaller grain",
+            ),
             c("bonds_intact", "", "bonds that hold"),
             c("bonds_broken", "", "bonds that broke"),
             c("damage_ratio", "", "broken bonds over bonds made"),

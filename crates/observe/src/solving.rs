@@ -86,6 +86,8 @@ pub struct SolverSummary {
     pub overlap_before: f64,
     /// Largest penetration after a projection, as a fraction of the smaller body's length.
     pub overlap_after: f64,
+    /// Deepest overlap of rigid contacts at a detection, over the radius of the smaller grain.
+    pub overlap_max: f64,
     /// Tolerance.
     pub tolerance: f64,
     /// Formula of the error.

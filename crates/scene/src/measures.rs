@@ -211,7 +211,7 @@ fn check_bodies(case: &Case, layer: &ThirdBodySpec) -> Result<(), ValidationErro
 }
 
 /// Names of columns and figures that every run may have.
-const RESERVED: [&str; 58] = [
+const RESERVED: [&str; 59] = [
     "step",
     "time",
     "cycle",
@@ -221,6 +221,7 @@ const RESERVED: [&str; 58] = [
     "iterations",
     "error",
     "converged",
+    "overlap",
     "bonds_intact",
     "bonds_broken",
     "damage_ratio",

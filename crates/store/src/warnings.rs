@@ -14,7 +14,7 @@ use fretwork_scene::methods::{Demands, Service};
 /// Residual of the energy ledger, and of the account of heat, relative to the largest energy or heat, above which it is not explained by
 /// rounding: ledgers close to 1e-9 and better, also over millions of steps.
 pub const LEDGER: f64 = 1e-6;
-/// Penetration after a projection, as a fraction of the smaller body's length, that is worth a note.
+/// Overlap of rigid contacts, over the radius of the smaller grain, from which they are not where the model says.
 const OVERLAP: f64 = 1e-2;
 /// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
 const LOOSE: f64 = 1e-3;
@@ -120,6 +120,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("IMPOSSIBLE MOTION", summary.impossible_motions.warning());
     serious("TOO FAST", summary.step_size.warning());
     serious("FOUND OVERLAPPING", summary.step_size.sunk_warning());
+    serious("OVERLAP", overlap(summary));
     serious("MOTION LOST", summary.step_size.rounding_warning());
     for body in &summary.small_strain {
         serious("NOT SMALL STRAIN", body.warning());
@@ -273,6 +274,23 @@ fn coarse(summary: &Summary, serious: bool) -> Option<String> {
     let worst = all.max_by(|a, b| a.heat_error.total_cmp(&b.heat_error))?;
     let (reason, text) = worst.warning()?;
     (reason == serious).then_some(text)
+}
+
+/// Rigid bodies that overlap.
+fn overlap(summary: &Summary) -> Option<String> {
+    let solver = &summary.solver;
+    (solver.overlap_max > OVERLAP).then(|| {
+        let left = if solver.overlap_after > OVERLAP {
+            format!(", {:.1e} after they were taken out", solver.overlap_after)
+        } else {
+            String::new()
+        };
+        format!(
+            "rigid bodies overlap by up to {:.1e} of the radius of the smaller one{left}; take a smaller time.step or solver.tolerance, or \
+             take overlaps out by `solver: (projection: 0.005)`",
+            solver.overlap_max
+        )
+    })
 }
 
 /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.
@@ -451,15 +469,6 @@ fn notes(summary: &Summary) -> Vec<Warning> {
             format!(
                 "{several} steps had several solutions, since more contacts carry a load than its balance determines; the one with the smaller kinetic \
                  energy was taken, in which contacts stick where they can; compliant contacts (docs/compliant.md) have one"
-            )
-        }),
-    );
-    let over = summary.solver.overlap_after;
-    note(
-        "OVERLAP",
-        (over > OVERLAP).then(|| {
-            format!(
-                "removing overlaps left up to {over:.1e} of a body's length; take a smaller time.step"
             )
         }),
     );

@@ -3,6 +3,7 @@
 
 #[path = "../../../examples/extremes/bench/mod.rs"]
 pub(crate) mod bench;
+mod pairs;
 mod passing;
 #[path = "../../../examples/extremes/rows/mod.rs"]
 mod rows;

@@ -108,6 +108,14 @@ impl<S: Space> Surface<S> for Drum {
         true
     }
 
+    fn is_hollow(&self) -> bool {
+        true
+    }
+
+    fn distance_gained(&self, from: &S::Vector, to: &S::Vector) -> f64 {
+        self.across::<S>(from).norm() - self.across::<S>(to).norm()
+    }
+
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         let mut axis = S::Vector::zero();
         if S::D == 3 {

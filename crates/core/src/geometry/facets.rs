@@ -1,6 +1,6 @@
 //! Triangles of a surface in 3D, and contact points of a ball on them without ghost contacts at their seams.
 
-use super::shape::ClosestPoint;
+use super::shape::{ClosestPoint, Fan};
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
@@ -173,6 +173,17 @@ pub fn vertices(facets: &[Facet<V>], mut call: impl FnMut(V, V, u32)) {
         let about = facets.iter().filter(|f| f.has(&part));
         let outward = pseudo_normal(about, &part, 1);
         call(at, outward, feature(facets, first, &part, 1));
+    }
+}
+
+/// Adds the facets `within` a distance (m) of a place, with vectors from it to their corners.
+pub fn fan(facets: &[Facet<V>], at: &V, within: f64, out: &mut Fan<V>) {
+    for facet in facets {
+        let [a, b, c] = facet.corners;
+        if (nearest(*at, a, b, c).0 - at).norm() <= within {
+            out.normals.push(facet.normal());
+            out.spokes.extend(facet.corners.iter().map(|x| x - at));
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::facets::{self, Facet};
 use super::recede::{Recede, Shares, Vertex};
-use super::shape::{ClosestPoint, Surface};
+use super::shape::{ClosestPoint, Fan, Surface};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
@@ -146,6 +146,12 @@ impl Surface<Dim3> for HeightField {
                 }
             }
         }
+    }
+
+    fn fan(&self, at: &Vector3<f64>, within: f64, out: &mut Fan<Vector3<f64>>) {
+        let (extent, mut about) = (Vector3::repeat(within), Vec::new());
+        self.facets(&(at - extent), &(at + extent), &mut about);
+        facets::fan(&about, at, within, out);
     }
 
     fn near(&self, centre: &Vector3<f64>, reach: f64) -> bool {

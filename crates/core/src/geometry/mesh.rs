@@ -2,7 +2,7 @@
 
 use super::facets::{self, Facet};
 use super::recede::Recede;
-use super::shape::{ClosestPoint, MovingFacet, Surface, at_vertex};
+use super::shape::{ClosestPoint, Fan, MovingFacet, Surface, at_vertex};
 use super::space::Dim3;
 use super::worn_mesh::Worn;
 use nalgebra::Vector3;
@@ -266,6 +266,12 @@ impl Surface<Dim3> for Mesh {
         let found = self.tree.locate_in_envelope_intersecting(bounds(low, high));
         out.extend(found.map(|p| self.facet(p.data)));
         out[first..].sort_unstable_by_key(|f| f.name);
+    }
+
+    fn fan(&self, at: &V, within: f64, out: &mut Fan<V>) {
+        let (extent, mut about) = (V::repeat(within), Vec::new());
+        self.facets(&(at - extent), &(at + extent), &mut about);
+        facets::fan(&about, at, within, out);
     }
 
     fn near(&self, centre: &V, reach: f64) -> bool {

@@ -2,7 +2,7 @@
 
 use super::boxes::{Boxes, Window};
 use super::recede::{Recede, Shares, Vertex};
-use super::shape::{ClosestPoint, Corner, Surface, at_vertex};
+use super::shape::{ClosestPoint, Corner, Fan, Surface, at_vertex};
 use super::space::Dim2;
 use nalgebra::Vector2;
 
@@ -334,6 +334,22 @@ impl Surface<Dim2> for Polyline {
             true
         });
         out[first..].sort_by_key(|c| c.feature);
+    }
+
+    fn fan(&self, at: &Vector2<f64>, within: f64, out: &mut Fan<Vector2<f64>>) {
+        let (c, _) = self.wrapped(at);
+        self.visit(&Window::around(&c, within), |k, image| {
+            let [a, b] = self.segment(k, image);
+            let along = b - a;
+            let length = along.norm();
+            for (end, other) in [(a, b), (b, a)] {
+                if (end - c).norm() <= within {
+                    out.normals.push(Vector2::new(-along.y, along.x) / length);
+                    out.spokes.push(other - end);
+                }
+            }
+            true
+        });
     }
 
     fn vertices_within(

@@ -104,6 +104,24 @@ pub struct Corner<V> {
     pub feature: u32,
 }
 
+/// The faces around a place of a surface: their normals, and the vectors from the place to their corners (m).
+#[derive(Debug)]
+pub struct Fan<V> {
+    /// Unit normals, to the open side.
+    pub normals: Vec<V>,
+    /// Vectors to corners.
+    pub spokes: Vec<V>,
+}
+
+impl<V> Default for Fan<V> {
+    fn default() -> Self {
+        Self {
+            normals: Vec::new(),
+            spokes: Vec::new(),
+        }
+    }
+}
+
 /// A facet of a surface that deforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingFacet {
@@ -127,6 +145,9 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// their corners there (3D); none for surfaces that only corners of a body can touch: a plane, the
     /// inside of a drum.
     fn facets(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Facet<S::Vector>>) {}
+    /// Finds the faces around a corner or an edge `within` a distance (m) of a place; none within faces in the plane, nor of planes and
+    /// of the insides of drums.
+    fn fan(&self, _at: &S::Vector, _within: f64, _out: &mut Fan<S::Vector>) {}
     /// Returns the outline for figures and files (m): polylines in 2D, polygons in 3D, in the surface's
     /// frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
@@ -147,6 +168,14 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     /// Behind a profile or facets there may be another part of the surface.
     fn any_depth(&self) -> bool {
         false
+    }
+    /// Returns whether it bends towards what touches it, as the inside of a drum does.
+    fn is_hollow(&self) -> bool {
+        false
+    }
+    /// Returns how much farther from a hollow surface the second of two places is than the first (m).
+    fn distance_gained(&self, _from: &S::Vector, _to: &S::Vector) -> f64 {
+        0.0
     }
     /// Returns the surface as a receding one; `None` if it cannot wear.
     fn receding(&self) -> Option<&dyn Recede<S>> {

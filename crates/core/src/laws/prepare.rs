@@ -548,7 +548,8 @@ fn apply_friction<S: Space>(
                 form.shift_n = f64::INFINITY;
             }
         } else if un < 0.0 {
-            form.shift_n = friction.e_n * un;
+            // Where the surface bends towards it, it leaves no slower than along that.
+            form.shift_n = form.shift_n.min(friction.e_n * un);
         }
     }
     if impact && friction.e_t > 0.0 {

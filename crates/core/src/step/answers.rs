@@ -174,6 +174,7 @@ impl<S: Space> Simulation<S> {
         let (before, after_all) = (&self.workspace.solved.before.relative, &after);
         let (forms, problem) = (&self.workspace.forms, &self.workspace.problem);
         let (network, correction) = (&self.state.network, self.options.correction);
+        let swerves = &self.workspace.swerves;
         let Scheme { h, theta } = self.options.scheme;
         let count = network.contacts.len();
         fill(self.divides_contacts(), &mut contact_steps, count, |k| {
@@ -191,12 +192,14 @@ impl<S: Space> Simulation<S> {
             };
             // The shift comes from the position correction unless restitution replaced it; a bounce does no
             // correction work.
-            let lifts = form.shift_n < 0.0
+            let of_gap = shift_of_gap(network, contact, correction, h);
+            let swerve = swerves.get(k).map_or(0.0, |s| s / h);
+            let lifts = of_gap < 0.0
                 && form.compliance[0] == 0.0
                 && n.dot(before) >= form.shift_n
-                && form.shift_n == shift_of_gap(network, contact, correction, h);
+                && form.shift_n == of_gap - swerve;
             let lift = if lifts {
-                -theta * form.shift_n * solution.unilateral_n.max(0.0)
+                -theta * of_gap * solution.unilateral_n.max(0.0)
             } else {
                 0.0
             };

@@ -54,6 +54,7 @@ mod run;
 mod simulation;
 mod sliding;
 mod state;
+mod swerve;
 mod systems;
 mod turning;
 mod workspace;

@@ -137,7 +137,7 @@ impl<S: Space> Simulation<S> {
             self.place_actions();
             self.find_system_contacts();
             self.relative_velocities();
-            self.geometry_of_forms(info.h);
+            self.geometry_of_forms(free, info.h);
             for (form, contact) in self
                 .workspace
                 .forms

@@ -170,7 +170,9 @@ impl<S: Space> Simulation<S> {
     }
 
     /// Computes the geometric part of the forms.
-    pub(super) fn geometry_of_forms(&mut self, h: f64) {
+    pub(super) fn geometry_of_forms(&mut self, free: &[(S::Vector, S::Spin)], h: f64) {
+        self.find_swerves(free, h);
+        let swerves = &self.workspace.swerves;
         let mut forms = std::mem::take(&mut self.workspace.forms);
         let (network, correction) = (&self.state.network, self.options.correction);
         let count = network.contacts.len();
@@ -182,7 +184,8 @@ impl<S: Space> Simulation<S> {
                 arms: contact.levers(),
                 central: contact.central,
                 apart: contact.central && contact.acts != Acts::Surfaces,
-                shift_n: shift_of_gap(network, contact, correction, h),
+                shift_n: shift_of_gap(network, contact, correction, h)
+                    - swerves.get(k).map_or(0.0, |s| s / h),
                 shift_t: S::Tangent::zero(),
                 friction: 0.0,
                 tension: 0.0,

@@ -20,6 +20,7 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
 use crate::solve::error::Norm;
 use crate::solve::{ContactForm, Options, Problem, nlgs};
+use crate::threads::largest;
 
 /// Result of a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +42,8 @@ type Move<S> = (<S as Space>::Vector, <S as Space>::Spin);
 const TOLERANCE: f64 = 1e-3;
 /// Iteration limit: no solution exists where bodies have no room to move apart.
 const MAX_SWEEPS: u32 = 5000;
+/// About what it takes to find how deep a contact is (ns).
+const DEPTH: f64 = 3.0;
 
 impl<S: Space> Simulation<S> {
     /// Refuses projection in a scene with dynamical systems, which it would leave where they are.
@@ -122,7 +125,8 @@ impl<S: Space> Simulation<S> {
         let bodies = &self.state.bodies;
         let grain = bodies.grain_flags();
         let depth = |c: &Contact<S>| {
-            if c.gap >= 0.0 || self.laws[usize::from(c.law)].compliant() {
+            // One that was found on its way has the place where it closes.
+            if c.gap >= 0.0 || c.closing || self.laws[usize::from(c.law)].compliant() {
                 return 0.0;
             }
             let [i, j] = c.bodies.map(|b| b as usize);
@@ -138,12 +142,9 @@ impl<S: Space> Simulation<S> {
             };
             -c.gap / least
         };
-        self.state
-            .network
-            .contacts
-            .iter()
-            .map(depth)
-            .fold(0.0, f64::max)
+        let contacts = &self.state.network.contacts;
+        let parallel = self.options.solver.parallel;
+        largest(parallel, contacts.len(), DEPTH, |k| depth(&contacts[k]))
     }
 
     /// Books the work of displacements against gravity and imposed forces; returns the latter (J).

@@ -40,6 +40,8 @@ pub struct StepReport {
     pub projected: Option<Projected>,
     /// Imposed motions that nothing could obey, if there were any.
     pub impossible: Option<Box<Impossible>>,
+    /// Deepest overlap at detection, after a projection, see [`super::Simulation::deepest_overlap`].
+    pub overlap: f64,
     /// Wall-clock time.
     pub timing: Timing,
 }

@@ -18,6 +18,8 @@ pub(super) struct Workspace<S: Space> {
     pub problem: Problem<S>,
     /// Its contacts in the standard form, in the network's order.
     pub forms: Vec<ContactForm<S>>,
+    /// What the motion closes of each gap beyond its velocity (m), in the same order; empty where nothing does.
+    pub swerves: Vec<f64>,
     /// What the laws of compliant contacts gave, in the same order; empty without one.
     pub springs: Vec<Option<SpringForm<S>>>,
     /// Energy in springs of contacts at the start of the step (J).
@@ -42,6 +44,7 @@ impl<S: Space> Default for Workspace<S> {
             evaluator: LawEvaluator::default(),
             problem: Problem::default(),
             forms: Vec::new(),
+            swerves: Vec::new(),
             springs: Vec::new(),
             spring_energy: 0.0,
             moments: Vec::new(),

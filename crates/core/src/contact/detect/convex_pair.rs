@@ -4,6 +4,9 @@ use super::narrow::{Narrow, Scratch};
 use super::renewal::{Found, Touch};
 use super::{SLACK, held};
 use crate::contact::network::{Contact, ContactGeometry, Key};
+use crate::geometry::convex::passing::{
+    PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
+};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -42,6 +45,21 @@ impl<S: Space> Narrow<'_, S> {
                 self.create_contacts(&pair, scratch, found);
             }
             _ => found.drop_others(|_| false),
+        }
+    }
+
+    /// Relative motion of a pair with these centres (m) in a step, at the velocities at its start.
+    fn motion(&self, bodies: [u32; 2], centres: [S::Vector; 2]) -> PairMotion<S> {
+        let of = |side: usize| {
+            let b = bodies[side] as usize;
+            let arm = centres[side] - self.bodies.position[b];
+            let (v, w) = (self.bodies.velocity[b], self.bodies.spin[b]);
+            ((v + S::spin_velocity(&w, &arm)) * self.h, w * self.h)
+        };
+        let ((shift, turn), (shift_other, turn_other)) = (of(0), of(1));
+        PairMotion {
+            shift: shift - shift_other,
+            turns: [turn, turn_other],
         }
     }
 
@@ -103,6 +121,16 @@ impl<S: Space> Narrow<'_, S> {
                 tolerances,
                 out,
             );
+            if !(out.is_empty() || tolerances.held || surface.shape.deforms()) {
+                let bodies = [piece.body, surface.body];
+                let motion = self.motion(bodies, [self.centres[balls + k], origin]);
+                let motion = motion.seen_from(&rotation);
+                let rounding = piece.rounding;
+                let surface = surface.shape.as_ref();
+                keep_apart_from_surface::<S>(
+                    core, surface, &place, rounding, tolerances, &motion, out,
+                );
+            }
             for m in out.iter_mut() {
                 m.normal = S::rotate(&rotation, &m.normal);
                 m.on_candidate = S::rotate(&rotation, &m.on_candidate);
@@ -128,8 +156,13 @@ impl<S: Space> Narrow<'_, S> {
             let ball = &self.shapes.balls[a as usize];
             own_centre = self.centres[a as usize];
             apart = self.shapes.periodic.shortest(own_centre - centre);
-            let meeting =
-                self.cores[k].contact_point_with_ball(&apart, ball.radius, other.rounding);
+            let core = &self.cores[k];
+            let mut meeting = core.contact_point_with_ball(&apart, ball.radius, other.rounding);
+            if meeting.gap > 0.0 && !tolerances.held {
+                let sizes = [ball.radius, other.rounding];
+                let motion = self.motion([ball.body, other.body], [own_centre, centre]);
+                keep_ball_apart::<S>(core, &apart, sizes, tolerances, &motion, &mut meeting);
+            }
             if meeting.gap <= tolerances.reach {
                 out.push(meeting);
             }
@@ -142,8 +175,13 @@ impl<S: Space> Narrow<'_, S> {
             own_centre = self.centres[balls + at(a)];
             apart = self.shapes.periodic.shortest(own_centre - centre);
             let roundings = [piece.rounding, other.rounding];
-            self.cores[at(a)].contact_points(&self.cores[k], &apart, roundings, tolerances, out);
+            let cores = [&self.cores[at(a)], &self.cores[k]];
+            cores[0].contact_points(cores[1], &apart, roundings, tolerances, out);
             bodies = [piece.body, other.body];
+            if !(out.is_empty() || tolerances.held) {
+                let motion = self.motion(bodies, [own_centre, centre]);
+                keep_apart::<S>(cores, &apart, roundings, tolerances, &motion, out);
+            }
             law = self.laws.get(piece.material, other.material)?;
             radius = piece.size * other.size / (piece.size + other.size);
         }

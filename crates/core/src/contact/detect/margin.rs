@@ -11,6 +11,9 @@ const PASSED: f64 = 0.25;
 /// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on its normal may turn over.
 const PASSED_SPRING: f64 = 1.0;
 
+/// Largest penetration that is accepted in addition to a known overlap, as a fraction of the further penetration that is seen.
+const SEEN: f64 = 0.5;
+
 /// Stage of the step at which pairs are examined.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Stage {
@@ -57,5 +60,10 @@ pub(super) fn margin<S: Space>(
         Stage::Report if any && compliant => PASSED_SPRING * pair.half_thickness + overlap,
         Stage::Report => PASSED * pair.half_thickness + overlap,
     };
-    Some(Margin { deepest, begins })
+    // Deeper than a surface sees a penetration would not be found.
+    let limit = overlap + SEEN * (pair.seen - overlap).max(0.0);
+    Some(Margin {
+        deepest: deepest.min(limit),
+        begins: begins.min(limit),
+    })
 }

@@ -8,7 +8,7 @@
 use super::extents::Extents;
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key};
-use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core};
+use crate::geometry::convex::{ContactPoint, ContactTolerances, ConvexCollider, Core, DEEP};
 use crate::geometry::shape::{Ball, Carried, ClosestPoint, Shapes, reduced_radius};
 use crate::geometry::space::{Space, VectorLike};
 
@@ -122,8 +122,8 @@ pub(super) struct Pair<'a, S: Space> {
     image: S::Vector,
     /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
-    /// Length of which the smallest increment of the motion is [`STRIDE`] (m).
-    part: f64,
+    /// Penetration up to which a surface sees the other shape (m): behind it there may be another part of it.
+    pub seen: f64,
     /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
 }
@@ -143,10 +143,14 @@ impl<'a, S: Space> Pair<'a, S> {
     }
 }
 
-/// Smallest increment of the motion, as a fraction of the half thickness or, of points, the alert distance.
+/// Smallest increment of the motion, as a fraction of the half thickness.
 const STRIDE: f64 = 0.25;
+/// The same, as a fraction of the penetration that remains to be seen.
+const SEEN: f64 = 0.5;
 /// Maximum number of evaluations per pair and step.
 const MAX_INSTANTS: usize = 2000;
+/// The least of these increments, as a fraction of the penetration that is seen.
+const LEAST: f64 = 0.01;
 /// Accuracy of the time of a meeting, as a displacement relative to the half thickness.
 const EXACT: f64 = 1e-3;
 
@@ -218,25 +222,40 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
         let half = |k: usize| shapes[k].half_thickness();
         let half_thickness = half(0).min(half(1));
-        let mut part = half_thickness;
-        // A point is not seen behind an open surface by more than the alert distance, but behind a plane at any depth: it is followed
-        // in smaller parts.
-        if let (Shape::Ball(ball, _), Shape::Surface(surface)) = (&shapes[0], &shapes[1])
-            && ball.radius == 0.0
-            && !surface.shape.is_closed()
-            && surface.shape.flat().is_none()
-        {
-            part = part.min(self.alert);
-        }
+        let seen = match &shapes[1] {
+            Shape::Surface(surface) if !surface.shape.any_depth() => {
+                self.seen(&shapes[0], surface, half_thickness)
+            }
+            _ => f64::INFINITY,
+        };
         Pair {
             names,
             approach,
             turning,
             image,
             half_thickness,
-            part,
+            seen,
             travel: self.h * (approach.norm() + turning),
             shapes,
+        }
+    }
+
+    /// Penetration up to which the narrow phase finds contact points of a shape with a surface (m).
+    fn seen(&self, shape: &Shape<S>, surface: &Carried<S>, half_thickness: f64) -> f64 {
+        match shape {
+            Shape::Ball(ball, _) => 2.0 * ball.radius + self.reach(surface, half_thickness),
+            Shape::ConvexCollider(piece, _) => DEEP * piece.bound + piece.rounding,
+            Shape::Surface(_) => f64::INFINITY,
+        }
+    }
+
+    /// Distance at which contact points with a surface are searched (m). What passed through a grain is behind its surface by more
+    /// than the alert distance.
+    fn reach(&self, surface: &Carried<S>, half_thickness: f64) -> f64 {
+        if surface.shape.is_closed() {
+            self.alert.max(half_thickness)
+        } else {
+            self.alert
         }
     }
 
@@ -245,7 +264,10 @@ impl<'a, S: Space> Sweep<'a, S> {
         if !pair.travel.is_finite() {
             return Course::Lost;
         }
-        let (travel, part) = (pair.travel, pair.part);
+        let travel = pair.travel;
+        // None is longer than half of the penetration in which the pair is both beyond the margin and seen.
+        let left_to_see = SEEN * (pair.seen - margin).max(0.0);
+        let stride = (STRIDE * pair.half_thickness).min(left_to_see.max(LEAST * pair.seen));
         let (mut before, mut s) = (0.0, 0.0);
         for _ in 0..MAX_INSTANTS {
             let left = (1.0 - s) * travel;
@@ -265,7 +287,7 @@ impl<'a, S: Space> Sweep<'a, S> {
                 return Course::Clear;
             }
             before = s;
-            s = (s + (room / (self.h * closing)).max(STRIDE * part / travel)).min(1.0);
+            s = (s + (room / (self.h * closing)).max(stride / travel)).min(1.0);
         }
         Course::Lost
     }
@@ -312,9 +334,7 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
         let mut met = Vec::new();
         let reach = match pair.shapes[1] {
-            // What passed through a grain is behind its surface by more than the alert distance.
-            Shape::Surface(s) if s.shape.is_closed() => self.alert.max(pair.half_thickness),
-            Shape::Surface(_) => self.alert,
+            Shape::Surface(surface) => self.reach(surface, pair.half_thickness),
             _ => f64::INFINITY,
         };
         let poses = [one, other];

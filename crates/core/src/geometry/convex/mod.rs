@@ -5,6 +5,7 @@
 
 mod boundary;
 pub mod mass;
+pub mod passing;
 pub mod polygon;
 pub mod polygon_pair;
 pub mod polygon_surface;
@@ -20,6 +21,7 @@ mod polyhedron_tests;
 mod topology;
 
 pub use boundary::Boundary;
+pub use passing::PairFace;
 
 use super::shape::Surface;
 use super::space::{Space, VectorLike};
@@ -172,6 +174,26 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
             facing: true,
         }
     }
+
+    /// Returns its corners (m).
+    fn corners(&self) -> &[S::Vector];
+
+    /// Returns the outward unit normals of its faces.
+    fn normals(&self) -> &[S::Vector];
+
+    /// Returns a corner of a face (m).
+    fn corner_of(&self, face: usize) -> S::Vector;
+
+    /// Finds the points of a pair, as in [`Core::contact_points`], that touch the plane of a face of one of the two.
+    fn points_on_face(
+        &self,
+        other: &Self,
+        apart: &S::Vector,
+        roundings: [f64; 2],
+        tolerances: &ContactTolerances,
+        face: PairFace,
+        out: &mut Vec<ContactPoint<S::Vector>>,
+    );
 
     /// The name that a feature of a pair of cores has where the antagonist is taken for the candidate.
     fn feature_from_other_side(feature: u64) -> u64;

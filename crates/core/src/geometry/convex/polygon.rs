@@ -1,7 +1,7 @@
 //! Convex polygons in 2D.
 
 use super::{
-    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, mass, polygon_pair,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, mass, polygon_pair,
     polygon_surface,
 };
 use crate::geometry::shape::Surface;
@@ -287,6 +287,30 @@ impl Core<Dim2> for Polygon {
         out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
         polygon_pair::contact_points(self, other, apart, roundings, tolerances, out);
+    }
+
+    fn corners(&self) -> &[Vector2<f64>] {
+        &self.points
+    }
+
+    fn normals(&self) -> &[Vector2<f64>] {
+        &self.normals
+    }
+
+    fn corner_of(&self, face: usize) -> Vector2<f64> {
+        self.points[face]
+    }
+
+    fn points_on_face(
+        &self,
+        other: &Self,
+        apart: &Vector2<f64>,
+        roundings: [f64; 2],
+        tolerances: &ContactTolerances,
+        face: PairFace,
+        out: &mut Vec<ContactPoint<Vector2<f64>>>,
+    ) {
+        polygon_pair::points_on_side(self, other, apart, roundings, tolerances, face, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {

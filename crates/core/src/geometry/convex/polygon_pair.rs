@@ -7,7 +7,7 @@
 //! that the names do not change when the two sides exchange roles.
 
 use super::polygon::Polygon;
-use super::{ContactPoint, ContactTolerances};
+use super::{ContactPoint, ContactTolerances, PairFace};
 use nalgebra::Vector2;
 
 type V = Vector2<f64>;
@@ -64,11 +64,29 @@ pub fn contact_points(
             return;
         }
     }
+    let face = PairFace {
+        of_candidate: a_leads,
+        face: if a_leads { side_a } else { side_b },
+    };
+    points_on_side(a, b, apart, roundings, tolerances, face, out);
+}
+
+/// Finds the points of a pair that touch the line of a side of one of the two: the opposite side clipped to it.
+pub fn points_on_side(
+    a: &Polygon,
+    b: &Polygon,
+    apart: &V,
+    roundings: [f64; 2],
+    tolerances: &ContactTolerances,
+    face: PairFace,
+    out: &mut Vec<ContactPoint<V>>,
+) {
+    let (a_leads, side) = (face.of_candidate, face.face);
     let first = out.len();
-    let (lead, other, side, at_lead, at_other) = if a_leads {
-        (a, b, side_a, *apart, V::zeros())
+    let (lead, other, at_lead, at_other) = if a_leads {
+        (a, b, *apart, V::zeros())
     } else {
-        (b, a, side_b, V::zeros(), *apart)
+        (b, a, V::zeros(), *apart)
     };
     let (lead_rounding, other_rounding) = if a_leads {
         (roundings[0], roundings[1])

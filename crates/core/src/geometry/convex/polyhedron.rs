@@ -3,8 +3,8 @@
 pub use super::polyhedron_hull::{PolyhedronError, normal};
 pub use super::topology::{Edge, MAX_EDGES, Topology};
 use super::{
-    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, polyhedron_mass, polyhedron_pair,
-    polyhedron_surface,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, polyhedron_mass,
+    polyhedron_pair, polyhedron_surface,
 };
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Dim3, Space};
@@ -192,6 +192,30 @@ impl Core<Dim3> for Polyhedron {
         out: &mut Vec<ContactPoint<V>>,
     ) {
         polyhedron_pair::contact_points(self, other, apart, roundings, tolerances, out);
+    }
+
+    fn corners(&self) -> &[V] {
+        &self.points
+    }
+
+    fn normals(&self) -> &[V] {
+        &self.normals
+    }
+
+    fn corner_of(&self, face: usize) -> V {
+        self.points[self.topology.faces[face][0] as usize]
+    }
+
+    fn points_on_face(
+        &self,
+        other: &Self,
+        apart: &V,
+        roundings: [f64; 2],
+        tolerances: &ContactTolerances,
+        face: PairFace,
+        out: &mut Vec<ContactPoint<V>>,
+    ) {
+        polyhedron_pair::points_on_face(self, other, apart, roundings, tolerances, face, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {

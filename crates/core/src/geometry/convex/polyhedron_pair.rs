@@ -11,7 +11,7 @@
 
 use super::polyhedron::{Polyhedron, across};
 use super::polyhedron_clip::{self, Lead, name};
-use super::{ContactPoint, ContactTolerances};
+use super::{ContactPoint, ContactTolerances, PairFace};
 use nalgebra::Vector3;
 
 type V = Vector3<f64>;
@@ -61,6 +61,53 @@ pub fn contact_points(
             out,
         ),
     }
+}
+
+/// Finds the points of a pair that touch the plane of a face of one of the two: those of the opposite face above it, or its lowest corner.
+pub fn points_on_face(
+    a: &Polyhedron,
+    b: &Polyhedron,
+    apart: &V,
+    roundings: [f64; 2],
+    tolerances: &ContactTolerances,
+    PairFace { of_candidate, face }: PairFace,
+    out: &mut Vec<ContactPoint<V>>,
+) {
+    let pair = Pair {
+        a,
+        b,
+        apart: *apart,
+        roundings,
+    };
+    let (own, other, apart) = if of_candidate {
+        (a, b, -apart)
+    } else {
+        (b, a, *apart)
+    };
+    let lead = Lead {
+        own,
+        other,
+        face,
+        apart,
+        of_candidate,
+    };
+    let mut points = polyhedron_clip::clip(&lead, tolerances.slack);
+    if points.is_empty() {
+        let normal = own.normals()[face];
+        let corner = other.lowest(&normal);
+        let at = other.points()[corner] + apart;
+        points.push(polyhedron_clip::Point {
+            at,
+            height: (at - own.points()[own.topology().faces[face][0] as usize]).dot(&normal),
+            normal,
+            feature: name::corner(corner, !of_candidate),
+            share: 0.0,
+            facing: false,
+        });
+    }
+    let first = out.len();
+    pair.face(&points, of_candidate, tolerances, out);
+    out[first..].sort_by_key(|m| m.feature);
 }
 
 /// The face with the greatest separation, and the opposite face clipped to its sides.

@@ -1,0 +1,284 @@
+//! Convex bodies that pass each other closer than they move in a step.
+//!
+//! The direction between two corners is the normal of the gap at hand, not of the one at the end of the step: kept from closing along
+//! it, a body would be stopped by what it passes, and a box that slides over flush boxes by the side of the next one. Every plane that
+//! has the bodies on its two sides keeps them apart. Where the nearest points would close within the step, the plane of the face that
+//! leaves most room at its end takes their place: the axis along which the bodies stay separate the longest.
+
+use super::{ContactPoint, ContactTolerances, Core};
+use crate::geometry::shape::{Fan, Surface};
+use crate::geometry::space::{Space, VectorLike};
+
+/// Room that a plane must leave more than the nearest points do, and depth of a closing that matters, as a fraction of the slack.
+const ALIKE: f64 = 1e-3;
+
+/// Share of a distance by which a place may be in front of a plane to count as behind it.
+const BEHIND: f64 = 1e-9;
+
+/// Relative motion of a pair in a step, to first order.
+#[derive(Clone, Copy, Debug)]
+pub struct PairMotion<S: Space> {
+    /// Displacement of the candidate's centre relative to that of the antagonist (m).
+    pub shift: S::Vector,
+    /// Rotations of candidate and antagonist (rad).
+    pub turns: [S::Spin; 2],
+}
+
+impl<S: Space> PairMotion<S> {
+    /// The motion in the axes of a frame.
+    #[must_use]
+    pub fn seen_from(&self, rotation: &S::Rotation) -> Self {
+        Self {
+            shift: S::unrotate(rotation, &self.shift),
+            turns: self.turns.map(|turn| S::unrotate_spin(rotation, &turn)),
+        }
+    }
+
+    /// Displacement of a point of the candidate relative to one of the antagonist, each from its centre (m).
+    fn of(&self, on_candidate: &S::Vector, on_antagonist: &S::Vector) -> S::Vector {
+        let [turn, other] = &self.turns;
+        self.shift + S::spin_velocity(turn, on_candidate) - S::spin_velocity(other, on_antagonist)
+    }
+
+    /// Gap that is left at a point at the end of the step (m), and by how much it changes.
+    fn left(&self, point: &ContactPoint<S::Vector>, apart: &S::Vector) -> [f64; 2] {
+        let moved = self.of(&(point.on_candidate - *apart), &point.on_antagonist);
+        let change = point.normal.dot(&moved);
+        [point.gap + change, change]
+    }
+}
+
+/// A face of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PairFace {
+    /// Whether it is one of the candidate.
+    pub of_candidate: bool,
+    /// Its index.
+    pub face: usize,
+}
+
+/// The pair, its centres apart (m).
+struct Pair<'a, S: Space> {
+    cores: [&'a S::Core; 2],
+    apart: S::Vector,
+    roundings: [f64; 2],
+    motion: &'a PairMotion<S>,
+}
+
+/// A direction from the antagonist to the candidate along which they are separate.
+struct Plane<V> {
+    normal: V,
+    /// Gap along it now and at the end of the step (m).
+    gap: f64,
+    left: f64,
+    /// The face that it belongs to.
+    face: Option<PairFace>,
+    /// The point of the candidate that is lowest along it, from the antagonist's centre, without its rounding (m).
+    lowest: V,
+}
+
+impl<S: Space> Pair<'_, S> {
+    /// The plane across a direction.
+    fn across(&self, normal: S::Vector, face: Option<PairFace>) -> Plane<S::Vector> {
+        let [a, b] = self.cores;
+        let [turn, other] = &self.motion.turns;
+        let mut plane = Plane {
+            normal,
+            gap: f64::INFINITY,
+            left: f64::INFINITY,
+            face,
+            lowest: self.apart,
+        };
+        for p in a.corners() {
+            let now = *p + self.apart;
+            let end = now + self.motion.shift + S::spin_velocity(turn, p);
+            if normal.dot(&now) < plane.gap {
+                (plane.gap, plane.lowest) = (normal.dot(&now), now);
+            }
+            plane.left = plane.left.min(normal.dot(&end));
+        }
+        let mut top = [f64::NEG_INFINITY; 2];
+        for q in b.corners() {
+            let end = *q + S::spin_velocity(other, q);
+            top = [top[0].max(normal.dot(q)), top[1].max(normal.dot(&end))];
+        }
+        let thickness = self.roundings[0] + self.roundings[1];
+        plane.gap -= top[0] + thickness;
+        plane.left -= top[1] + thickness;
+        plane
+    }
+}
+
+/// Puts points on a plane that keeps a pair apart in place of those that close in the step although the pair passes; `apart` and
+/// `roundings` as in [`Core::contact_points`].
+pub fn keep_apart<S: Space>(
+    cores: [&S::Core; 2],
+    apart: &S::Vector,
+    roundings: [f64; 2],
+    tolerances: &ContactTolerances,
+    motion: &PairMotion<S>,
+    out: &mut Vec<ContactPoint<S::Vector>>,
+) {
+    let alike = ALIKE * tolerances.slack;
+    let mut closing: Option<(f64, ContactPoint<S::Vector>)> = None;
+    for m in out.iter() {
+        let [left, change] = motion.left(m, apart);
+        if change < -alike && left < -alike && closing.is_none_or(|c| left < c.0) {
+            closing = Some((left, *m));
+        }
+    }
+    let Some((least, nearest)) = closing else {
+        return;
+    };
+    let pair = Pair::<S> {
+        cores,
+        apart: *apart,
+        roundings,
+        motion,
+    };
+    let mut best: Option<Plane<S::Vector>> = None;
+    let mut consider = |plane: Plane<S::Vector>| {
+        let room = best.as_ref().map_or(least + alike, |b| b.left);
+        if plane.gap >= -tolerances.slack && plane.left > room {
+            best = Some(plane);
+        }
+    };
+    for of_candidate in [true, false] {
+        let own = cores[usize::from(!of_candidate)];
+        for (face, n) in own.normals().iter().enumerate() {
+            let outward = if of_candidate { *n * -1.0 } else { *n };
+            consider(pair.across(outward, Some(PairFace { of_candidate, face })));
+        }
+    }
+    let thickness = roundings[0] + roundings[1];
+    if let Some(beside) = beside::<S>(&nearest, thickness, apart, motion) {
+        consider(pair.across(beside, None));
+    }
+    let Some(plane) = best else {
+        return;
+    };
+    out.clear();
+    if let Some(face) = plane.face {
+        cores[0].points_on_face(cores[1], apart, roundings, tolerances, face, out);
+        return;
+    }
+    let n = plane.normal;
+    out.push(ContactPoint {
+        on_candidate: plane.lowest - n * roundings[0],
+        on_antagonist: plane.lowest - n * (roundings[0] + plane.gap),
+        normal: n,
+        gap: plane.gap,
+        share: 0.0,
+        facing: false,
+        ..nearest
+    });
+}
+
+/// The direction across the motion of the nearest points on which the candidate passes.
+fn beside<S: Space>(
+    nearest: &ContactPoint<S::Vector>,
+    thickness: f64,
+    apart: &S::Vector,
+    motion: &PairMotion<S>,
+) -> Option<S::Vector> {
+    let way = nearest.normal * (nearest.gap + thickness);
+    let moved = motion.of(&(nearest.on_candidate - *apart), &nearest.on_antagonist);
+    let along = way.dot(&moved) / moved.dot(&moved);
+    let across = way - moved * along;
+    let length = across.norm();
+    // What is of rounding has no direction.
+    (length > ALIKE * way.norm()).then(|| across * (1.0 / length))
+}
+
+/// The same for a ball, the candidate, and a convex core.
+pub fn keep_ball_apart<S: Space>(
+    core: &S::Core,
+    apart: &S::Vector,
+    [radius, rounding]: [f64; 2],
+    tolerances: &ContactTolerances,
+    motion: &PairMotion<S>,
+    point: &mut ContactPoint<S::Vector>,
+) {
+    let alike = ALIKE * tolerances.slack;
+    let [least, change] = motion.left(point, apart);
+    if change >= -alike || least >= -alike {
+        return;
+    }
+    let beside = beside::<S>(point, radius + rounding, apart, motion);
+    let mut room = least + alike;
+    for n in core.normals().iter().copied().chain(beside) {
+        let top = core
+            .corners()
+            .iter()
+            .map(|c| c.dot(&n))
+            .fold(f64::NEG_INFINITY, f64::max);
+        let gap = n.dot(apart) - top - radius - rounding;
+        let plane = ContactPoint {
+            on_candidate: *apart - n * radius,
+            on_antagonist: *apart - n * (radius + gap),
+            normal: n,
+            gap,
+            // The core is beside the ball.
+            facing: false,
+            ..*point
+        };
+        let [left, _] = motion.left(&plane, apart);
+        if gap >= -tolerances.slack && left > room {
+            (room, *point) = (left, plane);
+        }
+    }
+}
+
+/// The same for a core at `at` in the frame of a surface, whose points it passes: a plane keeps it apart from the faces around a
+/// point, if they lie behind it.
+pub fn keep_apart_from_surface<S: Space>(
+    core: &S::Core,
+    surface: &dyn Surface<S>,
+    at: &S::Vector,
+    rounding: f64,
+    tolerances: &ContactTolerances,
+    motion: &PairMotion<S>,
+    out: &mut [ContactPoint<S::Vector>],
+) {
+    let alike = ALIKE * tolerances.slack;
+    let mut fan = Fan::default();
+    for point in out {
+        let [least, change] = motion.left(point, at);
+        if change >= -alike || least >= -alike {
+            continue;
+        }
+        fan.normals.clear();
+        fan.spokes.clear();
+        surface.fan(&point.on_antagonist, alike, &mut fan);
+        let beside = beside::<S>(point, rounding, at, motion);
+        let own = core.normals().iter().map(|n| -*n);
+        let foot = point.on_antagonist;
+        let mut room = least + alike;
+        for n in fan.normals.iter().copied().chain(own).chain(beside) {
+            let rises = |spoke: &S::Vector| spoke.dot(&n) > BEHIND * spoke.norm() + alike;
+            if fan.spokes.is_empty() || fan.spokes.iter().any(rises) {
+                continue;
+            }
+            let (mut gap, mut left, mut lowest) = (f64::INFINITY, f64::INFINITY, foot);
+            for p in core.corners() {
+                let from = *at + *p - foot;
+                if n.dot(&from) < gap {
+                    (gap, lowest) = (n.dot(&from), *at + *p);
+                }
+                left = left.min(n.dot(&(from + motion.of(p, &foot))));
+            }
+            (gap, left) = (gap - rounding, left - rounding);
+            if gap >= -tolerances.slack && left > room {
+                room = left;
+                *point = ContactPoint {
+                    on_candidate: lowest - n * rounding,
+                    on_antagonist: lowest - n * (rounding + gap),
+                    normal: n,
+                    gap,
+                    facing: false,
+                    ..*point
+                };
+            }
+        }
+    }
+}

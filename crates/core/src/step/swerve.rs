@@ -1,0 +1,113 @@
+//! What a gap closes in a step beyond its velocity: bodies move on straight lines, while a hollow surface bends towards them, and walls
+//! that turn carry what rests on them round.
+//!
+//! A velocity along the tangent plane leaves a circle of radius R by (h u)^2/(2 R) in each step, and since u_n >= 0 is all that is asked of
+//! what overlaps, these sum up. The contact is therefore asked for the velocity that leaves no gap closed at the end of the step,
+//! h u_n + g >= s. A body that follows the surface then turns round from u_n = -s/h to +s/h at each step, and keeps its energy.
+//! Surfaces that bend away need nothing: their gap opens, and closes in the next step.
+
+use super::Simulation;
+use crate::contact::{Contact, Key};
+use crate::geometry::space::{Space, VectorLike};
+
+/// Velocity and spin of a body.
+type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
+
+impl<S: Space> Simulation<S> {
+    /// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the velocities without contacts; leaves the
+    /// list empty where nothing is hollow and no driven body turns.
+    pub(super) fn find_swerves(&mut self, free: &[Motion<S>], h: f64) {
+        let mut swerves = std::mem::take(&mut self.workspace.swerves);
+        swerves.clear();
+        let hollow = self.shapes.surfaces.iter().any(|s| s.shape.is_hollow());
+        let driven = self.state.bodies.driven.iter().map(|d| d.body as usize);
+        let mut turning: Vec<usize> = driven.filter(|b| free[*b].1 != S::Spin::zero()).collect();
+        turning.sort_unstable();
+        if hollow || !turning.is_empty() {
+            let turns = |b: u32| turning.binary_search(&(b as usize)).is_ok();
+            let contacts = self.state.network.contacts.iter();
+            swerves.extend(contacts.map(|c| {
+                let bends = hollow && self.is_on_hollow(c);
+                if bends || c.bodies.into_iter().any(turns) {
+                    self.swerve(c, free, h)
+                } else {
+                    0.0
+                }
+            }));
+        }
+        self.workspace.swerves = swerves;
+    }
+
+    fn is_on_hollow(&self, contact: &Contact<S>) -> bool {
+        let surface = contact.key.surface();
+        surface.is_some_and(|s| self.shapes.surfaces[s].shape.is_hollow())
+    }
+
+    fn swerve(&self, contact: &Contact<S>, free: &[Motion<S>], h: f64) -> f64 {
+        let network = &self.state.network;
+        // A spring pushes out what it lets in, a bond holds what it joins; a contact found on the way has the place where it closes.
+        let held = network.bond(contact).is_some_and(|b| b.intact());
+        if contact.closing || held || self.laws[usize::from(contact.law)].compliant() {
+            return 0.0;
+        }
+        let [one, other] = contact.arms;
+        let n = contact.normal;
+        let rise = self.rise(contact, [0, 1], [one, other + n * contact.gap], n, free, h);
+        let both_flat = contact.key.candidate & Key::PIECE != 0 && contact.key.surface().is_none();
+        let rise = if both_flat {
+            // Either side may be the face that turns.
+            let place = one - n * contact.gap;
+            rise.min(self.rise(contact, [1, 0], [other, place], -n, free, h))
+        } else {
+            rise
+        };
+        (-rise).max(0.0)
+    }
+
+    /// How much a point of a body rises along the tangent plane of the other by moving along it (m). `arm` is from the body's centre to
+    /// the point, `place` from that of the other.
+    fn rise(
+        &self,
+        contact: &Contact<S>,
+        sides: [usize; 2],
+        [arm, place]: [S::Vector; 2],
+        n: S::Vector,
+        free: &[Motion<S>],
+        h: f64,
+    ) -> f64 {
+        let bodies = &self.state.bodies;
+        let [i, j] = sides.map(|side| contact.bodies[side] as usize);
+        // Contacts change the motion along the surface little; loads without them may change it much.
+        let motion = |b: usize| {
+            if bodies.immovable(b) {
+                free[b]
+            } else {
+                (bodies.velocity[b], bodies.spin[b])
+            }
+        };
+        let ((v, w), (v_other, w_other)) = (motion(i), motion(j));
+        let ball = contact.key.ball().filter(|_| sides[0] == 0);
+        let radius = ball.map_or(0.0, |k| self.shapes.balls[k].radius);
+        // Of a ball its centre stays opposite to the surface, of others the point that touches.
+        let (arm, place) = (arm + n * radius, place + n * radius);
+        let turn = |w: S::Spin, x: &S::Vector| S::rotate(&S::turned(&S::identity(), &(w * h)), x);
+        let back = |w: S::Spin, x: &S::Vector| S::unrotate(&S::turned(&S::identity(), &(w * h)), x);
+        let linear = v + S::spin_velocity(&w, &arm) - v_other - S::spin_velocity(&w_other, &place);
+        let moved = (v - v_other) * h + turn(w, &arm) - arm - n * (h * n.dot(&linear));
+        let after = back(w_other, &(place + moved));
+        let surface = contact.key.surface().map(|k| &self.shapes.surfaces[k]);
+        if let Some(surface) = surface.filter(|s| s.shape.is_hollow()) {
+            let local = |x: &S::Vector| S::unrotate(&bodies.rotation[j], x) - surface.offset;
+            return surface
+                .shape
+                .distance_gained(&local(&place), &local(&after));
+        }
+        match contact.key.antagonist_ball() {
+            Some(k) if ball.is_some() => {
+                let centre = contact.arms[1] - n * self.shapes.balls[k].radius;
+                (after - centre).norm() - (place - centre).norm()
+            }
+            _ => n.dot(&(after - place)),
+        }
+    }
+}
