@@ -24,8 +24,8 @@
 mod action;
 mod agreement;
 mod answers;
-mod balance;
 mod attraction;
+mod balance;
 mod change;
 mod columns;
 mod compiled;

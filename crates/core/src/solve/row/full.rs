@@ -247,7 +247,7 @@ impl<S: Space> Row<S> for FullRow<S> {
     }
 
     fn yields(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
-        let (un, ut) = relative(&self.n, a, b);
+        let (un, ut) = self.relative(a, b);
         let (en, et) = self.bond(un, ut);
         let (sn, st) = (self.pn - en, self.pt - et);
         self.bond_n.compliance * sn * sn + self.bond_t.compliance * st.dot(&st)
