@@ -67,6 +67,7 @@ fn contact<S: Space>(pair: usize, answer: Answer, central: bool) -> ContactForm<
         normal,
         arms: [lever - normal, lever + normal],
         central,
+        apart: false,
         shift_n: if cohesive { 2.0 } else { 0.3 * wave(pair, 2.0) },
         shift_t: if sprung {
             aside(6.0) * 0.2
