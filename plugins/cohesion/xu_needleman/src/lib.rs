@@ -248,7 +248,7 @@ mod tests {
                 "{x}: {stiffness} {slope}"
             );
         }
-        for near in [1e-3 - 1e-9, 1e-3 + 1e-9] {
+        for near in [1e-3 - 1e-9, 1e-3 + 1e-9_f64] {
             let exact = near * near * (0.5 - near / 3.0 + near * near / 4.0 - near.powi(3) / 5.0);
             assert!((above_log(near) / exact - 1.0).abs() < 1e-9);
         }
