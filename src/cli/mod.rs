@@ -80,7 +80,7 @@ enum Command {
     /// Run a case at many points of its factors, here or by another engine, and gather one table
     #[command(
         subcommand,
-        after_help = "Exit code: 0 done, also where runs failed (the table says which), 1 interrupted, or a run left no result, 2 wrong input.\n\nExample:\n  fretwork study run studies/friction_of_grains.ron --jobs 2\n\ndocs/study.md says what a study is made of and how to run it on a cluster."
+        after_help = "Exit code: 0 done, also where runs failed (the table says which), 1 interrupted, or a run left no result, 2 wrong input.\n\nExample:\n  fretwork study run studies/friction_against_grain_friction.ron --jobs 2\n\ndocs/study.md says what a study is made of and how to run it on a cluster."
     )]
     Study(study::StudyCommand),
     /// Find parameters of a case for which its runs give measured curves, with intervals

@@ -351,14 +351,15 @@ fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
     sheet(plan, &table, &analysis)
         .write(&page)
         .map_err(|e| failed(&e))?;
-    if !draw(plan, &analysis, &picture).map_err(|e| failed(&e))? {
+    let drawn = draw(plan, &analysis, &picture).map_err(|e| failed(&e))?;
+    if !drawn {
         // A picture of an earlier state would be mistaken for one of this.
         let _ = std::fs::remove_file(&picture);
     }
     if json {
         return answer_json(&answers::json(plan, &table));
     }
-    answer(&answers::collected(plan, &table))
+    answer(&answers::collected(plan, &table, drawn))
 }
 
 /// Number of runs in the folder that are no points of the study by this program.

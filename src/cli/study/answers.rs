@@ -117,8 +117,8 @@ pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points:
     serde_json::to_string_pretty(&whole).unwrap_or_default()
 }
 
-/// What a table holds and where it is.
-pub fn collected(plan: &Plan, table: &Table) -> String {
+/// What a table holds and where it is, with a picture where one was drawn.
+pub fn collected(plan: &Plan, table: &Table, drawn: bool) -> String {
     let counts = table.counts();
     let mut out = format!("{} of {} runs done", counts.done, counts.all);
     if counts.failed > 0 {
@@ -131,11 +131,12 @@ pub fn collected(plan: &Plan, table: &Table) -> String {
     if counts.missing > 0 {
         let _ = write!(out, ", {} not run", counts.missing);
     }
-    let _ = write!(
-        out,
-        "\n{0}/study.html, {0}/study.png, {0}/table.csv, {0}/table.parquet, {0}/settings.csv",
-        plan.out.display()
-    );
+    let picture = drawn.then_some("study.png");
+    let tables = ["table.csv", "table.parquet", "settings.csv"];
+    let names = ["study.html"].into_iter().chain(picture).chain(tables);
+    let folder = plan.out.display();
+    let files: Vec<String> = names.map(|name| format!("{folder}/{name}")).collect();
+    let _ = write!(out, "\n{}", files.join(", "));
     for name in table.without_text(&plan.regimes) {
         let texts = match first_texts(plan, table).join("`, `") {
             none if none.is_empty() => String::new(),

@@ -107,7 +107,8 @@ fn stopped(trial: &Trial, why: &str) {
     let summary = std::fs::read_to_string(out("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let steps = summary["steps"].as_u64().unwrap() as usize;
-    assert!((900..1100).contains(&steps), "{steps}");
+    // After a thousand calls, of which a step makes one or a few.
+    assert!((250..1100).contains(&steps), "{steps}");
     let said = summary["stopped"].as_str().unwrap();
     assert!(said.contains(why), "{said}");
     let table = std::fs::read_to_string(out("statistics.csv")).unwrap();
