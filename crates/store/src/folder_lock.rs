@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The file by which a run owns the folder of its results.
-pub const RUN_LOCK: &str = "run.lock";
+pub const RUN_LOCK: &str = "results.lock";
 
 /// Why a folder cannot be owned or read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

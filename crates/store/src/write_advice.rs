@@ -20,7 +20,9 @@ pub fn write_advice(reason: &str) -> &'static str {
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "; choose a folder that you may write to with --out"
         }
-        ErrorKind::NotFound => "; a folder of its path is missing, or was removed during the run",
+        ErrorKind::NotFound => {
+            "; a folder of its path is missing, or was removed: name another with --out"
+        }
         ErrorKind::NotADirectory | ErrorKind::IsADirectory | ErrorKind::AlreadyExists => {
             "; something else of that name is there: choose another folder with --out"
         }
