@@ -15,12 +15,6 @@ fn built<S: Dimensional>(text: &str) -> Simulation<S> {
     built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
 }
 
-fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
-}
-
 /// Linear and angular momentum about the origin, and the sums of their sizes.
 fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
     let bodies = &s.state.bodies;
@@ -36,10 +30,16 @@ fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
     (linear, angular, sizes)
 }
 
-/// Takes steps; returns how far momentum drifted, over the sums of the sizes at the start. The ledger says the same.
+/// Takes steps, in some of which contacts act; returns how far momentum drifted, over the sums of the sizes at the start. The ledger says the
+/// same.
 fn drift<S: Steps>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     let (linear, angular, sizes) = momentum(s);
-    go(s, steps);
+    let mut acted = 0;
+    for _ in 0..steps {
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        acted += report.active;
+    }
+    assert!(acted > 0, "no contact carries anything");
     let (linear_after, angular_after, _) = momentum(s);
     let found = [
         (linear_after - linear).norm(),
@@ -55,8 +55,8 @@ fn drift<S: Steps>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     [found[0] / sizes[0], found[1] / sizes[1]]
 }
 
-/// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come together, and turn.
-fn cluster<S: Dimensional>(interface: &str, more: &str) -> Simulation<S> {
+/// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come together at a rate (1/s), and turn.
+fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
     let places = [
         ([0.0, 0.0, 0.0], 0.010),
         ([0.0205, 0.0, 0.0], 0.010),
@@ -66,7 +66,7 @@ fn cluster<S: Dimensional>(interface: &str, more: &str) -> Simulation<S> {
     ];
     let grains = places.iter().enumerate().map(|(k, (at, radius))| {
         let wave = |n: u32| 0.02 * (1.3 + f64::from(n) + 2.1 * k as f64).sin();
-        let v: Vec<f64> = (0..S::D).map(|i| wave(i as u32) - 4.0 * at[i]).collect();
+        let v: Vec<f64> = (0..S::D).map(|i| wave(i as u32) - rate * at[i]).collect();
         let w: Vec<f64> = (0..S::Spin::N)
             .map(|i| 100.0 * wave(5 + i as u32))
             .collect();
@@ -91,13 +91,18 @@ fn cluster<S: Dimensional>(interface: &str, more: &str) -> Simulation<S> {
     ))
 }
 
-/// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is kept to rounding. Rigid balls act on their
-/// surfaces, which are apart by what the step leaves of their gap: what they lose is less than that over their radius.
+/// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is kept to rounding. Rigid balls, which come
+/// together by 8e-4 of their radius in a step, act on their surfaces, which are apart by what the step leaves of their gap: what they lose is less than
+/// that over their radius.
 fn every_law<S: Dimensional + Steps>() {
     let laws = built_in();
     let mut count = 0;
     for (kind, name) in laws.names() {
         let plugin = laws.open(kind, name).unwrap().unwrap();
+        // A point contact, which has no meaning in the plane.
+        if S::D == 2 && ["dmt", "jkr"].contains(&name) {
+            continue;
+        }
         let slots = match kind.spec().word {
             "contact" => format!("contact: \"{name}\""),
             "damage" => {
@@ -107,13 +112,21 @@ fn every_law<S: Dimensional + Steps>() {
         };
         let heat =
             plugin.kind == Kind::TRANSPORT || plugin.flags & fretwork_abi::FLAG_TEMPERATURE != 0;
-        let mut s = cluster::<S>(&slots, if heat { "heat: (initial: 300.0)" } else { "" });
+        // Bonds hold a gentle approach; what they do not join is to meet otherwise.
+        let opens = plugin.flags & fretwork_abi::FLAG_OPENING != 0;
+        let bonds = opens || kind.spec().word == "damage";
+        let rate = if bonds { 4.0 } else { 40.0 };
+        let mut s = cluster::<S>(
+            rate,
+            &slots,
+            if heat { "heat: (initial: 300.0)" } else { "" },
+        );
         let exact = s.laws[0].compliant() || s.laws[0].cohesion().is_some();
         let found = drift(&mut s, 300);
         println!("{}D {slots}: {found:?}", S::D);
         assert!(found[0] < 1e-12, "{slots}: {found:?}");
         assert!(
-            found[1] < if exact { 1e-12 } else { 1e-4 },
+            found[1] < if exact { 1e-12 } else { 1e-3 },
             "{slots}: {found:?}"
         );
         count += 1;
