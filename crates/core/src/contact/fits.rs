@@ -17,8 +17,10 @@ impl<S: Space> Network<S> {
             .iter()
             .all(|b| below(&b.bodies) && law(b.law));
         let formed = self.bonds_formed.iter().all(|(b, l)| below(b) && law(*l));
-        let known = |name: u32| body_of(shapes, name).is_some();
-        let pair = |(a, b): &(u32, u32)| *a & Key::SURFACE == 0 && known(*a) && known(*b);
+        let pair = |(a, b): &(u32, u32)| {
+            let two = [body_of(shapes, *a), body_of(shapes, *b)];
+            *a & Key::SURFACE == 0 && two.iter().all(Option::is_some) && two[0] != two[1]
+        };
         let surface = |k: &usize| *k < shapes.surfaces.len();
         let memory = self.memory.iter().zip(&built.memory);
         // Detection searches contacts by pair.
@@ -41,6 +43,7 @@ impl<S: Space> Network<S> {
         let vectors = [c.normal, c.arms[0], c.arms[1], c.impulse];
         let memory = self.memory.get(usize::from(c.law));
         bodies == c.bodies.map(Some)
+            && bodies[0] != bodies[1]
             && c.key.candidate & Key::SURFACE == 0
             && memory.is_some_and(|m| c.memory().is_none_or(|slot| slot < m.bonds.len()))
             && vectors.iter().all(VectorLike::is_finite)
