@@ -188,6 +188,11 @@ fn every_method<S: Steps>(answer: Answer, moves: Moves, central: bool, moment: b
         if rotation_or_cohesion && matches!(name, "newton" | "interior") {
             continue;
         }
+        // Gradients crawl where directions of a block differ much.
+        let gradient = matches!(name, "pg" | "cpg" | "pcpg" | "apgd");
+        if gradient && moves != Moves::Not {
+            continue;
+        }
         let Posed {
             mut problem,
             forms,
