@@ -86,7 +86,7 @@ struct Annuli {
 
 impl Annuli {
     fn new(mu: f64, overlap: f64) -> Self {
-        const COUNT: usize = 2000;
+        const COUNT: usize = 400;
         Self {
             at: vec![[0.0; 2]; COUNT],
             width: (RADIUS * overlap).sqrt() / COUNT as f64,

@@ -283,8 +283,8 @@ mod tests {
     impl Springs {
         fn new(beta: f64) -> Self {
             Self {
-                u: vec![[0.0; 2]; 4000],
-                width: 1.5 / 4000.0,
+                u: vec![[0.0; 2]; 1000],
+                width: 1.5 / 1000.0,
                 beta,
             }
         }
@@ -307,7 +307,7 @@ mod tests {
 
     /// The largest difference of the force from that of many springs, over the largest force, on a path of overlap and displacement.
     fn off(beta: f64, path: impl Fn(f64) -> (f64, Pair)) -> f64 {
-        const STEPS: usize = 2000;
+        const STEPS: usize = 1000;
         let (mut springs, mut profile) = (Springs::new(beta), Profile::flat(0.0));
         let mut at = path(0.0).1;
         let (mut worst, mut largest) = (0.0f64, 0.0f64);
@@ -325,7 +325,7 @@ mod tests {
         worst / largest
     }
 
-    /// Forces on paths of load and displacement against those of 4000 springs, for a small and a large friction.
+    /// Forces on paths of load and displacement against those of 1000 springs, for a small and a large friction.
     #[test]
     fn follows_any_history_of_load_and_displacement() {
         let ramp = |t: f64, points: &[(f64, f64)]| {
