@@ -319,12 +319,14 @@ fn turned<S: Dimensional + Observed>(
     } else {
         "[0.0, 0.0, 0.0], 0.1"
     };
+    // The bond's radius is then the reduced radius of the balls, 0.05 m.
+    let factor = if S::D == 2 { 2.0 } else { 1.0 };
     let text = format!(
         r#"(
     name: "turned", dimension: {}, time: (step: {:e}, end: 0.1),
     detection: (alert: 1e-3, skin: 0.05),
     materials: {{"grain": "verification_grain"}},
-    interfaces: [(name: "grain", between: ("grain", "grain"), contact: "frictionless", cohesion: "parallel-bond",
+    interfaces: [(name: "grain", between: ("grain", "grain"), contact: "frictionless", cohesion: "parallel-bond", area_factor: {factor},
         parameters: (cohesion: {{"k_n": 1e10, "k_t": 1e10, "sigma_c": 1e6, "tau_c": 1e6}}))],
     bodies: [
         (name: "a", material: "grain", shapes: [Balls([({ball})])], dofs: ({})),

@@ -74,7 +74,7 @@ fn stays<S: Dimensional>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
     }
 }
 
-/// All forces are k times the overlap, from the first step on: what balances each other leaves no velocity by which an error could be
+/// All forces are k times the overlap, to the error that the tolerance permits (a hundredth of the work), from the first step on: what balances each other leaves no velocity by which an error could be
 /// measured, and is no error.
 #[test]
 fn a_column_of_springs_holds_itself() {
@@ -142,12 +142,13 @@ fn top_of_stack(density: f64, solver: &str, time: f64) -> (f64, f64) {
     (moved.norm(), f64::from(sweeps) / steps as f64)
 }
 
-/// Blocks at rest stay at the default tolerance: within a two-hundredth of their size in a second, whatever lies on top.
+/// Blocks at rest stay at the default tolerance: within a fiftieth of their size in five seconds, whatever lies on top. (Without the part of the
+/// error that counts powers of either sign, the top moved by 20 mm under a ratio of 1000.)
 #[test]
 fn light_blocks_carry_heavy_ones() {
-    for ratio in [1.0, 10.0, 100.0, 1000.0] {
-        let (moved, sweeps) = top_of_stack(1e3 * ratio, "", 1.0);
+    for ratio in [1.0, 1000.0] {
+        let (moved, sweeps) = top_of_stack(1e3 * ratio, "", 5.0);
         println!("ratio {ratio}: {moved:e} m, {sweeps} sweeps a step");
-        assert!(moved < 1e-3, "ratio {ratio}: {moved:e} m");
+        assert!(moved < 4e-3, "ratio {ratio}: {moved:e} m");
     }
 }

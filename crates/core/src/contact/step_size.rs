@@ -128,7 +128,9 @@ impl StepSizeDiagnostics {
     pub fn sunk_warning(&self) -> Option<String> {
         let first = self.first_sunk.as_ref()?;
         Some(format!(
-            "{} contacts were first seen overlapping, by up to {:.2e} of the radius, of bodies that do not move as far in a step, {}: bodies              at rest sank into each other by the error of the solver (take a smaller solver.tolerance, or solver.norm Velocity), or a              surface faces the wrong way (anticlockwise corners of the triangles of a mesh, seen from outside)",
+            "{} contacts were first seen overlapping, by up to {:.2e} of the radius, of bodies that do not move as far in a step, {}: \
+             bodies at rest sank into each other by the error of the solver (take a smaller solver.tolerance, or solver.norm \
+             Velocity), or a surface faces the wrong way (anticlockwise corners of the triangles of a mesh, seen from outside)",
             self.sunk,
             self.deepest_sunk,
             first.text()

@@ -232,11 +232,13 @@ impl<S: Space> SolveContext<'_, S> {
         now > GROWTH * explained
     }
 
-    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from the start: they are finite, and say where bodies
-    /// close in.
+    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from nothing: they are finite, say where bodies close
+    /// in, and do not grow from step to step.
     fn give_up(&self, problem: &mut Problem<S>, so_far: &Report) -> Report {
         const SWEEPS: u32 = 10;
-        self.start_anew(problem);
+        let impulses = vec![Some(S::Vector::zero()); self.forms.len()];
+        let moments = vec![Some(S::Spin::zero()); self.moments.len()];
+        problem.adopt(&impulses, &moments);
         let mut report = *so_far;
         report.add(&self.sweep(problem, false, SWEEPS));
         Report {

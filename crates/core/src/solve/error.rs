@@ -232,10 +232,9 @@ impl Sums {
     /// Whether the velocities are lost in the rounding of the impulses that should have made them: those of a problem without a
     /// solution grow until then, where W p, of bodies that are squeezed, vanishes. `free` as in [`Scale`].
     pub fn drowned(&self, free: f64) -> bool {
-        /// Rounding over velocities, squared: beyond it the residual counts as zero, too.
-        const ALL: f64 = 4.0;
-        let velocity = self.velocity.max(free);
-        velocity > 0.0 && ROUNDINGS * self.impulse > ALL * velocity
+        let rounding = ROUNDINGS * self.impulse;
+        let moves = self.velocity.max(free) > 0.0;
+        moves && rounding > 4.0 * free && 16.0 * rounding > self.velocity
     }
 
     /// Returns the part of the error that needs no sum over bodies.

@@ -144,10 +144,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         }
         let mut sums = measure(problem, options.parallel);
         let scale_now = scale(problem, free, &sums, options.parallel);
-        if ended
-            || sums.drowned(free.free)
-            || sums.error(options.norm, &scale_now) <= options.tolerance
-        {
+        if ended || sums.error(options.norm, &scale_now) <= options.tolerance {
             if !fresh {
                 problem.reload(options.parallel);
                 if let Some(acceleration) = &mut acceleration {
@@ -160,7 +157,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
             report.unbounded = sums.drowned(free.free);
-            if ended || report.converged || report.unbounded {
+            if ended || report.converged {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;
             }

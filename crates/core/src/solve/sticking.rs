@@ -17,13 +17,9 @@ use super::nlgs::Report;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Contacts above which no second solution is sought: the order of a sweep has less to say in a large set, and a second solve costs more.
-const MOST: usize = 512;
-/// Contacts up to which each beginning of sliding is examined.
-const FEW: usize = 64;
-/// Largest number of steps that are passed over after those that had no other solution.
-const PASSED: u32 = 64;
-/// The same of sets of few contacts, where a load may be placed on new contacts alone.
-const PASSED_FEW: u32 = 8;
+const MOST: usize = 64;
+/// Largest number of steps that are passed over after those that had no other solution, while no loaded contact that held begins to slide.
+const PASSED: u32 = 8;
 /// Iterations of the gradient method, and sweeps from its end.
 const ITERATIONS: u32 = 300;
 /// Relative velocity of a contact that slides, over the largest without contacts; slower ones are the error of a solution.
@@ -32,7 +28,9 @@ const SLIDES: f64 = 1e-3;
 const AT_BOUND: f64 = 1.0 - 1e-6;
 /// Share of the friction bound up to which a contact held at the start of the step.
 const HELD: f64 = 1.0 - 1e-3;
-/// Difference of the energies of two solutions, over the work of the step, that their errors do not make.
+/// Difference of the energies of two solutions, over the work of the step, from which the lower one is taken, and which their errors do
+/// not make.
+const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
 
 /// When a second solution is sought.
@@ -49,9 +47,8 @@ impl Search {
         due
     }
 
-    fn learn(&mut self, found: bool, few: bool) {
-        let most = if few { PASSED_FEW } else { PASSED };
-        let next = (2 * self.passed_over[1]).clamp(1, most);
+    fn learn(&mut self, found: bool) {
+        let next = (2 * self.passed_over[1]).clamp(1, PASSED);
         self.passed_over = if found { [0; 2] } else { [next; 2] };
     }
 }
@@ -75,19 +72,16 @@ impl<S: Space> SolveContext<'_, S> {
         if !report.converged || !self.may_have_several(problem) {
             return;
         }
-        let (search, few) = (&mut auto_state.search, self.forms.len() <= FEW);
+        let search = &mut auto_state.search;
         let due = search.is_due();
-        if !(due || few) {
-            return;
-        }
         let searched = match self.sliding(problem) {
             Sliding::None => false,
             Sliding::Goes => due,
-            Sliding::Begins => due || few,
+            Sliding::Begins => true,
         };
         if searched {
             let found = self.adopt_lower(problem, report);
-            search.learn(found, few);
+            search.learn(found);
         }
     }
 
@@ -202,21 +196,21 @@ impl<S: Space> SolveContext<'_, S> {
         self.start_anew(problem);
         let tolerance = 0.3 * self.options.tolerance;
         let mut other = self.improve(problem, Method::Pcpg, tolerance, ITERATIONS);
-        let is_lower = |problem: &Problem<S>| {
+        let is_lower = |problem: &Problem<S>, by: f64| {
             let [energy, work] = self.energy(problem);
-            before - energy > DIFFERS * work.abs()
+            before - energy > by * work.abs()
         };
-        if !other.converged && is_lower(problem) {
+        if !other.converged && is_lower(problem, LOWER) {
             other.add(&self.sweep(problem, true, ITERATIONS));
         }
-        if !(other.converged && is_lower(problem)) {
+        if !(other.converged && is_lower(problem, LOWER)) {
             problem.restore(&saved);
             return false;
         }
         let used = report.used;
         report.add(&other);
         report.used = used;
-        report.several = true;
+        report.several = is_lower(problem, DIFFERS);
         true
     }
 }
