@@ -128,7 +128,7 @@ fn scene<S: Dimensional>(
         r#"(
     name: "pull-off", dimension: {}, time: (step: {h:e}, end: 1.0),
     materials: {{"grain": "verification_grain"}},
-    detection: (alert: 2e-6, skin: 4e-6),
+    detection: (alert: 1e-5, skin: 2e-5),
     solver: (tolerance: 1e-10, norm: Velocity),
     interfaces: [(name: "g", between: ("grain", "grain"), cohesion: "{name}", {contact}, cohesion: {{{parameters}}}))],
     bodies: [

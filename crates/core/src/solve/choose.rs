@@ -218,6 +218,8 @@ impl<S: Space> SolveContext<'_, S> {
             let p = problem.solution(k).impulse;
             now += p.dot(&p);
             explained += form.impulse.dot(&form.impulse);
+            // An attraction presses at rest.
+            explained += form.tension.powi(2) + form.cohesion.powi(2);
             if let Some(e) = &form.elastic {
                 explained += e.a_n * e.a_n + e.a_t.dot(&e.a_t);
             }

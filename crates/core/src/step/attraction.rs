@@ -21,6 +21,8 @@ const OCTAVES: usize = 18;
 const PARTS: usize = 8;
 /// Nodes at gaps below zero, where bodies overlap.
 const BELOW: usize = 4;
+/// Relative difference of attractions that is none: gaps have rounding errors.
+const NO_DIFFERENCE: f64 = 1e-6;
 
 /// An attraction linearised at a change of the gap x (m): force (N) and slope (N/m), not negative.
 #[derive(Clone, Copy, Debug, Default)]
@@ -339,7 +341,9 @@ impl<S: Space> Simulation<S> {
                     ..Linear::default()
                 },
             });
-            start != here || next != here
+            [start, next]
+                .iter()
+                .any(|f| (*f - here).abs() > NO_DIFFERENCE * here.max(**f))
         });
         let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         for m in &moved {
