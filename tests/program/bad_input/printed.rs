@@ -5,12 +5,14 @@ use super::trial::{PLANE, Trial, refusal, with};
 #[test]
 fn no_text_of_a_user_commands_the_terminal() {
     let bad = "a\\u{1b}[2Jb\\u{9b}31mc\\u{7}\\rd\\u{202e}e";
-    let case = PLANE
-        .replace("grains between a floor and a lid", bad)
+    // Names of bodies and interfaces have none, and are refused without them.
+    let titled = PLANE.replace("grains between a floor and a lid", bad);
+    let case = titled
         .replace("\"lid\"", &format!("\"{bad}\""))
         .replace("name: \"grains\"", &format!("name: \"{bad}\""));
     let trial = Trial::new();
-    trial.write("case.ron", &case);
+    trial.write("case.ron", &titled);
+    trial.write("named.ron", &case);
     trial.write("wrong.ron", case.replace("along: 0", "along: 4"));
     trial.write(
         "body.ron",
@@ -21,6 +23,8 @@ fn no_text_of_a_user_commands_the_terminal() {
         &["run", "case.ron", "--json"],
         &["run", "case.ron", "--resume"],
         &["check", "case.ron"],
+        &["check", "named.ron"],
+        &["run", "named.ron"],
         &["run", "wrong.ron"],
         &["run", "body.ron"],
         &["run", "case.ron", "--set", "name=\u{1b}[2J"],
