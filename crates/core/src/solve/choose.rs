@@ -36,8 +36,8 @@ const NEWTON: u32 = 40;
 /// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as in a
 /// column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
-/// How often a method that factorises is asked for a smaller error.
-const ATTEMPTS: u32 = 4;
+/// How often a method that factorises is asked for a smaller error, and where contacts act on systems.
+const ATTEMPTS: [u32; 2] = [4, 20];
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
 
@@ -180,7 +180,8 @@ impl<S: Space> SolveContext<'_, S> {
     fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         let mut report = nlgs::arrange(problem, self.options);
         let (tolerance, most) = (self.options.tolerance, self.options.max_iterations);
-        self.improve_until(problem, &mut report, method, (tolerance, most, ATTEMPTS));
+        let attempts = ATTEMPTS[usize::from(!problem.of_systems.is_empty())];
+        self.improve_until(problem, &mut report, method, (tolerance, most, attempts));
         Report {
             used: method,
             ..report
@@ -433,7 +434,7 @@ impl<S: Space> SolveContext<'_, S> {
         let attempts = if problem.of_systems.is_empty() {
             1
         } else {
-            ATTEMPTS
+            ATTEMPTS[1]
         };
         let limits = (tolerance, steps.min(left), attempts);
         self.improve_until(problem, report, method, limits);
