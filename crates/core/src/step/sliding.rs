@@ -17,10 +17,11 @@ use crate::solve::form::{ContactForm, Elastic};
 /// its own.
 const TOLERANCE: f64 = 1e-4;
 const NEXT_TO_NOTHING: f64 = 1e-2;
-/// Share of the friction of all contacts by which that of laws which fall may differ, and solves after which it may: a contact that jumps
-/// between stick and slip has no state in between.
-const TOLERANCE_FALLING: f64 = 1e-3;
-const MOST_FALLING: u32 = 8;
+/// Share of the friction of all contacts by which that of laws which fall may differ; that of laws which rise, too, after a number of solves:
+/// among many contacts some always turn.
+const TOLERANCE_OF_ALL: f64 = 1e-3;
+/// Solves after which laws that fall may differ by more: a contact that jumps between stick and slip has no state in between.
+const MANY: u32 = 8;
 /// Share of the velocity of linearisation below which Newton's step is taken in the logarithm of the velocity: laws that rise do so ever
 /// slower, and their tangent leads to rest.
 const FAR_BELOW: f64 = 0.1;
@@ -127,12 +128,14 @@ impl Mismatch {
         let falling: f64 = differs(false).map(|d| d.0).sum();
         let rising: f64 = differs(true).map(|d| d.0).sum();
         let share = |x: f64| if x > 0.0 { x / whole } else { 0.0 };
+        let many = iterations >= MANY;
         // Each that rises is judged by itself, unless it carries next to nothing.
-        let agrees = differs(true).all(|d| d.0 <= TOLERANCE * (d.1 + NEXT_TO_NOTHING * whole));
-        let falls = share(falling) <= TOLERANCE_FALLING || iterations >= MOST_FALLING;
+        let each = differs(true).all(|d| d.0 <= TOLERANCE * (d.1 + NEXT_TO_NOTHING * whole));
+        let rises = each || many && share(rising) <= TOLERANCE_OF_ALL;
+        let falls = share(falling) <= TOLERANCE_OF_ALL || many;
         Self {
             share: share(falling + rising),
-            agrees: agrees && falls,
+            agrees: rises && falls,
         }
     }
 }
