@@ -91,7 +91,8 @@ fn slides_on<S: Dimensional + Steps>(floor: &str, bodies: &str) {
                 S::D
             );
             assert!(
-                (velocity[0] / v - 1.0).abs() < 1e-9,
+                // The solver's tolerance of 1e-10 in each of thousands of steps.
+                (velocity[0] / v - 1.0).abs() < 1e-6,
                 "{floor}, {name}, {v}: {velocity:?}"
             );
             assert!(

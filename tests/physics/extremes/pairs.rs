@@ -26,6 +26,8 @@ struct Wall {
     shapes: String,
     /// Origin of its frame: along x, out of plane and upwards (m).
     origin: [f64; 3],
+    /// It ends at this distance along x from the place that is hit (m): what is beyond has left it sideways.
+    half: f64,
 }
 
 impl Wall {
@@ -34,7 +36,13 @@ impl Wall {
             name,
             shapes: shapes.into(),
             origin: [0.0; 3],
+            half: f64::INFINITY,
         }
+    }
+
+    fn ends_at(mut self, half: f64) -> Self {
+        self.half = half;
+        self
     }
 
     fn at(mut self, x: f64, across: f64, up: f64) -> Self {
@@ -134,7 +142,7 @@ impl Throw {
         };
         if s.state.network.step_size.warning().is_some() {
             Ok(false)
-        } else if height > 0.0 {
+        } else if height > 0.0 || (apart[0] + wall.origin[0]).abs() > wall.half {
             Ok(true)
         } else {
             Err(format!("{}; ends at {:.2} radii", what(), height / R))
@@ -375,7 +383,7 @@ fn solid_walls(files: &mut Vec<std::path::PathBuf>) -> Vec<Wall> {
     vec![
         Wall::new("half-space", "HalfSpace(normal: [0.0, 0.0, 1.0])"),
         mesh("sheet", &flat),
-        mesh("bumpy sheet", &bumpy),
+        mesh("bumpy sheet", &bumpy).ends_at(0.18),
         mesh("plate", &plate),
         Wall::new(
             "flat field",
@@ -386,7 +394,8 @@ fn solid_walls(files: &mut Vec<std::path::PathBuf>) -> Vec<Wall> {
             "field",
             format!("HeightField(points: (41, 41), spacing: (0.011, 0.009), heights: [{}])", texts.join(", ")),
         )
-        .at(-0.22, -0.18, 0.0),
+        .at(-0.22, -0.18, 0.0)
+        .ends_at(0.22),
         Wall::new("drum", "Drum(radius: 5.0, axis: 1)").at(0.0, 0.0, 5.0),
         Wall::new("block", "Box(size: (18.0, 18.0, 0.1))").at(0.0, 0.0, -0.05),
         Wall::new("thin block", "Box(size: (18.0, 18.0, 0.002))").at(0.0, 0.0, -0.001),
