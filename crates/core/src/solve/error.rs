@@ -230,11 +230,13 @@ impl Sums {
     }
 
     /// Whether the velocities are lost in the rounding of the impulses that should have made them: those of a problem without a
-    /// solution grow until then, where W p, of bodies that are squeezed, vanishes. `free` as in [`Scale`].
-    pub fn drowned(&self, free: f64) -> bool {
+    /// solution grow until then, where W p, of bodies that are squeezed, vanishes. Without convergence W p may be anything. `free` as in
+    /// [`Scale`].
+    pub fn drowned(&self, free: f64, converged: bool) -> bool {
         let rounding = ROUNDINGS * self.impulse;
         let moves = self.velocity.max(free) > 0.0;
-        moves && rounding > 4.0 * free && 16.0 * rounding > self.velocity
+        let vanishes = 16.0 * rounding > self.velocity || (!converged && free > 0.0);
+        moves && rounding > 4.0 * free && vanishes
     }
 
     /// Returns the part of the error that needs no sum over bodies.

@@ -90,11 +90,12 @@ pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Re
     let sums = measure(problem, options.parallel);
     let scale = scale(problem, free, &sums, options.parallel);
     let error = sums.error(options.norm, &scale);
+    let converged = error <= options.tolerance;
     Report {
         error,
         parts: sums.parts(&scale),
-        converged: error <= options.tolerance,
-        unbounded: sums.drowned(free.free),
+        converged,
+        unbounded: sums.drowned(free.free, converged),
         worst: problem.pushed(sums.worst_at),
         ..Report::default()
     }
@@ -156,7 +157,7 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             report.error = sums.error(options.norm, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
-            report.unbounded = sums.drowned(free.free);
+            report.unbounded = sums.drowned(free.free, report.converged);
             if ended || report.converged {
                 report.worst = problem.pushed(sums.worst_at);
                 return report;
