@@ -42,21 +42,19 @@ const DRIVEN: &str = "Displacement(Ramp(from: 0, to: -5e-3, start: 0, end: 0.05)
 const RIGID: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.3})"#;
 const SPRINGS: &str = r#"contact: "linear-contact", parameters: (contact: {"stiffness": 1e6, "restitution": 0.5, "mu": 0.3})"#;
 
-/// One grain, two beside each other, and a column of two.
-fn grains(dimension: usize) -> [&'static str; 3] {
-    if dimension == 2 {
-        [
-            "(at: [0.0, 0.01], radius: 0.01)",
-            "(at: [0.0, 0.01], radius: 0.01), (at: [0.03, 0.01], radius: 0.01)",
-            "(at: [0.0, 0.005], radius: 0.005), (at: [0.0, 0.015], radius: 0.005)",
-        ]
-    } else {
-        [
-            "(at: [0.0, 0.0, 0.01], radius: 0.01)",
-            "(at: [0.0, 0.0, 0.01], radius: 0.01), (at: [0.03, 0.0, 0.01], radius: 0.01)",
-            "(at: [0.0, 0.0, 0.005], radius: 0.005), (at: [0.0, 0.0, 0.015], radius: 0.005)",
-        ]
-    }
+/// One grain, two beside each other, a column of two, and columns of twelve.
+fn grains(dimension: usize) -> Vec<String> {
+    let columns = |count: i32, rows: i32| {
+        let radius = 0.01 / f64::from(rows);
+        let at = |k: i32| {
+            let place = |k: i32| (2.0 * f64::from(k) + 1.0) * radius;
+            let (x, z) = (place(k / rows), place(k % rows));
+            let middle = if dimension == 2 { "" } else { "0.0, " };
+            format!("(at: [{x:e}, {middle}{z:e}], radius: {radius:e})")
+        };
+        (0..count * rows).map(at).collect::<Vec<_>>().join(", ")
+    };
+    vec![columns(1, 1), columns(2, 1), columns(1, 2), columns(6, 12)]
 }
 
 /// What a run of some steps says of its imposed motions, and the largest force on the lid (N).
@@ -75,7 +73,7 @@ fn cannot_be_obeyed<S: Dimensional>() {
     for list in grains(S::D) {
         for method in ["Auto", "Anderson", "Newton", "Interior", "Nlgs"] {
             let solver = format!("method: {method}, max_iterations: 2000");
-            let mut s: Simulation<S> = pressed(DRIVEN, list, &solver, RIGID);
+            let mut s: Simulation<S> = pressed(DRIVEN, &list, &solver, RIGID);
             let (told, force) = told(&mut s, 3);
             let name = format!("{}D, {method}, {list}: {told:?}, {force:e} N", S::D);
             assert!(told.squeezed_steps == 3, "{name}");
@@ -102,7 +100,7 @@ fn grains_between_driven_plates_cannot_yield() {
 fn can_be_obeyed<S: Dimensional>() {
     for (lid, law) in [("Force(-10.0)", RIGID), (DRIVEN, SPRINGS)] {
         for list in grains(S::D) {
-            let mut s: Simulation<S> = pressed(lid, list, "", law);
+            let mut s: Simulation<S> = pressed(lid, &list, "", law);
             let (told, _) = told(&mut s, 20);
             assert!(told.is_empty(), "{lid}, {list}: {told:?}");
         }

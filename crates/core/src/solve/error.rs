@@ -233,10 +233,12 @@ impl Sums {
     /// solution grow until then, where W p, of bodies that are squeezed, vanishes. Without convergence W p may be anything. `free` as in
     /// [`Scale`].
     pub fn drowned(&self, free: f64, converged: bool) -> bool {
+        /// Squared rounding of impulses' effects over the squared free velocities: no load makes impulses a thousandth as large as that.
+        const LOST: f64 = 1e-6;
         let rounding = ROUNDINGS * self.impulse;
         let moves = self.velocity.max(free) > 0.0;
         let vanishes = 16.0 * rounding > self.velocity || (!converged && free > 0.0);
-        moves && rounding > 4.0 * free && vanishes
+        moves && rounding > LOST * free && vanishes
     }
 
     /// Returns the part of the error that needs no sum over bodies.
