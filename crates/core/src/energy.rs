@@ -53,8 +53,8 @@ pub struct Energy {
     pub initial_kinetic: f64,
     /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
-    /// Energy that friction gave back, summed over the steps in which contacts together dissipated less than nothing by it. A law of friction
-    /// cannot make energy; at theta = 1/2 rigid contacts give back a little in a step in which sliding turns.
+    /// Energy that friction of compliant contacts gave back, summed over the steps in which these together dissipated less than nothing by it. A
+    /// law of friction cannot make energy. Rigid contacts do so within the error of a step only, where their friction is p_t . u_t.
     pub given_by_friction: f64,
 }
 
@@ -84,7 +84,7 @@ impl Energy {
         self.scheme += work.scheme;
         self.fracture += totals.fracture;
         self.friction += totals.friction;
-        self.given_by_friction += (-totals.friction).max(0.0);
+        self.given_by_friction += (-totals.friction_of_springs).max(0.0);
         self.impact += totals.impact;
         self.adhesion += totals.adhesion;
         self.viscous += totals.viscous + work.damping;

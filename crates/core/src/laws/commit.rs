@@ -295,6 +295,7 @@ fn book_contact<S: Space>(
             let (dissipated, stored) = commit_spring(contact, contact_step, spring, step.info.h);
             totals.springs += stored;
             totals.viscous += dissipated.viscous;
+            totals.friction_of_springs += dissipated.friction;
             dissipated
         }
     };

@@ -101,6 +101,8 @@ impl<S: Space> Velocities<S> {
 pub struct Totals {
     /// Dissipated by friction.
     pub friction: f64,
+    /// The part of it that is of compliant contacts, whose springs hold energy.
+    pub friction_of_springs: f64,
     /// Dissipated by impacts.
     pub impact: f64,
     /// Dissipated against tensile strength (cohesion without opening).
@@ -125,6 +127,7 @@ impl Totals {
     /// Adds those of other contacts.
     pub(super) fn add(&mut self, other: &Self) {
         self.friction += other.friction;
+        self.friction_of_springs += other.friction_of_springs;
         self.impact += other.impact;
         self.adhesion += other.adhesion;
         self.viscous += other.viscous;
