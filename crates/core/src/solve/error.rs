@@ -25,7 +25,7 @@
 //! compliance of contacts, sum_c c |p_c|^2, as W does in the matrix form: in a column of springs that holds itself |v - v_free|_M^2 vanishes.
 //!
 //! For bodies that move fast together, and for impulses that hold each other, the relative velocities are rounding errors; those below
-//! the rounding of the body velocities, or of the impulses' effects on single contacts, count as zero. Impulses that leave nothing
+//! the rounding of the body velocities, or of the impulses where that exceeds all free velocities, count as zero. Impulses that leave nothing
 //! but rounding of the velocities are no solution, see [`Sums::drowned`].
 //!
 //! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least that of their single tractions, see
@@ -229,16 +229,27 @@ impl Sums {
         }
     }
 
+    /// Squared rounding error of velocities that follow from the impulses, where it exceeds all velocities without impulses (`free` as in
+    /// [`Scale`]); 0 elsewhere, where bodies may be as unlike as they like.
+    pub(super) fn rounding(&self, free: f64) -> f64 {
+        /// By how much, squared.
+        const EXCEEDS: f64 = 4.0;
+        let rounding = ROUNDINGS * self.impulse;
+        if rounding > EXCEEDS * free {
+            rounding
+        } else {
+            0.0
+        }
+    }
+
     /// Whether the velocities are lost in the rounding of the impulses that should have made them: those of a problem without a
     /// solution grow until then, where W p, of bodies that are squeezed, vanishes. Without convergence W p may be anything. `free` as in
     /// [`Scale`].
     pub fn drowned(&self, free: f64, converged: bool) -> bool {
-        /// Squared rounding of impulses' effects over the squared free velocities: no load makes impulses a thousandth as large as that.
-        const LOST: f64 = 1e-6;
-        let rounding = ROUNDINGS * self.impulse;
+        let rounding = self.rounding(free);
         let moves = self.velocity.max(free) > 0.0;
         let vanishes = 16.0 * rounding > self.velocity || (!converged && free > 0.0);
-        moves && rounding > LOST * free && vanishes
+        moves && rounding > 0.0 && vanishes
     }
 
     /// Returns the part of the error that needs no sum over bodies.

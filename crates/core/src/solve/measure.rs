@@ -1,6 +1,6 @@
 //! Sums for the error of a step's problem, at the current velocities.
 
-use super::error::{ROUNDINGS, Scale, Sums};
+use super::error::{Scale, Sums};
 use super::form::Problem;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
@@ -92,7 +92,7 @@ pub(super) fn scale<S: Space>(
     }
     Scale {
         work,
-        noise: free.noise + ROUNDINGS * sums.impulse,
+        noise: free.noise + sums.rounding(free.free),
         contacts: problem.contacts(),
         ..free
     }
