@@ -65,6 +65,7 @@ pub(super) fn libraries(library: &Path) -> Vec<PathBuf> {
 
 #[cfg(target_os = "linux")]
 mod linux {
+    use std::collections::BTreeSet;
     use std::ffi::{CStr, OsStr, c_int, c_void};
     use std::os::unix::ffi::OsStrExt;
     use std::path::{Path, PathBuf};
@@ -73,6 +74,8 @@ mod linux {
         let loaded = loaded();
         let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
         let mut found: Vec<PathBuf> = Vec::new();
+        // By where they are: folders such as `$ORIGIN/../lib` name one file in many ways.
+        let mut seen = BTreeSet::new();
         // Each with the folders that those which link to it add (RPATH).
         let mut left = vec![(library.to_owned(), Vec::<PathBuf>::new())];
         while let Some((path, above)) = left.pop() {
@@ -104,7 +107,7 @@ mod linux {
                     search.iter().map(|f| f.join(name)).find(|p| p.is_file())
                 };
                 if let Some(file) = file
-                    && !found.contains(&file)
+                    && seen.insert(std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone()))
                 {
                     found.push(file.clone());
                     left.push((file, inherited.clone()));
