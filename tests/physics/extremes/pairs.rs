@@ -2,7 +2,6 @@
 //! stays in front of what it meets, or the run says that it may not have.
 
 use super::bench::{Sketch, place};
-use fretwork::geometry::space::Space;
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
 use rand::{RngExt, SeedableRng};

@@ -43,7 +43,7 @@ impl<S: Dimensional> Builder<'_, S> {
         for (here, name) in elastic.chain(half_spaces) {
             if !good(name) || known.contains(&name.as_str()) {
                 let message = format!(
-                    "the name `{name}` of a deformable body names columns and files: it must be unique, made of letters, digits, `-` and `_`, and of 100 at most"
+                    "the name `{name}` of a deformable body names columns and files: it must be unique and made of letters, digits, `-` and `_`, of 100 at most"
                 );
                 return Err(self.fail(format!("{here}.name"), message));
             }
