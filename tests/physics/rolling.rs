@@ -98,10 +98,11 @@ fn patch() -> (f64, f64) {
 }
 
 /// Bristles stick from the leading edge on and drag k_t xi x, until that is mu p: Q/(mu P) = 1 - (1 - s)^3, s = k_t xi a/(2 mu p0).
-/// The disk's surface is slower along the rail than its rim, by a^2/(6 R^2) on average.
+/// Contacts act in the middle of the overlap d = (a^2 - x^2)/(2 R): there the disk is slower along the rail than its rim, by
+/// (x^2/(2 R) + d/2)/R, a^2/(3 R^2) on average.
 fn brush(creepage: f64) -> f64 {
     let (a, p0) = patch();
-    let s = TANGENTIAL * (creepage - a * a / (6.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);
+    let s = TANGENTIAL * (creepage - a * a / (3.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);
     MU * s.signum() * (1.0 - (1.0 - s.abs().min(1.0)).powi(3))
 }
 

@@ -122,7 +122,7 @@ fn a_uniform_pressure_is_uniform() {
         let p = c.impulse[1] / s.options.scheme.h;
         match at.iter_mut().find(|(other, ..)| *other == x) {
             Some((_, sum, _)) => *sum += p,
-            None => at.push((x, p, 2.0 * c.radius)),
+            None => at.push((x, p, c.radius)),
         }
     }
     assert_eq!(at.len(), 11);
