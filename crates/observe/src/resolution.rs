@@ -149,11 +149,14 @@ struct Strip {
     slip: f64,
 }
 
+/// Of a contact: its place along the strip, what it carries, and whether it slips.
+type Loaded = (f64, f64, bool);
+
 impl Strip {
     /// Of a system and the body that carries most of its load; none where it touches many bodies.
     fn of<S: Space>(s: &Simulation<S>, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<(u32, u32), Vec<(f64, f64, bool)>> = BTreeMap::new();
+        let mut all: BTreeMap<(u32, u32), Vec<Loaded>> = BTreeMap::new();
         let mut total = 0.0;
         for acting in loaded(s, system) {
             let other = acting.contact.bodies[1 - acting.side];

@@ -316,7 +316,7 @@ impl<S: Space> Simulation<S> {
             }
             let solution = &mut self.workspace.solved.contact_steps[at].solution;
             let ut = S::tangential(&form.normal, &self.workspace.solved.after[at]);
-            solution.unilateral_t = solution.unilateral_t - ut * sliding.damping;
+            solution.unilateral_t -= ut * sliding.damping;
             let load = solution.unilateral_n + form.tension;
             if load > 0.0 {
                 form.friction += sliding.damping * ut.norm() / load;
