@@ -350,7 +350,7 @@ fn heights_of_other_rows() {
     let trial = Trial::new();
     trial.write("materials/stone.ron", STIFF);
     trial.write("h.txt", rows);
-    trial.write("case.ron", &unmarked(&wide));
+    trial.write("case.ron", unmarked(&wide));
     let output = trial.call(&["check", "case.ron"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(0), "{said}");

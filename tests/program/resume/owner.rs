@@ -91,8 +91,8 @@ fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
             .windows(8)
             .enumerate()
             .filter(|(_, w)| w == b"FRETWORK");
-        let states = heads.map(|(at, _)| at).filter(|at| bytes[at + 12] == 1);
-        let at = states.last().expect("a frame with a state");
+        let mut states = heads.map(|(at, _)| at).filter(|at| bytes[at + 12] == 1);
+        let at = states.next_back().expect("a frame with a state");
         bytes[at + 100] ^= 1;
         std::fs::write(&path, &bytes).unwrap();
         let later = Job {
