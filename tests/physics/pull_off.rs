@@ -214,9 +214,9 @@ fn rigid_balls_are_pulled_off_at_the_force_of_their_law() {
 }
 
 #[test]
+#[ignore = "open: linear-adhesion holds 2 % longer at 1e-6 s"]
 fn rigid_disks_are_pulled_off_at_the_force_of_their_law() {
-    // At 1e-6 s `linear-adhesion` holds 2 % longer.
-    compare::<Dim2>(COULOMB, &in_the_plane(), false, &[1e-4, 1e-5]);
+    compare::<Dim2>(COULOMB, &in_the_plane(), false, &[1e-4, 1e-5, 1e-6]);
 }
 
 #[test]

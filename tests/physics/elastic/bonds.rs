@@ -284,3 +284,65 @@ fn a_graded_mesh_has_the_area_of_its_surface() {
 fn a_graded_mesh_has_the_area_of_its_surface_in_space() {
     graded_blocks::<Dim3>(4);
 }
+
+/// Half of a double cantilever beam: a beam of height h on a plane, to which it is glued beyond a crack, lifted at its end. Once the crack runs, the force P at a
+/// deflection d fulfils G = P^2 a^2/(2 E I) and d = P a^3/(3 E I), where a is the length of the crack with what the root turns (J. G. Williams, Int. J. Fract.
+/// 36 (1988) 101), so that G = P^2/(2 E I) (3 E I d/P)^(2/3) whatever the root does. A beam of triangles is stiffer than E I by some per cent, which counts by a
+/// third, and what the scheme takes of bonds that open in some tens of steps adds three per cent to G: 1.068 here, 1.035 in the limit of small steps.
+#[test]
+#[ignore = "open: the crack passes three places only"]
+fn a_cantilever_peels_off_at_the_energy_of_its_bonds() {
+    let (energy, strength, height, crack, lift) = (500.0, 2e7, 2e-3, 2e-2, 2e-5);
+    let (steps, last) = (216, 9e-4);
+    let young = 1e11;
+    let mut s = scene::<Dim2>(&Sketch {
+        interface: "cohesion: \"camanho-davila\", bonds: Start, bonds_within: 1e-6,",
+        parameters: format!(
+            ", cohesion: {{\"k\": 1e13, \"strength_n\": {strength:?}, \"strength_t\": {strength:?}, \"g_1\": {energy:?}, \"g_2\": {energy:?}, \"eta\": 2.0}}"
+        ),
+        bodies: "(name: \"plane\", material: \"m0\", shapes: [HalfSpace(normal: [0.0, 1.0])]),"
+            .to_owned(),
+        solver: "method: Newton, tolerance: 1e-8,".to_owned(),
+        ..sketch(5e-3, 1.0)
+    });
+    let raised = |at: &<Dim2 as Space>::Vector| {
+        let mut at = *at;
+        if at[0] < crack - 1e-9 {
+            at[1] += lift * (1.0 - at[1] / height);
+        }
+        at
+    };
+    let lines = [even(0.0, 3.5e-2, 70), even(0.0, height, 4)];
+    let speed = last / (f64::from(steps) * 5e-3);
+    let held = [
+        support("right", &[Some(Dof::Fixed), Some(Dof::Fixed)]),
+        support(
+            "left",
+            &[None, Some(Dof::Velocity(TimeFunction::Constant(speed)))],
+        ),
+    ];
+    let material = Elasticity { young, ..STIFF };
+    let mut spec = body(
+        mapped_block::<Dim2>(&lines, raised).unwrap(),
+        material,
+        &held,
+    );
+    spec.touching = Touching::Points("bottom");
+    let system = add(&mut s, spec);
+    let bending = young * height.powi(3) / 12.0;
+    let mut seen = 0;
+    for k in 1..=steps {
+        go(&mut s, 1);
+        if s.state.network.bonds_broken() < 2 || k % 5 != 0 {
+            continue;
+        }
+        let force = holder(&s, system, "left", 1).force;
+        let deflection = last * f64::from(k) / f64::from(steps);
+        let found = force * force / (2.0 * bending)
+            * (3.0 * bending * deflection / force.abs()).powf(2.0 / 3.0);
+        println!("at {deflection:e} m: G {found}");
+        near(energy, found, 0.08);
+        seen += 1;
+    }
+    assert!(seen > 3, "{seen} places of the crack");
+}

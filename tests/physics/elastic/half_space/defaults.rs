@@ -97,3 +97,36 @@ fn a_loose_tolerance_loses_no_contact() {
         assert!(off < 1.0, "{off}");
     }
 }
+
+/// A sphere of R 50 mm under 99.52 N at defaults, 5 cells over a.
+#[test]
+#[ignore = "open: pressures are 72 % off, and converged"]
+fn a_sphere_has_it_at_defaults() {
+    let a = (0.75 * 99.52 * 0.05 / MODULUS).cbrt();
+    let size = a / 5.0;
+    let cells = format!(
+        "material: \"steel\", x: (from: {0}, to: {1}, size: {size}), y: (from: {0}, to: {1}, size: {size})",
+        -7.0 * size,
+        7.0 * size
+    );
+    let text = format!(
+        "(name: \"sphere\", dimension: 3, time: (step: 6.25e-4, end: 0.1, theta: 1), materials: {{\"steel\": \"contact_steel\"}},
+          interfaces: [(name: \"c\", between: (\"steel\", \"steel\"), contact: \"coulomb\", parameters: (contact: {{\"mu\": 0.6}}))],
+          half_spaces: [(name: \"flat\", {cells}, touches: Surface),
+            (name: \"sphere\", {cells}, side: Above, profile: Summit(x: 0.05, y: 0.05), mass: 0.01, dofs: (z: Force(-99.52)), touches: Points)])"
+    );
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let loaded = load_text("sphere", &text, folder, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim3>(&search_path());
+    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    go(&mut s, 10);
+    let found = tractions(&s, size * size);
+    let p0 = 1.5 * 99.52 / (PI * a * a);
+    // Cells at the edge are cut by it.
+    let inner = found.iter().filter(|t| t.at.xy().norm() < 0.8 * a);
+    let differ =
+        inner.map(|t| (-t.on.z / p0 - (1.0 - (t.at.xy().norm() / a).powi(2)).sqrt()).abs());
+    let off = differ.fold(0.0, f64::max);
+    println!("{off:.4} of p0");
+    assert!(off < 0.015, "{off}");
+}
