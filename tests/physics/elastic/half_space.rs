@@ -86,14 +86,22 @@ struct Traction<V> {
     on: V,
 }
 
+/// Those of the points that carry a load. A point above a corner of the surface's facets may touch several of them.
 fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
     let contacts = s.state.network.contacts.iter();
     let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
-    loaded
-        .map(|c| Traction {
-            at: s.state.bodies.position[c.bodies[0] as usize],
-            // The impulse is that on the body of the points, above.
-            on: c.impulse * (-1.0 / (area * s.options.scheme.h)),
+    let mut points = std::collections::BTreeMap::new();
+    for c in loaded {
+        // The impulse is that on the body of the points, above.
+        let on = c.impulse * (-1.0 / (area * s.options.scheme.h));
+        let sum = points.entry(c.bodies[0]).or_insert(S::Vector::zero());
+        *sum = *sum + on;
+    }
+    points
+        .into_iter()
+        .map(|(body, on)| Traction {
+            at: s.state.bodies.position[body as usize],
+            on,
         })
         .collect()
 }

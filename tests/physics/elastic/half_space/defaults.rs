@@ -100,7 +100,6 @@ fn a_loose_tolerance_loses_no_contact() {
 
 /// A sphere of R 50 mm under 99.52 N at defaults, 5 cells over a.
 #[test]
-#[ignore = "open: pressures are 72 % off, and converged"]
 fn a_sphere_has_it_at_defaults() {
     let a = (0.75 * 99.52 * 0.05 / MODULUS).cbrt();
     let size = a / 5.0;
