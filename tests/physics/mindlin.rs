@@ -216,20 +216,28 @@ fn forces_follow_any_history_of_load_and_displacement() {
     }
 }
 
-/// T of a contact that sticks falls with the radius of the contact: 6.27 N at 2 um, 6.27/sqrt(2) N at 1 um, and what the springs held that
-/// part, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction.
+/// T of a contact that sticks falls with the radius of the contact: 6.30 N at 2 um, 6.30/sqrt(2) N at 1 um, and what the springs held of that
+/// part, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction. At mu = 10 the rim slips a little, where the pressure vanishes: the annuli have 1 % less.
 #[test]
-#[ignore = "open: 0.5 to 1.1 % below the force without slip at the rim"]
 fn a_lifted_contact_carries_less() {
     const COUNT: usize = 2000;
     let mut s = led(&hertz("\"mu\": 10.0"), lifted, COUNT);
     steps(&mut s, COUNT);
+    let mut annuli = Annuli::new(10.0, 2e-6);
+    let (mut last, mut with_rim) = (lifted(0.0), 0.0);
+    for k in 1..=COUNT {
+        let at = lifted(k as f64 / COUNT as f64);
+        with_rim = annuli.step(at[0], [at[1] - last[1], 0.0])[0];
+        last = at;
+    }
     let k_0 = 8.0 * SHEAR * (RADIUS * 2e-6).sqrt();
     let (force, held) = (k_0 * 5e-7, 0.5 * k_0 * 2.5e-13);
     let found = s.state.network.contacts[0].spring.force_t.norm();
+    assert!((found / with_rim - 1.0).abs() < 1e-3, "{found} {with_rim}");
+    let without = force / 2f64.sqrt();
     assert!(
-        (found / (force / 2f64.sqrt()) - 1.0).abs() < 1e-2,
-        "{found}"
+        0.985 * without < found && found < without,
+        "{found} {without}"
     );
     let (friction, wanted) = (s.state.energy.friction, (1.0 - 0.5f64.sqrt()) * held);
     assert!(

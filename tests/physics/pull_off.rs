@@ -177,8 +177,9 @@ fn pull_off<S: Dimensional>(
     let mut s = scene::<S>(contact, attraction, on_a_ball, h, &ramp);
     for n in 0..820 {
         step(&mut s);
-        // A neck opens before it lets go.
-        let held = if attraction.law == "jkr" { 1.1 } else { 0.1 };
+        // A neck opens before it lets go. Others let go where they begin to open: the inertia of a ball that has let go delays what opens
+        // after that, by 40 steps of 1 us up to a tenth of the range.
+        let held = if attraction.law == "jkr" { 1.1 } else { 1e-3 };
         if opened(&s) > held * attraction.range {
             return from + (to - from) * f64::from((n - 19).max(0)) / 800.0;
         }
@@ -214,7 +215,6 @@ fn rigid_balls_are_pulled_off_at_the_force_of_their_law() {
 }
 
 #[test]
-#[ignore = "open: linear-adhesion holds 2 % longer at 1e-6 s"]
 fn rigid_disks_are_pulled_off_at_the_force_of_their_law() {
     compare::<Dim2>(COULOMB, &in_the_plane(), false, &[1e-4, 1e-5, 1e-6]);
 }

@@ -107,7 +107,10 @@ impl Resolution {
                 "{:.0}, {stick:.0} over what sticks and {slip:.1} over a strip that slips where these are fewest; error of the heat of friction about {error:.1} %",
                 self.across
             ),
-            _ => format!("{:.0}; it never slips in part", self.across),
+            _ => format!(
+                "{:.0}; it never slips in part (a strip of less than an element would slip without heat)",
+                self.across
+            ),
         }
     }
 
@@ -149,16 +152,20 @@ struct Strip {
     slip: f64,
 }
 
-/// Of a contact: its place along the strip, what it carries, and whether it slips.
+/// Of a point in contact: its place along the strip, what it carries, and whether it slips.
 type Loaded = (f64, f64, bool);
+/// A body, or a system of bodies, on the other side.
+type Counterpart = (u32, u32);
+/// A point of a deformable body may touch several facets at their corner; points of other bodies are told apart by their contacts.
+type Point = (u32, usize);
 
 impl Strip {
     /// Of a system and the body that carries most of its load; none where it touches many bodies.
     fn of<S: Space>(s: &Simulation<S>, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<(u32, u32), Vec<Loaded>> = BTreeMap::new();
+        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded>> = BTreeMap::new();
         let mut total = 0.0;
-        for acting in loaded(s, system) {
+        for (k, acting) in loaded(s, system).enumerate() {
             let other = acting.contact.bodies[1 - acting.side];
             let carrier = s.state.bodies.carrier(other as usize);
             let counterpart = carrier.map_or((1, other), |c| (0, c.system));
@@ -167,14 +174,20 @@ impl Strip {
             let load = acting.force.norm();
             total += load;
             let slides = acting.contact.slides;
-            all.entry(counterpart)
-                .or_default()
-                .push((place[0], load, slides));
+            let candidate = acting.contact.bodies[0];
+            let is_point = s.state.bodies.carrier(candidate as usize).is_some();
+            let point = (candidate, if is_point { 0 } else { k });
+            let points = all.entry(counterpart).or_default();
+            let of_point = points.entry(point).or_insert((place[0], 0.0, slides));
+            of_point.1 += load;
+            of_point.2 &= slides;
         }
-        let load = |list: &[(f64, f64, bool)]| list.iter().map(|c| c.1).sum::<f64>();
-        let mut most = all
+        let load = |list: &[Loaded]| list.iter().map(|c| c.1).sum::<f64>();
+        let lists = all
             .into_values()
-            .max_by(|a, b| load(a).total_cmp(&load(b)))?;
+            .map(|points| points.into_values().collect());
+        let mut most: Vec<Loaded> =
+            lists.max_by(|a: &Vec<Loaded>, b| load(a).total_cmp(&load(b)))?;
         if most.len() < FEWEST || load(&most) < MOST * total {
             return None;
         }

@@ -66,6 +66,12 @@ impl<S: Space> SpringForm<S> {
         form.shift_n =
             (self.stiffness_n * (self.gap + self.overlap) - self.force_n + before_touch) / slope;
         form.compliance[0] = 1.0 / (h * slope);
+        // A spring that is found compressed begins with the impulse that it has at rest: sweeps over stiff springs of little mass are long in
+        // building it up.
+        if self.gap < 0.0 && form.impulse == S::Vector::zero() {
+            let at_rest = (-form.shift_n / form.compliance[0]).max(0.0);
+            form.impulse = form.normal * at_rest;
+        }
         let slope = self.stiffness_t * h + self.damping_t;
         if slope > 0.0 {
             form.shift_t = self.force_t * (1.0 / slope);

@@ -23,6 +23,8 @@ const PARTS: usize = 8;
 const BELOW: usize = 4;
 /// Relative difference of attractions that is none: gaps have rounding errors.
 const NO_DIFFERENCE: f64 = 1e-6;
+/// Share of the load of all contacts below which an attraction is left as it is at detection.
+const NEGLIGIBLE: f64 = 1e-6;
 
 /// An attraction linearised at a change of the gap x (m): force (N) and slope (N/m), not negative.
 #[derive(Clone, Copy, Debug, Default)]
@@ -341,9 +343,9 @@ impl<S: Space> Simulation<S> {
                     ..Linear::default()
                 },
             });
-            [start, next]
-                .iter()
-                .any(|f| (*f - here).abs() > NO_DIFFERENCE * here.max(**f))
+            let most = here.max(*start).max(*next);
+            let differs = |f: &f64| (*f - here).abs() > NO_DIFFERENCE * most;
+            h * most > NEGLIGIBLE * whole && (differs(start) || differs(next))
         });
         let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
         for m in &moved {
@@ -362,10 +364,10 @@ impl<S: Space> Simulation<S> {
             let own = used.abs().max(pull.start).max(given);
             let inertia = self.inertia_of(m.at) / (h * h);
             let needed = |here: f64| used + (x - here) * inertia;
-            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * own);
+            let load = own + 0.01 * whole / h;
+            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
             pull.linear = linear;
             next.push(pull);
-            let load = own + 0.01 * whole / h;
             if load > 0.0 {
                 differs = differs.max((given - used).abs() / load);
                 if early && tolerance < 1.0 {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// Residual velocities over those of the contacts from which impulses do not do what they should: a thousand layers share the motion of a lid.
 const NOT_OBEYED: f64 = 0.03;
-/// Iterations below which a step that missed its tolerance says nothing of its motions.
+/// Iterations below which a step that ended at their limit says nothing of its motions.
 const LEAST_ITERATIONS: u32 = 100;
 /// Share of the work of the drives that goes into the residuals, at least, and how much of it is not accounted for by these and by slip,
 /// at most, where they squeeze what does not yield.
@@ -145,7 +145,8 @@ impl<S: Space> Simulation<S> {
         if !solver.unbounded {
             let wasted = solver.parts.residual_energy;
             let left = (work - wasted - solver.parts.slip_energy).abs();
-            let asked = solver.iterations >= LEAST_ITERATIONS;
+            let asked = solver.iterations >= LEAST_ITERATIONS
+                || solver.iterations < self.options.solver.max_iterations;
             if !(asked && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
                 return Vec::new();
             }

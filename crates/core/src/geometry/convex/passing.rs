@@ -9,8 +9,11 @@ use super::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Room that a plane must leave more than the nearest points do, and depth of a closing that matters, as a fraction of the slack.
+/// Room that a plane must leave more than the nearest points do, as a fraction of the slack: half of a closing that is shallower.
 const ALIKE: f64 = 1e-3;
+
+/// Depth of a closing that is one of rounding, as a fraction of the slack.
+const ROUNDING: f64 = 1e-9;
 
 /// Share of a distance by which a place may be in front of a plane to count as behind it.
 const BEHIND: f64 = 1e-9;
@@ -46,6 +49,23 @@ impl<S: Space> PairMotion<S> {
         let change = point.normal.dot(&moved);
         [point.gap + change, change]
     }
+
+    /// Gap that is left at a point at the end of the step (m), if it closes in the step.
+    fn closing(
+        &self,
+        point: &ContactPoint<S::Vector>,
+        apart: &S::Vector,
+        slack: f64,
+    ) -> Option<f64> {
+        let [left, change] = self.left(point, apart);
+        let rounding = ROUNDING * slack;
+        (change < -rounding && left < -rounding).then_some(left)
+    }
+}
+
+/// Gap that a plane must leave at the end of the step to take the place of points that leave `least` (m).
+fn room(least: f64, slack: f64) -> f64 {
+    (least + ALIKE * slack).min(0.5 * least)
 }
 
 /// A face of a pair.
@@ -119,15 +139,11 @@ pub fn keep_apart<S: Space>(
     motion: &PairMotion<S>,
     out: &mut Vec<ContactPoint<S::Vector>>,
 ) {
-    let alike = ALIKE * tolerances.slack;
-    let mut closing: Option<(f64, ContactPoint<S::Vector>)> = None;
-    for m in out.iter() {
-        let [left, change] = motion.left(m, apart);
-        if change < -alike && left < -alike && closing.is_none_or(|c| left < c.0) {
-            closing = Some((left, *m));
-        }
-    }
-    let Some((least, nearest)) = closing else {
+    let closing = out.iter().filter_map(|m| {
+        let left = motion.closing(m, apart, tolerances.slack)?;
+        Some((left, *m))
+    });
+    let Some((least, nearest)) = closing.min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return;
     };
     let pair = Pair::<S> {
@@ -138,7 +154,9 @@ pub fn keep_apart<S: Space>(
     };
     let mut best: Option<Plane<S::Vector>> = None;
     let mut consider = |plane: Plane<S::Vector>| {
-        let room = best.as_ref().map_or(least + alike, |b| b.left);
+        let room = best
+            .as_ref()
+            .map_or(room(least, tolerances.slack), |b| b.left);
         if plane.gap >= -tolerances.slack && plane.left > room {
             best = Some(plane);
         }
@@ -199,13 +217,11 @@ pub fn keep_ball_apart<S: Space>(
     motion: &PairMotion<S>,
     point: &mut ContactPoint<S::Vector>,
 ) {
-    let alike = ALIKE * tolerances.slack;
-    let [least, change] = motion.left(point, apart);
-    if change >= -alike || least >= -alike {
+    let Some(least) = motion.closing(point, apart, tolerances.slack) else {
         return;
-    }
+    };
     let beside = beside::<S>(point, radius + rounding, apart, motion);
-    let mut room = least + alike;
+    let mut room = room(least, tolerances.slack);
     for n in core.normals().iter().copied().chain(beside) {
         let top = core
             .corners()
@@ -243,17 +259,16 @@ pub fn keep_apart_from_surface<S: Space>(
     let alike = ALIKE * tolerances.slack;
     let mut fan = Fan::default();
     for point in out {
-        let [least, change] = motion.left(point, at);
-        if change >= -alike || least >= -alike {
+        let Some(least) = motion.closing(point, at, tolerances.slack) else {
             continue;
-        }
+        };
         fan.normals.clear();
         fan.spokes.clear();
         surface.fan(&point.on_antagonist, alike, &mut fan);
         let beside = beside::<S>(point, rounding, at, motion);
         let own = core.normals().iter().map(|n| -*n);
         let foot = point.on_antagonist;
-        let mut room = least + alike;
+        let mut room = room(least, tolerances.slack);
         for n in fan.normals.iter().copied().chain(own).chain(beside) {
             let rises = |spoke: &S::Vector| spoke.dot(&n) > BEHIND * spoke.norm() + alike;
             if fan.spokes.is_empty() || fan.spokes.iter().any(rises) {
