@@ -34,6 +34,7 @@ mod programme;
 mod projection;
 mod pull_off;
 mod rate;
+mod restitution;
 mod rolling;
 mod scenes;
 mod solids;

@@ -246,6 +246,44 @@ fn a_lifted_contact_carries_less() {
     );
 }
 
+/// Wear by slip counts the displacement that is not elastic, delta - T/k_0: under a constant load 4 (D - T_D/k_0) in a loop of amplitude D,
+/// T_D = mu P (1 - (1 - D/D_s)^1.5) (Mindlin and Deresiewicz).
+#[test]
+fn wear_counts_the_slip_of_partial_slip() {
+    const COUNT: usize = 4000;
+    const K: f64 = 1e-14;
+    const MU: f64 = 0.5;
+    const DEPTH: f64 = 2e-6;
+    /// Where all slips, and the amplitude (m).
+    const WHOLE: f64 = MU * MODULUS * DEPTH / (4.0 * SHEAR);
+    const AMPLITUDE: f64 = 0.8 * WHOLE;
+    fn path(t: f64) -> [f64; 3] {
+        let depth = ramp(t, &[(0.0, 0.0), (0.2, DEPTH)]);
+        let turns = ramp(t, &[(0.0, 0.0), (0.2, 0.0), (1.0, 2.25)]);
+        [depth, AMPLITUDE * (TAU * turns).sin(), 0.0]
+    }
+    let wears = format!("}}, wear: {{\"k\": {K:e}}})");
+    let law = hertz(&format!("\"mu\": {MU:?}")).replace("})", &wears) + ", wear: \"archard\"";
+    let mut s = led(&law, path, COUNT);
+    // From the second peak to the third.
+    let (mut worn, mut from) = (0.0, 0.0);
+    let at = |turns: f64| (COUNT as f64 * (0.2 + 0.8 * turns / 2.25)).round() as usize;
+    for k in 0..at(2.25) {
+        if k == at(1.25) {
+            from = worn;
+        }
+        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
+        worn += report.totals.worn_first;
+    }
+    let load = 4.0 / 3.0 * MODULUS * RADIUS.sqrt() * DEPTH.powf(1.5);
+    let k_0 = 8.0 * SHEAR * (RADIUS * DEPTH).sqrt();
+    let force = MU * load * (1.0 - (1.0 - AMPLITUDE / WHOLE).powf(1.5));
+    let slip = 4.0 * (AMPLITUDE - force / k_0);
+    let ratio = (worn - from) / (K * load * slip);
+    println!("wear of a loop over k P s: {ratio}");
+    assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+}
+
 /// A sphere (a disk) that meets a plate and slides throughout: the impulse of friction is mu times that along the normal, by which it
 /// turns, omega = 5 mu (1 + e) v_n/(2 R) (a disk 2 mu (1 + e) v_n/R).
 #[test]

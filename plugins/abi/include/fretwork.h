@@ -169,7 +169,7 @@ typedef struct fw_batch {
     double *out_stiffness_t; /* Cohesion: tangential stiffness (Pa/m). */
     double *out_damping_n; /* Cohesion: normal damping (Pa s/m). */
     double *out_damping_t; /* Cohesion: tangential damping (Pa s/m). */
-    double *out_energy; /* Cohesion, call energy: energy stored at this opening and damage (J/m^2). */
+    double *out_energy; /* Cohesion, call energy: energy stored at this opening and damage (J/m^2). Contact: energy that the tangential spring holds (J), where it is not out_contact_force_t^2/2 over the stiffness on unloading; 0 otherwise. */
     double *out_damage; /* Damage, and cohesion with FW_FLAG_BREAKS: D at the end of the step. */
     double *out_volume; /* Wear: volume removed over this step (m^3). */
     double *out_moment_n; /* Cohesion with FW_FLAG_MOMENT: twisting moment over the area, against rotation_n (N m/m^2). */
@@ -189,7 +189,7 @@ typedef struct fw_batch {
     double *out_contact_force_t2; /* Contact: force of the tangential spring along t2 (N). */
     double *out_contact_stiffness_n; /* Contact: slope of the normal force at overlap (N/m). */
     double *out_contact_stiffness_t; /* Contact: slope of the tangential force (N/m); 0 for a rigid tangential contact. */
-    double *out_contact_unloading_t; /* Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored energy; 0 where it is out_contact_stiffness_t. */
+    double *out_contact_unloading_t; /* Contact: stiffness of the tangential spring when it unloads (N/m), beyond which displacement is slip; 0 where it is out_contact_stiffness_t. */
     double *out_contact_damping_n; /* Contact: normal damping (N s/m). */
     double *out_contact_damping_t; /* Contact: tangential damping (N s/m). */
     /* Since version 1.1; null where the case computes no heat. */

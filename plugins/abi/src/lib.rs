@@ -226,7 +226,8 @@ pub struct FwBatch {
     pub out_damping_n: *mut f64,
     /// Cohesion: tangential damping (Pa s/m).
     pub out_damping_t: *mut f64,
-    /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2).
+    /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2). Contact: energy that the tangential spring holds (J), where
+    /// it is not T^2/2 over the stiffness on unloading; 0 otherwise.
     pub out_energy: *mut f64,
     /// Damage, and cohesion with [`FLAG_BREAKS`]: D at the end of the step.
     pub out_damage: *mut f64,

@@ -339,6 +339,7 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
             out_contact_stiffness_n = s.stiffness_n,
             out_contact_stiffness_t = s.stiffness_t,
             out_contact_unloading_t = s.unloading_t,
+            out_energy = s.energy_t,
             out_contact_damping_n = s.damping_n,
             out_contact_damping_t = s.damping_t,
         )

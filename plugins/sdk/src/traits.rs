@@ -220,8 +220,10 @@ pub struct Spring {
     pub force_t: [f64; 2],
     /// Its slope; 0 for a rigid tangential contact.
     pub stiffness_t: f64,
-    /// Its slope when it unloads, where that is another; 0 otherwise.
+    /// Its slope when it unloads, where that is another; 0 otherwise. Displacement beyond that of this slope is slip.
     pub unloading_t: f64,
+    /// Energy that it holds (J), where that is not T^2/2 over the slope on unloading; 0 otherwise.
+    pub energy_t: f64,
     /// Tangential damping (N s/m).
     pub damping_t: f64,
 }
@@ -237,6 +239,7 @@ impl Spring {
             force_t: site.spring_t,
             stiffness_t: k_t,
             unloading_t: k_t,
+            energy_t: 0.0,
             damping_t: 0.0,
         }
     }

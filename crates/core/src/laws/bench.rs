@@ -198,6 +198,7 @@ impl Bench {
             time: states.first().map_or(0.0, |s| s.time),
             h,
             theta: 0.5,
+            correction: 0.0,
         };
         self.contact(states, motions, &info, &mut answers)?;
         let bond_step = self.update_damage(states, motions, &info)?;

@@ -19,6 +19,8 @@ pub struct StepInfo {
     pub h: f64,
     /// Theta of the scheme.
     pub theta: f64,
+    /// Share of an overlap that is taken out in a step.
+    pub correction: f64,
 }
 
 /// The columns of one batch; the buffers are reused from step to step.
@@ -335,7 +337,14 @@ impl Columns {
         let state: Vec<*const f64> = state.map(|v| pointers.input(v)).collect();
         let next = self.state_next.iter_mut().skip(first).take(count);
         let next: Vec<*mut f64> = next.map(|v| pointers.output(v)).collect();
+        let energy = if loaded.plugin.kind == Kind::CONTACT {
+            &mut self.out.contact_energy_t
+        } else {
+            &mut self.out.energy
+        };
+        let energy = pointers.output(energy);
         let answer = call(&FwBatch {
+            out_energy: energy,
             degradation,
             parameters: loaded.parameters.as_ptr(),
             state: if state.is_empty() {

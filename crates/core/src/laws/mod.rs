@@ -32,6 +32,7 @@ pub mod search;
 mod spring;
 pub mod static_memory;
 mod step_result;
+mod trial;
 mod trust;
 pub mod watch;
 
@@ -44,7 +45,8 @@ pub use library::{Call, Plugin};
 pub use plugin_table::Field;
 
 pub use range::Range;
-pub use rate::{FrictionAt, Step};
+pub use rate::FrictionAt;
 pub use search::{Place, SearchPath};
 pub use spring::{SpringForm, SpringStep};
 pub use step_result::{ContactStep, MomentStep, SolvedStep, Totals, Velocities};
+pub use trial::Step;

@@ -29,6 +29,8 @@ pub struct Outputs {
     pub contact_stiffness_n: Vec<f64>,
     pub contact_stiffness_t: Vec<f64>,
     pub contact_unloading_t: Vec<f64>,
+    /// Energy that the tangential spring of a contact holds, where the law tells it (J); `out_energy` of contact laws.
+    pub contact_energy_t: Vec<f64>,
     pub contact_damping_n: Vec<f64>,
     pub contact_damping_t: Vec<f64>,
     pub conductance: Vec<f64>,
@@ -40,7 +42,7 @@ pub(super) type Group<'a, const N: usize> = [&'a mut Vec<f64>; N];
 
 impl Outputs {
     /// The columns of every call, those of compliant contacts, and those of transport.
-    pub(super) fn groups(&mut self) -> (Group<'_, 22>, Group<'_, 8>, Group<'_, 2>) {
+    pub(super) fn groups(&mut self) -> (Group<'_, 22>, Group<'_, 9>, Group<'_, 2>) {
         let [tn, t1, t2] = &mut self.traction;
         let [mn, m1, m2] = &mut self.moment;
         let [force_n, f1, f2] = &mut self.contact_force;
@@ -72,6 +74,7 @@ impl Outputs {
             &mut self.contact_stiffness_n,
             &mut self.contact_stiffness_t,
             &mut self.contact_unloading_t,
+            &mut self.contact_energy_t,
             &mut self.contact_damping_n,
             &mut self.contact_damping_t,
             force_n,

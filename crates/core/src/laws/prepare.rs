@@ -445,6 +445,7 @@ impl Batch {
             force_t: S::from_components(&contact.normal, t1[k], t2),
             stiffness_t: out.contact_stiffness_t[k],
             unloading_t: out.contact_unloading_t[k],
+            energy_t: out.contact_energy_t[k],
             damping_t: out.contact_damping_t[k],
         }
     }
@@ -548,8 +549,15 @@ fn apply_friction<S: Space>(
                 form.shift_n = f64::INFINITY;
             }
         } else if un < 0.0 {
-            // Where the surface bends towards it, it leaves no slower than along that.
-            form.shift_n = form.shift_n.min(friction.e_n * un);
+            // Restitution takes the place of the gap and of its correction. Where the surface bends towards the body, it leaves no slower than
+            // along that.
+            let of_gap = if gap > 0.0 {
+                gap
+            } else {
+                info.correction * gap
+            };
+            let bends = form.shift_n - of_gap / info.h;
+            form.shift_n = bends.min(friction.e_n * un);
         }
     }
     if impact && friction.e_t > 0.0 {

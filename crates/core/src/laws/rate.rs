@@ -1,17 +1,12 @@
 //! Friction at a velocity of sliding other than that at the start of the step, by another call of the contact law.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::{Batch, locate};
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::gather::Source;
-use super::history::LawHistory;
-use super::interface::Interface;
 use super::library::Call;
-use super::step_result::Velocities;
-use crate::contact::Network;
+use super::trial::{Asked, Step};
 use crate::geometry::space::Space;
-use crate::laws::columns::StepInfo;
-use crate::threads::any_size;
 
 /// About what the two calls take for a contact (ns).
 const EACH: f64 = 120.0;
@@ -19,24 +14,13 @@ const EACH: f64 = 120.0;
 /// Velocities of sliding at which a law is tried for whether it depends on them (m/s).
 const TRIED: [f64; 7] = [0.0, 1e-9, 1e-6, 1e-3, 3e-2, 1.0, 1e2];
 
+/// Contacts of an interface on which that is tried, at most, spread over all of them: it may depend on what a contact has, its
+/// state or the size of its bodies.
+const SAMPLE: usize = 16;
+
 /// Relative change of the velocity from which a slope follows, and of friction by it that is more than rounding.
 const NEARBY: f64 = 1e-4;
 const ROUNDING: f64 = 1e-13;
-
-/// Where laws are asked: the contacts of the step, and what is known of them at its start.
-#[derive(Debug)]
-pub struct Step<'a, S: Space> {
-    /// The interfaces.
-    pub laws: &'a [Interface],
-    /// Memory of the checks.
-    pub history: &'a mut LawHistory,
-    /// The contacts.
-    pub network: &'a mut Network<S>,
-    /// Velocities and overlaps at the start of the step.
-    pub before: &'a Velocities<S>,
-    /// Time and scheme.
-    pub info: &'a StepInfo,
-}
 
 /// Friction of a contact at a velocity of sliding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,7 +32,7 @@ pub struct FrictionAt {
 }
 
 impl LawEvaluator {
-    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on one of their contacts, with the contacts that
+    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on some of their contacts, with the contacts that
     /// they have in the step. An error at a velocity that is tried is none of the run's.
     pub fn rate_dependent<S: Space>(&mut self, step: &mut Step<'_, S>) -> Vec<(usize, Vec<usize>)> {
         let mut found = Vec::new();
@@ -56,24 +40,29 @@ impl LawEvaluator {
             if law.constant_contact() {
                 continue;
             }
-            let Some(first) = self.members[index].all.first() else {
+            let all = &self.members[index].all;
+            let every = all.len().div_ceil(SAMPLE).max(1);
+            let sample: Vec<usize> = all.iter().copied().step_by(every).collect();
+            if sample.is_empty() {
                 continue;
-            };
+            }
             let source = Source {
                 law,
                 index,
                 network: &*step.network,
                 info: step.info,
             };
-            let members = [*first; TRIED.len()];
-            let depends = self.pool.with(|batch| {
-                batch.gather_before(&source, &members, step.before, &[law.contact()]);
-                let [_, t1, t2] = &mut batch.columns.velocity;
-                t1.copy_from_slice(&TRIED);
-                t2.fill(0.0);
-                let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
-                let friction = &batch.columns.out.friction;
-                asked.is_err() || friction.iter().any(|mu| *mu != friction[0])
+            let depends = sample.iter().any(|at| {
+                let members = [*at; TRIED.len()];
+                self.pool.with(|batch| {
+                    batch.gather_before(&source, &members, step.before, &[law.contact()]);
+                    let [_, t1, t2] = &mut batch.columns.velocity;
+                    t1.copy_from_slice(&TRIED);
+                    t2.fill(0.0);
+                    let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
+                    let friction = &batch.columns.out.friction;
+                    asked.is_err() || friction.iter().any(|mu| *mu != friction[0])
+                })
             });
             if depends {
                 found.push((index, self.members[index].all.clone()));
@@ -93,40 +82,20 @@ impl LawEvaluator {
         members: &[usize],
         velocities: &[S::Tangent],
     ) -> Result<Vec<FrictionAt>, LawError> {
-        let (law, before, info) = (&step.laws[index], step.before, step.info);
-        let size = any_size(BATCH);
-        let tasks: Vec<_> = members.chunks(size).zip(velocities.chunks(size)).collect();
-        let of = |network: &Network<S>,
-                  batch: &mut Batch,
-                  (members, velocities): &mut (&[usize], &[S::Tangent])| {
-            let source = Source {
-                law,
-                index,
-                network,
-                info,
-            };
-            batch.gather_before(&source, members, before, &[law.contact()]);
-            for (k, at) in members.iter().enumerate() {
-                let [v1, v2] = S::components(&network.contacts[*at].normal, &velocities[k]);
+        self.ask(step, index, members, velocities, EACH, |batch, asked| {
+            let Asked { source, before, .. } = *asked;
+            batch.gather_before(&source, asked.members, before, &[source.law.contact()]);
+            for (k, at) in asked.members.iter().enumerate() {
+                let normal = &source.network.contacts[*at].normal;
+                let [v1, v2] = S::components(normal, &asked.given[k]);
                 let [_, t1, t2] = &mut batch.columns.velocity;
                 t1[k] = v1;
                 if S::D == 3 {
                     t2[k] = v2;
                 }
             }
-            batch.friction_and_slope(&source, members)
-        };
-        let mut all = Vec::with_capacity(members.len());
-        let divide = self.divides(members.len(), EACH);
-        self.pool.evaluate(
-            divide,
-            &mut step.history.largest,
-            step.network,
-            tasks,
-            of,
-            |_, _, found| all.extend(found),
-        )?;
-        Ok(all)
+            batch.friction_and_slope(&source, asked.members)
+        })
     }
 }
 

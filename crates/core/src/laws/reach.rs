@@ -1,15 +1,13 @@
 //! Attraction without opening at a gap other than that of detection, by another call of the cohesion law.
 
-use super::batch::{BATCH, Batch, locate};
+use super::batch::locate;
 use super::error::LawError;
 use super::evaluator::LawEvaluator;
 use super::gather::Source;
 use super::interface::Interface;
 use super::library::Call;
-use super::rate::Step;
-use crate::contact::Network;
+use super::trial::{Asked, Step};
 use crate::geometry::space::Space;
-use crate::threads::any_size;
 
 /// About what a call takes for a contact (ns).
 const EACH: f64 = 80.0;
@@ -41,58 +39,44 @@ impl LawEvaluator {
         members: &[usize],
         gaps: &[f64],
     ) -> Result<Vec<f64>, LawError> {
-        let (law, before, info) = (&step.laws[index], step.before, step.info);
-        let Some(cohesion) = law.cohesion() else {
+        let Some(cohesion) = step.laws[index].cohesion() else {
             return Ok(vec![0.0; members.len()]);
         };
-        let size = any_size(BATCH);
-        let tasks: Vec<_> = members.chunks(size).zip(gaps.chunks(size)).collect();
-        let of =
-            |network: &Network<S>, batch: &mut Batch, (members, gaps): &mut (&[usize], &[f64])| {
-                let source = Source {
-                    law,
-                    index,
-                    network,
-                    info,
-                };
-                let failed = |e| locate(law, network, members, e);
-                batch.gather_before(&source, members, before, &[cohesion]);
-                let touching = |at: &usize| network.contacts[*at].gap <= 0.0;
-                if cohesion.variables() > 0 && members.iter().any(touching) {
-                    batch
-                        .run_afresh(cohesion, info, 0.0, Call::Commit)
-                        .map_err(failed)?;
-                    let first = cohesion.first_variable;
-                    for v in first..first + cohesion.variables() {
-                        let columns = &mut batch.columns;
-                        let states = columns.state[v].iter_mut().zip(&columns.state_next[v]);
-                        for ((state, next), at) in states.zip(*members) {
-                            if touching(at) {
-                                *state = *next;
-                            }
+        self.ask(step, index, members, gaps, EACH, |batch, asked| {
+            let Asked {
+                source,
+                before,
+                members,
+                given: gaps,
+            } = *asked;
+            let Source {
+                law, network, info, ..
+            } = source;
+            let failed = |e| locate(law, network, members, e);
+            batch.gather_before(&source, members, before, &[cohesion]);
+            let touching = |at: &usize| network.contacts[*at].gap <= 0.0;
+            if cohesion.variables() > 0 && members.iter().any(touching) {
+                batch
+                    .run_afresh(cohesion, info, 0.0, Call::Commit)
+                    .map_err(failed)?;
+                let first = cohesion.first_variable;
+                for v in first..first + cohesion.variables() {
+                    let columns = &mut batch.columns;
+                    let states = columns.state[v].iter_mut().zip(&columns.state_next[v]);
+                    for ((state, next), at) in states.zip(members) {
+                        if touching(at) {
+                            *state = *next;
                         }
                     }
                 }
-                batch.columns.gap.copy_from_slice(gaps);
-                batch
-                    .run_afresh(cohesion, info, 0.0, Call::Prepare)
-                    .map_err(failed)?;
-                let columns = &batch.columns;
-                let all = columns.out.tension_strength.iter().zip(&columns.area);
-                Ok(all
-                    .map(|(strength, area)| strength * area)
-                    .collect::<Vec<_>>())
-            };
-        let mut all = Vec::with_capacity(members.len());
-        let divide = self.divides(members.len(), EACH);
-        self.pool.evaluate(
-            divide,
-            &mut step.history.largest,
-            step.network,
-            tasks,
-            of,
-            |_, _, found| all.extend(found),
-        )?;
-        Ok(all)
+            }
+            batch.columns.gap.copy_from_slice(gaps);
+            batch
+                .run_afresh(cohesion, info, 0.0, Call::Prepare)
+                .map_err(failed)?;
+            let columns = &batch.columns;
+            let all = columns.out.tension_strength.iter().zip(&columns.area);
+            Ok(all.map(|(strength, area)| strength * area).collect())
+        })
     }
 }

@@ -31,8 +31,10 @@ pub struct SpringForm<S: Space> {
     pub force_t: S::Tangent,
     /// Its slope k_t (N/m); 0 for a rigid tangential contact.
     pub stiffness_t: f64,
-    /// Slope of the tangential force when it unloads (N/m): T_0^2/(2 unloading_t) is the energy that it holds.
+    /// Slope of the tangential force when it unloads (N/m): displacement beyond it is slip.
     pub unloading_t: f64,
+    /// Energy that the tangential force holds at the start of the step (J); 0 where that is T_0^2/(2 unloading_t).
+    pub energy_t: f64,
     /// Tangential damping d_t (N s/m).
     pub damping_t: f64,
 }
@@ -84,9 +86,19 @@ impl<S: Space> SpringForm<S> {
     pub fn limit_to(&mut self, energy: f64) {
         /// Share of the energy that rounding may add, where the force turned with its pair.
         const ROUNDING: f64 = 1e-9;
-        let held = self.tangential_energy(&self.force_t);
+        let held = self.held();
         if held > energy * (1.0 + ROUNDING) {
             self.force_t = self.force_t * (energy / held).sqrt();
+            self.energy_t *= energy / held;
+        }
+    }
+
+    /// The energy of the tangential force at the start of the step (J).
+    fn held(&self) -> f64 {
+        if self.energy_t > 0.0 {
+            self.energy_t
+        } else {
+            self.tangential_energy(&self.force_t)
         }
     }
 
@@ -193,10 +205,10 @@ impl<S: Space> SpringForm<S> {
         let force = p * (-1.0 / h) - stretch * self.damping_t;
         let unloading = self.unloading();
         spring.force_t = force;
-        let held = self.tangential_energy(&self.force_t);
+        let held = self.held();
         // A law of another slope than that of unloading slips within the contact area: what that takes of the work shows in the energy which
         // the law gives for the next step.
-        spring.energy[1] = if self.stiffness_t == unloading {
+        spring.energy[1] = if self.stiffness_t == unloading && self.energy_t == 0.0 {
             self.tangential_energy(&force)
         } else {
             (held + 0.5 * h * (self.force_t + force).dot(&stretch)).max(0.0)

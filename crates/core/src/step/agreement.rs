@@ -15,6 +15,8 @@ const TOLERANCE: f64 = 1e-4;
 /// gaps that hold and gaps that do not.
 const MOST: u32 = 40;
 const MOST_OF_ATTRACTION: u32 = 12;
+/// Iterations of a solve whose laws are not those of the solution yet.
+const BRIEF: u32 = 100;
 
 /// How laws and the step agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -44,12 +46,19 @@ impl<S: Space> Simulation<S> {
         let mut sliding = sliding.map_err(|e| self.law_error(e))?;
         report.timing.laws += clock.elapsed();
         let mut agreement = Agreement::default();
+        let brief = solve::Options {
+            max_iterations: options.max_iterations.min(BRIEF),
+            ..*options
+        };
+        // Laws that follow the velocity are brought near to their solution first.
+        let mut to_the_end = sliding.is_empty();
         loop {
             let clock = Instant::now();
-            self.solve_contacts(free, options, report)?;
+            self.solve_contacts(free, if to_the_end { options } else { &brief }, report)?;
             report.timing.solve += clock.elapsed();
             self.collect_contact_steps();
             agreement.solves += 1;
+            let solved = to_the_end || report.solver.converged;
             let clock = Instant::now();
             // After the last solve nothing is linearised anew: its forms are those of the solution.
             let again = agreement.solves < MOST;
@@ -65,8 +74,12 @@ impl<S: Space> Simulation<S> {
             (agreement.friction, agreement.attraction) = (friction.share, attraction);
             report.timing.laws += clock.elapsed();
             if attraction <= tolerance && (friction.agrees || !again) {
-                break;
+                if solved {
+                    break;
+                }
+                to_the_end = true;
             }
+            to_the_end |= agreement.solves + 1 >= MOST;
             let both = self
                 .workspace
                 .forms

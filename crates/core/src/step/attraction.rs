@@ -21,8 +21,8 @@ const OCTAVES: usize = 18;
 const PARTS: usize = 8;
 /// Nodes at gaps below zero, where bodies overlap.
 const BELOW: usize = 4;
-/// Relative difference of attractions that is none: gaps have rounding errors.
-const NO_DIFFERENCE: f64 = 1e-6;
+/// Difference of attractions over the load of a contact that is none.
+const NO_DIFFERENCE: f64 = 1e-4;
 /// Share of the load of all contacts below which an attraction is left as it is at detection.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -344,7 +344,8 @@ impl<S: Space> Simulation<S> {
                 },
             });
             let most = here.max(*start).max(*next);
-            let differs = |f: &f64| (*f - here).abs() > NO_DIFFERENCE * most;
+            let load = most + 0.01 * whole / h;
+            let differs = |f: &f64| (*f - here).abs() > NO_DIFFERENCE * load;
             h * most > NEGLIGIBLE * whole && (differs(start) || differs(next))
         });
         let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());

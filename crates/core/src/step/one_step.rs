@@ -48,6 +48,7 @@ impl<S: Space> Simulation<S> {
             time: self.state.time,
             h,
             theta,
+            correction: self.options.correction,
         }
     }
 

@@ -4,6 +4,10 @@
 //! mu - m V beside a damper m P, which the standard form has as the single-valued part b_t, and Newton's iteration follows: a law that rises
 //! cannot make a step unstable, however long. Where friction falls with the velocity the coefficient is that at the last velocity found; the
 //! iteration then goes to the next state of equilibrium, stick or slip, in the direction in which the step sets out.
+//!
+//! Laws in the logarithm of the velocity rise without bound towards rest, m P then being far above all masses, and a network of such dampers is
+//! as good as glued. Velocities below the floor V_0, the tolerance of the solver times the root mean square of the velocities of all contacts,
+//! are none that a solution could tell from rest: laws are asked at max(|u_t|, V_0).
 
 use super::Simulation;
 use crate::contact::Contact;
@@ -25,8 +29,10 @@ const MANY: u32 = 8;
 /// Share of the velocity of linearisation below which Newton's step is taken in the logarithm of the velocity: laws that rise do so ever
 /// slower, and their tangent leads to rest.
 const FAR_BELOW: f64 = 0.1;
-/// Largest step of that (powers of e).
-const LONGEST: f64 = 50.0;
+/// Largest step of that (powers of e): among many contacts one that is held now may have to slide in the next solve.
+const LONGEST: f64 = 4.0;
+/// Largest tolerance that the floor of velocities is taken from.
+const COARSEST: f64 = 1e-4;
 /// Iterations after which those that rise go half as far, in the logarithm.
 const CAUTIOUS: u32 = 10;
 
@@ -72,6 +78,17 @@ struct Group<S: Space> {
     contacts: Vec<Sliding<S>>,
 }
 
+/// Direction and size of the tangential part of a velocity; any direction for none.
+fn direction<S: Space>(normal: &S::Vector, velocity: &S::Vector) -> (S::Tangent, f64) {
+    let ut = S::tangential(normal, velocity);
+    let speed = ut.norm();
+    if speed > 0.0 {
+        (ut * (1.0 / speed), speed)
+    } else {
+        (S::from_components(normal, 1.0, 0.0), 0.0)
+    }
+}
+
 /// What a contact did in a solve.
 #[derive(Clone, Copy, Debug)]
 struct Done<S: Space> {
@@ -93,14 +110,8 @@ impl<S: Space> Done<S> {
         step: &ContactStep<S>,
         after: &S::Vector,
     ) -> Self {
-        let ut = S::tangential(&contact.normal, after);
-        let speed = ut.norm();
+        let (along, speed) = direction::<S>(&contact.normal, after);
         let solution = &step.solution;
-        let along = if speed > 0.0 {
-            ut * (1.0 / speed)
-        } else {
-            S::from_components(&contact.normal, 1.0, 0.0)
-        };
         Self {
             along,
             speed,
@@ -145,6 +156,21 @@ impl Mismatch {
 pub(super) struct SlidingLaws<S: Space> {
     groups: Vec<Group<S>>,
     iterations: u32,
+    /// V_0 (m/s).
+    floor: f64,
+}
+
+impl<S: Space> SlidingLaws<S> {
+    /// Whether no friction depends on the velocity.
+    pub fn is_empty(&self) -> bool {
+        self.groups.is_empty()
+    }
+}
+
+/// V_0 from relative velocities (m/s).
+fn floor<S: Space>(tolerance: f64, relative: &[S::Vector]) -> f64 {
+    let squared: f64 = relative.iter().map(|u| u.dot(u)).sum();
+    tolerance.min(COARSEST) * (squared / relative.len().max(1) as f64).sqrt()
 }
 
 impl<S: Space> Simulation<S> {
@@ -153,16 +179,23 @@ impl<S: Space> Simulation<S> {
         let mut all = SlidingLaws {
             groups: Vec::new(),
             iterations: 0,
+            floor: 0.0,
         };
         if self.laws.iter().all(|law| law.constant_contact()) {
             return Ok(all);
         }
+        let tolerance = self.options.solver.tolerance;
+        all.floor = floor::<S>(tolerance, &self.workspace.solved.before.relative);
         let (evaluator, mut step) = self.asks(info);
         let dependent = evaluator.rate_dependent(&mut step);
         for (interface, members) in dependent {
             let contacts = &self.state.network.contacts;
             let before = &self.workspace.solved.before.relative;
-            let of = |at: &usize| S::tangential(&contacts[*at].normal, &before[*at]);
+            let of = |at: &usize| {
+                let n = &contacts[*at].normal;
+                let (along, speed) = direction::<S>(n, &before[*at]);
+                along * speed.max(all.floor)
+            };
             let velocities: Vec<S::Tangent> = members.iter().map(of).collect();
             let (evaluator, mut step) = self.asks(info);
             let friction = evaluator.friction_at(&mut step, interface, &members, &velocities)?;
@@ -199,6 +232,15 @@ impl<S: Space> Simulation<S> {
         info: &StepInfo,
     ) -> Result<Mismatch, LawError> {
         laws.iterations += 1;
+        if laws.groups.is_empty() {
+            return Ok(Mismatch {
+                share: 0.0,
+                agrees: true,
+            });
+        }
+        let floor = floor::<S>(self.options.solver.tolerance, &self.workspace.solved.after);
+        laws.floor = laws.floor.max(floor);
+        let floor = laws.floor;
         let mut differences = Vec::new();
         let mut found = Vec::with_capacity(laws.groups.len());
         for group in &laws.groups {
@@ -214,7 +256,10 @@ impl<S: Space> Simulation<S> {
                 )
             };
             let done: Vec<Done<S>> = group.contacts.iter().map(of).collect();
-            let velocities = done.iter().map(|d| d.along * d.speed).collect::<Vec<_>>();
+            let velocities = done
+                .iter()
+                .map(|d| d.along * d.speed.max(floor))
+                .collect::<Vec<_>>();
             let friction = self.friction_of(group, &velocities, info)?;
             for ((sliding, done), friction) in group.contacts.iter().zip(&done).zip(&friction) {
                 if done.load == 0.0 {
@@ -237,9 +282,9 @@ impl<S: Space> Simulation<S> {
         if mismatch.agrees || !again {
             return Ok(mismatch);
         }
-        let iterations = laws.iterations;
+        let (iterations, floor) = (laws.iterations, laws.floor);
         for (group, (done, friction)) in laws.groups.iter_mut().zip(found) {
-            self.linearise_sliding(group, &done, &friction, iterations, info)?;
+            self.linearise_sliding(group, &done, &friction, (iterations, floor), info)?;
         }
         Ok(mismatch)
     }
@@ -261,15 +306,16 @@ impl<S: Space> Simulation<S> {
         group: &mut Group<S>,
         done: &[Done<S>],
         found: &[FrictionAt],
-        iterations: u32,
+        (iterations, floor): (u32, f64),
         info: &StepInfo,
     ) -> Result<(), LawError> {
         let mut speeds = Vec::with_capacity(done.len());
         for (sliding, done) in group.contacts.iter().zip(done) {
             let cohesion = self.workspace.forms[sliding.at].cohesion;
-            speeds.push(next_speed(sliding, done, cohesion, iterations));
+            speeds.push(next_speed(sliding, done, cohesion, iterations).max(floor));
         }
-        let elsewhere = speeds.iter().zip(done).any(|(v, d)| *v != d.speed);
+        let asked = |d: &Done<S>| d.speed.max(floor);
+        let elsewhere = speeds.iter().zip(done).any(|(v, d)| *v != asked(d));
         let given;
         let friction = if elsewhere {
             let velocities = done.iter().zip(&speeds).map(|(d, v)| d.along * *v);

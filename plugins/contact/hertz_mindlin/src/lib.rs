@@ -92,8 +92,6 @@ impl Law for HertzMindlin {
 const OVERLAP: usize = 15;
 /// Least slope of the tangential force, over k_0.
 const LEAST_SLOPE: f64 = 1e-3;
-/// The same of what tells the energy: a contact without force may hold some, which forces of both signs lock in.
-const LEAST_UNLOADING: f64 = 1e-12;
 /// Share of the friction bound from which a contact is taken to slip as a whole.
 const WHOLE: f64 = 1.0 - 1e-3;
 
@@ -192,13 +190,6 @@ impl Sphere {
         profile.slip(d, beta);
         let (sum, squares) = profile.sums();
         let before = sum.map(|t| t * self.scale);
-        // The energy that is stored is that of a spring of this stiffness: more than T^2/(2 k_0), because displacements differ.
-        let stored = self.scale * squares;
-        let unloading = if stored > 0.0 {
-            dot(before, before) / stored
-        } else {
-            self.k_0
-        };
         let by = [site.h * site.velocity[1], site.h * site.velocity[2]];
         profile.shift(by);
         profile.slip(d, beta);
@@ -214,7 +205,9 @@ impl Sphere {
         Spring {
             force_t: before,
             stiffness_t: self.k_0 * slope.clamp(LEAST_SLOPE, 1.0),
-            unloading_t: unloading.clamp(LEAST_UNLOADING * self.k_0, self.k_0),
+            unloading_t: self.k_0,
+            // More than T^2/(2 k_0), because displacements differ.
+            energy_t: 0.5 * self.scale * squares,
             ..Spring::default()
         }
     }
@@ -290,6 +283,7 @@ impl ContactLaw for HertzMindlin {
                 force_t: site.spring_t,
                 stiffness_t: k_t,
                 unloading_t: k_t,
+                energy_t: 0.0,
                 damping_t: 0.0,
             };
         }

@@ -38,6 +38,7 @@ impl Bench {
             time: 0.0,
             h: 1.0,
             theta: 0.5,
+            correction: 0.0,
         };
         self.fill(&[state], &[motion], &info, false);
         let contact = self.law.contact().clone();

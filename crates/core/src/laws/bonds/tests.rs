@@ -14,6 +14,7 @@ const INFO: StepInfo = StepInfo {
     time: 0.0,
     h: 0.5,
     theta: 0.5,
+    correction: 0.0,
 };
 
 /// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 over a step at half of the final forces, k A x/2,

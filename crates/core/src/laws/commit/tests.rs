@@ -14,6 +14,7 @@ const INFO: StepInfo = StepInfo {
     time: 0.0,
     h: 0.25,
     theta: 0.5,
+    correction: 0.0,
 };
 
 const PAIR: [MaterialPair; 1] = [MaterialPair {

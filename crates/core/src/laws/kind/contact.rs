@@ -53,6 +53,7 @@ fn outputs(out: &mut Outputs, call: Call) -> Vec<Output<'_>> {
         ("out_contact_stiffness_n", &mut out.contact_stiffness_n),
         ("out_contact_stiffness_t", &mut out.contact_stiffness_t),
         ("out_contact_unloading_t", &mut out.contact_unloading_t),
+        ("out_energy", &mut out.contact_energy_t),
         ("out_contact_damping_n", &mut out.contact_damping_n),
         ("out_contact_damping_t", &mut out.contact_damping_t),
     ];

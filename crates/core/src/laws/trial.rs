@@ -1,0 +1,83 @@
+//! Calls of laws beside those of the step, with some of their inputs replaced: nothing is remembered of them.
+
+use super::batch::{BATCH, Batch};
+use super::error::LawError;
+use super::evaluator::LawEvaluator;
+use super::gather::Source;
+use super::history::LawHistory;
+use super::interface::Interface;
+use super::step_result::Velocities;
+use crate::contact::Network;
+use crate::geometry::space::Space;
+use crate::laws::columns::StepInfo;
+use crate::threads::any_size;
+
+/// Where laws are asked: the contacts of the step, and what is known of them at its start.
+#[derive(Debug)]
+pub struct Step<'a, S: Space> {
+    /// The interfaces.
+    pub laws: &'a [Interface],
+    /// Memory of the checks.
+    pub history: &'a mut LawHistory,
+    /// The contacts.
+    pub network: &'a mut Network<S>,
+    /// Velocities and overlaps at the start of the step.
+    pub before: &'a Velocities<S>,
+    /// Time and scheme.
+    pub info: &'a StepInfo,
+}
+
+/// Contacts of one interface that a batch asks for, each with a value that takes the place of an input.
+pub(super) struct Asked<'a, S: Space, T> {
+    pub source: Source<'a, S>,
+    pub before: &'a Velocities<S>,
+    pub members: &'a [usize],
+    pub given: &'a [T],
+}
+
+impl LawEvaluator {
+    /// Asks a law of an interface for contacts with given values, by batches that are divided among threads; a call takes about `each` (ns) for a
+    /// contact.
+    pub(super) fn ask<S: Space, T: Sync, R: Send>(
+        &mut self,
+        step: &mut Step<'_, S>,
+        index: usize,
+        members: &[usize],
+        given: &[T],
+        each: f64,
+        call: impl Fn(&mut Batch, &Asked<'_, S, T>) -> Result<Vec<R>, LawError> + Sync,
+    ) -> Result<Vec<R>, LawError> {
+        let (law, before, info) = (&step.laws[index], step.before, step.info);
+        let size = any_size(BATCH);
+        let tasks: Vec<_> = members.chunks(size).zip(given.chunks(size)).collect();
+        let of =
+            |network: &Network<S>, batch: &mut Batch, (members, given): &mut (&[usize], &[T])| {
+                let source = Source {
+                    law,
+                    index,
+                    network,
+                    info,
+                };
+                call(
+                    batch,
+                    &Asked {
+                        source,
+                        before,
+                        members,
+                        given,
+                    },
+                )
+            };
+        let mut all = Vec::with_capacity(members.len());
+        let divide = self.divides(members.len(), each);
+        self.pool.evaluate(
+            divide,
+            &mut step.history.largest,
+            step.network,
+            tasks,
+            of,
+            |_, _, found| all.extend(found),
+        )?;
+        Ok(all)
+    }
+}
