@@ -4,6 +4,8 @@
 //! Those are SIGINT (Ctrl-C) and SIGTERM, SIGHUP of a terminal that closes, and SIGXCPU and SIGXFSZ of limits on the time of the
 //! processor and on the size of files, which the system sends again and again. On Windows Ctrl-C arrives as SIGINT; the others are
 //! never sent there.
+//!
+//! Where the limit on time ends a process at once, as that of `ulimit -t` does, it is asked for its signal some seconds earlier.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -25,14 +27,14 @@ const OF_SOMEBODY: [(i32, &str); 2] = [(SIGINT, "SIGINT (Ctrl-C)"), (SIGTERM, "S
 /// Signals of a terminal and of limits.
 #[cfg(unix)]
 const OF_SYSTEM: [(i32, &str); 3] = [
-    (libc::SIGHUP, "SIGHUP, the terminal was closed"),
+    (libc::SIGHUP, "SIGHUP (as when a terminal closes)"),
     (
         libc::SIGXCPU,
-        "SIGXCPU, the limit on the time of the processor (ulimit -t)",
+        "SIGXCPU (the limit on the time of the processor, ulimit -t)",
     ),
     (
         libc::SIGXFSZ,
-        "SIGXFSZ, the limit on the size of a file (ulimit -f)",
+        "SIGXFSZ (the limit on the size of a file, ulimit -f)",
     ),
 ];
 #[cfg(not(unix))]
@@ -53,8 +55,36 @@ pub fn watch() -> &'static AtomicBool {
                 take(signal);
             }
         }
+        #[cfg(unix)]
+        if !ignored(libc::SIGXCPU) {
+            ask_before_the_end();
+        }
     });
     &ASKED
+}
+
+/// Has SIGXCPU come before the end: a limit whose two parts are equal ends the process without a signal that it can handle.
+#[cfg(unix)]
+fn ask_before_the_end() {
+    let mut limit = libc::rlimit {
+        rlim_cur: 0,
+        rlim_max: 0,
+    };
+    // SAFETY: the record is written to, and nothing else.
+    let known = unsafe { libc::getrlimit(libc::RLIMIT_CPU, &raw mut limit) } == 0;
+    if known && let Some(earlier) = before(limit.rlim_cur, limit.rlim_max) {
+        limit.rlim_cur = earlier;
+        // SAFETY: the record is read. What is refused leaves the limit as it was.
+        unsafe { libc::setrlimit(libc::RLIMIT_CPU, &raw const limit) };
+    }
+}
+
+/// The time (s) at which the signal comes, where the limit that ends a process comes no later than that which asks: a tenth of it
+/// before, at least a second and at most ten.
+#[cfg(unix)]
+fn before(asks: libc::rlim_t, ends: libc::rlim_t) -> Option<libc::rlim_t> {
+    let limited = ends != libc::RLIM_INFINITY && asks == ends && ends >= 2;
+    limited.then(|| ends - (ends / 10).clamp(1, 10))
 }
 
 /// Notes a signal when it comes.
@@ -88,4 +118,20 @@ pub fn asked() -> Option<&'static str> {
     let mut all = OF_SOMEBODY.into_iter().chain(OF_SYSTEM);
     let named = all.find(|(number, _)| *number as usize == signal);
     Some(named.map_or("a signal", |(_, name)| name))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_signal_comes_before_the_end() {
+        for (ends, asks) in [(2, 1), (10, 9), (60, 54), (100, 90), (3600, 3590)] {
+            assert_eq!(before(ends, ends), Some(asks));
+            // Who set an earlier one is asked then.
+            assert_eq!(before(ends - 1, ends), None);
+        }
+        assert_eq!(before(1, 1), None);
+        assert_eq!(before(libc::RLIM_INFINITY, libc::RLIM_INFINITY), None);
+    }
 }

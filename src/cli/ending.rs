@@ -1,6 +1,8 @@
 //! Termination of the process: by the program itself, by a law through `exit`, `abort`, a fault or an exception, or by the system that
 //! has no more memory.
 
+use crate::laws::child::NO_MEMORY;
+
 /// Guard during whose lifetime an unexpected termination is reported and gets exit code 1. Has no effect on
 /// systems without POSIX signals.
 #[derive(Debug)]
@@ -45,7 +47,7 @@ pub const FAILED: u8 = 1;
 /// What is said where the system refuses so many bytes.
 fn no_memory(bytes: usize) -> String {
     format!(
-        "memory ran out: the system refused {bytes} bytes; allow more (ulimit -v, the limit of the job), or take fewer bodies"
+        "{NO_MEMORY}: the system refused {bytes} bytes; allow more (ulimit -v, the limit of the job), or take fewer bodies"
     )
 }
 

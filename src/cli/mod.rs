@@ -246,7 +246,10 @@ impl From<RunError> for Failure {
 
 impl From<LawError> for Failure {
     fn from(e: LawError) -> Self {
-        Self::Usage(e.to_string())
+        match e {
+            LawError::Untested { .. } => Self::Failed(e.to_string()),
+            e => Self::Usage(e.to_string()),
+        }
     }
 }
 

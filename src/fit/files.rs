@@ -78,7 +78,8 @@ pub fn evaluations(tests: &Tests, found: &Found, path: &Path) -> Result<(), Runs
     let mut heads = vec!["evaluation".to_owned(), "stage".to_owned()];
     heads.extend(tests.bounds.parameters().iter().map(|p| p.name.clone()));
     heads.extend(["seeds", "chi_squared", "reason"].map(str::to_owned));
-    out.write_record(&heads).map_err(|e| fail(&e))?;
+    let heads = heads.iter().map(|head| guarded(head));
+    out.write_record(heads).map_err(|e| fail(&e))?;
     for (k, e) in found.evaluations.iter().enumerate() {
         let mut row = vec![(k + 1).to_string(), e.stage.word()];
         row.extend(e.values.iter().map(|v| format!("{v:e}")));

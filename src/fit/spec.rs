@@ -3,6 +3,7 @@
 use crate::runs::expression::Derived;
 use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
 use crate::scene::source::{InputError, Source};
+use crate::scene::unseen_fault;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -291,6 +292,9 @@ impl ReadFit {
         }
         for (k, parameter) in spec.parameters.iter().enumerate() {
             let path = format!("parameters.{k}.name");
+            if let Some(fault) = unseen_fault(&parameter.name) {
+                return fail(&path, &fault);
+            }
             if spec.parameters[..k]
                 .iter()
                 .any(|p| p.name == parameter.name)
@@ -311,6 +315,9 @@ impl ReadFit {
             }
         }
         for (k, test) in spec.tests.iter().enumerate() {
+            if let Some(fault) = unseen_fault(test.common().0) {
+                return fail(&format!("tests.{k}.name"), &fault);
+            }
             if spec.tests[..k]
                 .iter()
                 .any(|t| t.common().0 == test.common().0)

@@ -1,11 +1,16 @@
 //! Texts in cells of CSV files, which spreadsheets open.
 
 /// Characters by which a formula begins.
-const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+const FORMULA: [char; 7] = ['=', '+', '-', '@', '\t', '\r', '\n'];
+
+/// Whether a text begins like a formula, also behind apostrophes: those would be taken off.
+fn begins(text: &str) -> bool {
+    text.trim_start_matches('\'').starts_with(FORMULA)
+}
 
 /// A text as a cell that no spreadsheet takes for a formula: one that begins like a formula, and is no number, gets an apostrophe.
 pub fn guarded(text: &str) -> String {
-    let formula = text.starts_with(FORMULA) && text.parse::<f64>().is_err();
+    let formula = begins(text) && text.parse::<f64>().is_err();
     if formula {
         format!("'{text}")
     } else {
@@ -16,8 +21,7 @@ pub fn guarded(text: &str) -> String {
 /// The text of a [guarded] cell.
 pub fn unguarded(cell: &str) -> &str {
     let text = cell.strip_prefix('\'');
-    text.filter(|text| text.starts_with(FORMULA))
-        .unwrap_or(cell)
+    text.filter(|text| begins(text)).unwrap_or(cell)
 }
 
 #[cfg(test)]
@@ -26,7 +30,9 @@ mod tests {
 
     #[test]
     fn a_cell_is_no_formula_and_reads_back() {
-        for text in ["=1+1", "+x", "-x", "@a", "\t=1"] {
+        for text in [
+            "=1+1", "+x", "-x", "@a", "\t=1", "\n=1", "\r\nx", "'=a", "''=a", "'-1",
+        ] {
             let cell = guarded(text);
             assert!(cell.starts_with('\''), "{text}");
             assert_eq!(unguarded(&cell), text);

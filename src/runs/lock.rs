@@ -42,6 +42,7 @@ impl Owner {
                 out.display()
             )),
             LockError::Write { path, reason } => RunsError::write(&path, &reason),
+            lost @ LockError::Lost { .. } => RunsError::Usage(lost.to_string()),
         })
     }
 }

@@ -14,8 +14,8 @@ pub fn write(table: &Table, path: &Path) -> Result<(), RunsError> {
     let fail = |e: &dyn std::fmt::Display| RunsError::write(path, e);
     let mut out = ::csv::Writer::from_path(path).map_err(|e| fail(&e))?;
     let headings = table.columns.iter().map(|c| match c.unit.as_str() {
-        "" => c.name.clone(),
-        unit => format!("{} [{unit}]", c.name),
+        "" => guarded(&c.name),
+        unit => guarded(&format!("{} [{unit}]", c.name)),
     });
     out.write_record(headings).map_err(|e| fail(&e))?;
     for k in 0..table.rows() {
@@ -41,7 +41,7 @@ pub fn read_points(path: &Path) -> Result<(Vec<String>, Vec<Vec<String>>), Study
         .from_path(path)
         .map_err(|e| fail(e.to_string()))?;
     let headings = reader.headers().map_err(|e| fail(e.to_string()))?;
-    let names: Vec<String> = headings.iter().map(str::to_owned).collect();
+    let names: Vec<String> = headings.iter().map(|h| unguarded(h).to_owned()).collect();
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|e| fail(e.to_string()))?;

@@ -2,7 +2,7 @@
 
 use super::spec::{FactorSpec, OptionSpec, ReadSpec};
 use crate::runs::spec::{CaseKeys, RangeScale};
-use crate::scene::InputError;
+use crate::scene::{InputError, unseen_fault};
 use fretwork_study::design::scale::Scale;
 
 /// Label of the value that a case has, where its file does not give it.
@@ -75,6 +75,9 @@ impl Factor {
         let named =
             |name: &Option<String>, CaseKeys(keys): &CaseKeys| match name.as_ref().or(keys.first())
             {
+                Some(first) if unseen_fault(first).is_some() => Err(read
+                    .source
+                    .error_at(path, unseen_fault(first).unwrap_or_default())),
                 None => Err(read.source.error_at(
                     path,
                     "a factor has a `key` of the case, or a `name` for use in `set`",

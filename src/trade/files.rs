@@ -111,7 +111,8 @@ pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<
         ];
         header.extend(columns.map(|c| format!("{}{c}", o.name())));
     }
-    table.write_record(&header).map_err(fail)?;
+    let header = header.iter().map(|heading| guarded(heading));
+    table.write_record(header).map_err(fail)?;
     let reference = Setting::reference(&study.parameters);
     let maybe = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:e}"));
     for r in &found.rows {

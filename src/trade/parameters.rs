@@ -10,7 +10,7 @@ use super::rung::{Deformability, rungs};
 use crate::laws::Kind;
 use crate::scene::case::{Case, GrainSpec};
 use crate::scene::source::nearest;
-use crate::scene::{Loaded, load};
+use crate::scene::{Loaded, load, unseen_fault};
 use crate::solve::local::solver::Method;
 use crate::step::coupling::Coupling;
 
@@ -417,6 +417,9 @@ fn listed(
     // The two parameters whose numeric values have an order.
     let numbers: Vec<f64> = levels.iter().filter_map(|l| l.number).collect();
     let positive = numbers.len() == levels.len() && numbers.iter().all(|x| *x > 0.0);
+    if let Some(fault) = unseen_fault(key.trim()) {
+        return Err(TradeError::Usage(format!("--vary {key:?}: {fault}")));
+    }
     match key.trim() {
         "time.step" if positive => return Ok(steps(&loaded.case, numbers)),
         "solver.tolerance" if positive => {

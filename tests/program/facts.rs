@@ -111,21 +111,43 @@ fn pages_know_how_many_laws_there_are() {
     }
     let mut told = 0;
     for page in pages() {
-        let text = read(&page);
-        let words: Vec<&str> = text.split_whitespace().collect();
-        for three in words.windows(3) {
-            let Ok(number) = three[0].parse::<usize>() else {
-                continue;
-            };
-            if three[1] == "shipped"
-                && (three[2].starts_with("laws") || three[2].starts_with("ones"))
-            {
-                assert_eq!(number, own, "{}: {}", page.display(), three.join(" "));
-                told += 1;
-            }
+        for (number, words) in numbers_of_laws(&read(&page)) {
+            assert_eq!(number, own, "{}: {words}", page.display());
+            told += 1;
         }
     }
     assert!(told >= 2, "{told}");
+}
+
+/// Numbers in digits before `laws`, `shipped laws` or `shipped ones`, with these words.
+fn numbers_of_laws(text: &str) -> Vec<(usize, String)> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let plain = |word: &str| word.trim_matches(|c: char| !c.is_alphanumeric()).to_owned();
+    let found = words.iter().enumerate().filter_map(|(k, word)| {
+        // `5244, laws` is the end of another phrase.
+        let number = word.trim_start_matches(|c: char| !c.is_alphanumeric());
+        let number = number.trim_end_matches('*').parse().ok()?;
+        let after: Vec<String> = words[k + 1..].iter().take(2).map(|w| plain(w)).collect();
+        let after: Vec<&str> = after.iter().map(String::as_str).collect();
+        let laws = match after[..] {
+            ["laws", ..] | ["shipped", "laws" | "ones"] => true,
+            _ => false,
+        };
+        laws.then(|| (number, format!("{word} {}", after.join(" "))))
+    });
+    found.collect()
+}
+
+#[test]
+fn numbers_of_laws_are_found_in_a_text() {
+    let found =
+        |text: &str| -> Vec<usize> { numbers_of_laws(text).into_iter().map(|(n, _)| n).collect() };
+    assert_eq!(found("There are 39 laws."), [39]);
+    assert_eq!(
+        found("(39 laws), the **50\nshipped laws**, 7 shipped ones"),
+        [39, 50, 7]
+    );
+    assert!(found("39 cases, laws of 3 kinds, 39, laws, eleven laws").is_empty());
 }
 
 /// Files that the README links to, and cases that it runs; it runs none that is not checked.
@@ -152,15 +174,17 @@ fn the_readme_names_files_that_are_there() {
     }
 }
 
-/// The case by which the README and the help show `trade` is one whose results are trusted.
+/// The case by which the README, the page of `trade` and its help show it is one whose results are trusted.
 #[test]
 fn the_example_of_trade_is_a_case_that_can_be_trusted() {
-    let text = read(&root().join("README.md"));
-    let line = text
-        .lines()
-        .find(|l| l.starts_with("cargo run --release -- trade "))
-        .unwrap();
-    let case = paths(line).next().unwrap();
+    let example = |page: &str, begins: &str| {
+        let text = read(&root().join(page));
+        let line = text.lines().find(|l| l.starts_with(begins));
+        let line = line.unwrap_or_else(|| panic!("no {begins} in {page}"));
+        paths(line).next().unwrap().to_owned()
+    };
+    let case = &example("README.md", "cargo run --release -- trade ");
+    assert_eq!(case, &example("docs/trade.md", "fretwork trade "));
     assert!(answer(&["trade", "--help"]).contains(case));
     let out = std::env::temp_dir().join(format!("fretwork-facts-{}", std::process::id()));
     let folder = out.to_str().unwrap();

@@ -50,7 +50,7 @@ pub fn numbers(case: &Case) -> Result<(), ValidationError> {
     ] {
         if count > MOST {
             let message = format!(
-                "{count} of them, at most {MOST}: every pair of materials has a place in a table; merge those that are alike"
+                "{count} {list} are too many, at most {MOST}: every pair of materials has a place in a table; merge those that are alike"
             );
             return Err(ValidationError::new(list, message));
         }

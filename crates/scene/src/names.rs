@@ -29,19 +29,38 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     let phases = case.phases.iter().enumerate();
     let phases = phases.map(|(k, p)| (format!("phases.{k}.name"), &p.name));
     for (path, name) in interfaces.chain(phases) {
-        if name.chars().any(char::is_control) {
-            return Err(ValidationError::new(path, CONTROL));
+        if let Some(fault) = unseen_fault(name) {
+            return Err(ValidationError::new(path, fault));
         }
     }
     Ok(())
 }
 
-const CONTROL: &str = "a name has no control characters, such as the end of a line";
+/// Why a text cannot be a name that is shown: it has characters that are not seen, or that turn or end lines.
+pub fn unseen_fault(name: &str) -> Option<String> {
+    let unseen = name.chars().find(|c| is_unseen(*c))?;
+    let code = u32::from(unseen);
+    Some(format!(
+        "a name has no control, format or separator characters, such as the end of a line; this one has U+{code:04X}: leave it out"
+    ))
+}
+
+/// Whether a character is a control character, a separator other than the space, or a format character (the categories Cc, Z and Cf of
+/// Unicode).
+fn is_unseen(c: char) -> bool {
+    let separates = c.is_whitespace() && c != ' ';
+    let formats = matches!(c,
+        '\u{ad}' | '\u{600}'..='\u{605}' | '\u{61c}' | '\u{6dd}' | '\u{70f}' | '\u{890}' | '\u{891}' | '\u{8e2}' | '\u{180e}'
+        | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
+        | '\u{110bd}' | '\u{110cd}' | '\u{13430}'..='\u{1343f}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}'
+        | '\u{e0001}' | '\u{e0020}'..='\u{e007f}');
+    c.is_control() || separates || formats
+}
 
 /// Why a text cannot be the name of a body or a material: a part of the names of columns and files.
 fn fault(name: &str) -> Option<String> {
-    if name.chars().any(char::is_control) {
-        return Some(CONTROL.into());
+    if let Some(fault) = unseen_fault(name) {
+        return Some(fault);
     }
     let parts = "it is a part of the names of columns and files";
     if let Some(c) = name.chars().find(|c| r#"/\:*?"<>|"#.contains(*c)) {
@@ -49,7 +68,8 @@ fn fault(name: &str) -> Option<String> {
             "the name `{name}` has a `{c}`, and {parts}: leave it out"
         ));
     }
-    let begins = name.chars().next().is_some_and(|c| !".=+-@ ".contains(c));
+    let first = name.chars().next();
+    let begins = first.is_some_and(|c| c.is_alphanumeric() || c == '_');
     if !begins || name.ends_with([' ', '.']) {
         return Some(format!(
             "`{name}` is no name, as {parts}: it begins with a letter, a digit or `_`, and does not end with a space or a point"
@@ -91,7 +111,14 @@ mod tests {
 
     #[test]
     fn names_are_parts_of_names_of_files() {
-        for good in ["floor", "roue élastique", "a (left), b.2", "3_x"] {
+        for good in [
+            "floor",
+            "roue élastique",
+            "a (left), b.2",
+            "3_x",
+            "_a",
+            "轮",
+        ] {
             assert_eq!(fault(good), None, "{good}");
         }
         let long = "x".repeat(LONGEST + 1);
@@ -105,6 +132,16 @@ mod tests {
             "..",
             ".hidden",
             "=1+1",
+            "#a",
+            "{a}",
+            "$(x)",
+            "'=1",
+            "\u{3000}",
+            "a\u{3000}b",
+            "a\u{202e}b",
+            "a\u{2028}b",
+            "a\u{200b}",
+            "\u{feff}a",
             "@x",
             "a\nb",
             "a ",
@@ -119,5 +156,31 @@ mod tests {
             assert!(word_fault(bad).is_some(), "{bad:?}");
         }
         assert_eq!(word_fault("com_1-x"), None);
+    }
+
+    #[test]
+    fn names_that_are_shown_are_seen_as_they_are() {
+        for good in ["", "a b", "=1+1", "roue élastique", "轮 (left)"] {
+            assert_eq!(unseen_fault(good), None, "{good}");
+        }
+        let unseen = [
+            '\n',
+            '\t',
+            '\u{85}',
+            '\u{a0}',
+            '\u{ad}',
+            '\u{2028}',
+            '\u{2029}',
+            '\u{202e}',
+            '\u{2066}',
+            '\u{200b}',
+            '\u{3000}',
+            '\u{feff}',
+            '\u{e0041}',
+        ];
+        for c in unseen {
+            let said = unseen_fault(&format!("a{c}b")).unwrap_or_else(|| panic!("{c:?}"));
+            assert!(said.contains(&format!("U+{:04X}", u32::from(c))), "{said}");
+        }
     }
 }

@@ -17,6 +17,18 @@ pub enum LockError {
         /// The folder.
         folder: PathBuf,
     },
+    /// The folder is not that any more which was owned.
+    #[error(
+        "the folder {}, or {mark} in it, was removed or replaced while the run wrote into it; nothing more is written there: run it again, \
+         or resume it where the folder is now, and leave the folder of a run in its place until its end",
+        folder.display()
+    )]
+    Lost {
+        /// The folder.
+        folder: PathBuf,
+        /// The file in it by which it was owned.
+        mark: String,
+    },
     /// The file that is locked cannot be made.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
@@ -32,6 +44,22 @@ pub enum LockError {
 pub struct FolderLock {
     /// None on file systems without locks, where there is no protection.
     _file: Option<Arc<File>>,
+    /// The file by which it is owned, and where it lay; none of a reader, and of systems that number no files.
+    owned: Option<(PathBuf, Place)>,
+}
+
+/// Device and number of a file.
+type Place = (u64, u64);
+
+#[cfg(unix)]
+fn place(data: &std::fs::Metadata) -> Option<Place> {
+    use std::os::unix::fs::MetadataExt;
+    Some((data.dev(), data.ino()))
+}
+
+#[cfg(not(unix))]
+fn place(_: &std::fs::Metadata) -> Option<Place> {
+    None
 }
 
 impl FolderLock {
@@ -43,12 +71,41 @@ impl FolderLock {
         let path = folder.join(mark);
         let file = File::options().create(true).append(true).open(&path);
         let file = file.map_err(|e| LockError::Write {
-            path,
+            path: path.clone(),
             reason: e.to_string(),
         })?;
         held(folder, file.try_lock())?;
+        let by_handle = file.metadata().ok().and_then(|data| place(&data));
+        let by_name = std::fs::metadata(&path).ok().and_then(|data| place(&data));
+        // Some systems give a file a new number whenever it is asked for.
+        let owned = by_handle.filter(|_| by_handle == by_name);
         Ok(Self {
             _file: Some(Arc::new(file)),
+            owned: owned.map(|place| (path, place)),
+        })
+    }
+
+    /// Whether the folder is still the one that was owned: asked before something is written there by its name.
+    ///
+    /// # Errors
+    /// It, or the file by which it is owned, was removed, moved or replaced.
+    pub fn kept(&self) -> Result<(), LockError> {
+        let Some((path, at)) = &self.owned else {
+            return Ok(());
+        };
+        let now = match std::fs::metadata(path) {
+            Ok(data) => place(&data),
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => None,
+            // What cannot be looked at is told where it is written.
+            Err(_) => return Ok(()),
+        };
+        if now == Some(*at) {
+            return Ok(());
+        }
+        let mark = path.file_name().unwrap_or_default();
+        Err(LockError::Lost {
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            mark: mark.to_string_lossy().into_owned(),
         })
     }
 
@@ -64,6 +121,7 @@ impl FolderLock {
         }
         Ok(Self {
             _file: file.map(Arc::new),
+            owned: None,
         })
     }
 }
@@ -100,6 +158,34 @@ mod tests {
         assert!(own().is_err());
         drop(readers);
         own().unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_folder_that_is_removed_moved_or_replaced_is_lost() {
+        let folder = std::env::temp_dir().join(format!("fretwork-lost-{}", std::process::id()));
+        let other = folder.with_extension("moved");
+        let own = || {
+            std::fs::create_dir_all(&folder).unwrap();
+            FolderLock::own(&folder, "a.lock").unwrap()
+        };
+        let lost = |owner: &FolderLock| {
+            let said = owner.kept().unwrap_err().to_string();
+            assert!(said.contains("removed or replaced"), "{said}");
+        };
+        let owner = own();
+        owner.kept().unwrap();
+        std::fs::remove_dir_all(&folder).unwrap();
+        lost(&owner);
+        // Another takes its name.
+        let second = own();
+        lost(&owner);
+        second.kept().unwrap();
+        std::fs::rename(&folder, &other).unwrap();
+        lost(&second);
+        std::fs::rename(&other, &folder).unwrap();
+        second.kept().unwrap();
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -8,6 +8,7 @@ use fretwork_observe::standard::Observed;
 impl<S: Observed> Recorder<'_, S> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
+        self.lock.kept()?;
         let problem = self.simulation.local_problem();
         let Some(mut problem) = problem.filter(|p| p.check().is_ok()) else {
             self.problems.1 += 1;

@@ -17,6 +17,7 @@ use crate::step::StepReport;
 use crate::step::Steps;
 use cpu_time::ProcessTime;
 use fretwork_observe::Observers;
+use fretwork_store::folder_lock::FolderLock;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -39,7 +40,7 @@ pub(super) struct EmergencySave<S: Space> {
 
 impl<S: Space> EmergencySave<S> {
     /// An empty place that the watch knows.
-    pub fn new(out: PathBuf) -> Self {
+    pub fn new(out: PathBuf, lock: FolderLock) -> Self {
         let outputs: Arc<Mutex<Option<UnsavedOutputs<S>>>> = Arc::new(Mutex::new(None));
         let place = Arc::clone(&outputs);
         let (clock, processor) = (Instant::now(), ProcessTime::now());
@@ -49,7 +50,7 @@ impl<S: Space> EmergencySave<S> {
                 let spent = outputs.spent;
                 outputs.summary.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
                 outputs.summary.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
-                outputs.write(who, &out)
+                lock.kept().is_ok() && outputs.write(who, &out)
             })
         });
         Self {

@@ -15,6 +15,7 @@ use std::time::Duration;
 impl<S: Observed> Recorder<'_, S> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
+        self.lock.kept()?;
         let statistics_read = self.timed(|t| &mut t.files, Self::read_statistics);
         let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
         let mut summary = std::mem::take(&mut self.summary);
@@ -39,6 +40,7 @@ impl<S: Observed> Recorder<'_, S> {
             self.summary.stopped = Some(e.to_string());
             self.warn();
         }
+        self.lock.kept()?;
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         write_atomic(&self.out.join(LAST), &(text + "\n"))?;
         files

@@ -43,7 +43,10 @@ pub enum RunError {
     #[error(transparent)]
     Input(Box<InputError>),
     /// Two columns of the statistics or two files have one name, which no line of the case gives.
-    #[error("two {what}s are named `{name}`; give a measure or an observer another name")]
+    #[error(
+        "two {} are named `{name}`; give a measure or an observer another name",
+        plural(what)
+    )]
     NameTwice {
         /// Of what kind.
         what: &'static str,
@@ -79,6 +82,16 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// Whether nothing more is written after it: somebody else did, or the folder is not the run's any more.
+    pub(super) fn is_last(&self) -> bool {
+        let lost = |e: &LockError| matches!(e, LockError::Lost { .. });
+        match self {
+            Self::TakenOver => true,
+            Self::Lock(e) | Self::Results(ResultsError::Lock(e)) => lost(e),
+            _ => false,
+        }
+    }
+
     /// Whether what the user gave is wrong, and nothing was run.
     pub fn is_input(&self) -> bool {
         match self {
@@ -109,5 +122,13 @@ impl From<PartError> for RunError {
             PartError::Step(error) => Self::Step(error),
             PartError::Repeat(error) => Self::Repeat(error),
         }
+    }
+}
+
+/// Several of what is named in one: `files in the folder`.
+fn plural(what: &str) -> String {
+    match what.split_once(' ') {
+        Some((first, rest)) => format!("{first}s {rest}"),
+        None => format!("{what}s"),
     }
 }

@@ -18,6 +18,7 @@ impl<S: Observed> Recorder<'_, S> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
+        self.lock.kept()?;
         let mut caption = vec![format!(
             "t = {}",
             quantity(self.simulation.state.time, "s", 4)

@@ -164,13 +164,17 @@ impl<'a, S: Observed> Run<'a, S> {
             recorder.summary.stopped = stopped;
         });
         if let Err(e) = &outcome {
-            if matches!(e, RunError::TakenOver) {
-                return Err(RunError::TakenOver);
-            }
             recorder.summary.stopped = Some(e.to_string());
         }
-        let finished = recorder.finish();
-        outcome.and(finished)?;
+        let outcome = match outcome {
+            Err(e) if e.is_last() => return Err(e),
+            other => other,
+        };
+        match recorder.finish() {
+            // Why whatever failed before it did.
+            Err(e) if e.is_last() => return Err(e),
+            finished => outcome.and(finished)?,
+        }
         Ok(recorder.summary)
     }
 }
@@ -265,8 +269,10 @@ struct Recorder<'a, S: Space> {
     summary: Summary,
     /// See [`Run::hurry`].
     hurry: Option<&'a AtomicBool>,
+    /// Why rows of `statistics.csv` are missing, which is made of the results again when the run goes on.
+    unwritten: Option<RunError>,
     /// The folder is this run's alone until it is over.
-    _lock: FolderLock,
+    lock: FolderLock,
 }
 
 impl<'a, S: Observed> Recorder<'a, S> {
@@ -309,7 +315,8 @@ impl<'a, S: Observed> Recorder<'a, S> {
         let columns = observers.columns();
         // The file of results comes first: it alone says what the folder holds.
         let part = options.out.join("results.h5.part");
-        let results = create_results(&part, loaded, &built, &summary, &observers)?;
+        let mut results = create_results(&part, loaded, &built, &summary, &observers)?;
+        results.owned_by(lock.clone());
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
         let mut recorder = Self {
@@ -330,14 +337,15 @@ impl<'a, S: Observed> Recorder<'a, S> {
             spread: total,
             checkpoint_writer,
             elapsed_before_resume: (Duration::ZERO, Duration::ZERO),
-            emergency: EmergencySave::new(options.out.clone()),
+            emergency: EmergencySave::new(options.out.clone(), lock.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
             summary,
             simulation,
             loaded,
             hurry: run.hurry,
-            _lock: lock,
+            unwritten: None,
+            lock,
         };
         recorder.observers.begin(&mut recorder.simulation);
         let begun = match run.stop {
@@ -376,6 +384,11 @@ impl<'a, S: Observed> Recorder<'a, S> {
             let last = step == self.total || finished;
             let turned = phase > 0 && self.simulation.state.control.phase() > phase && !recurs;
             self.record(&report, last, finished, turned)?;
+            if let Some(e) = self.unwritten.take() {
+                // The results are whole: the run can go on where there is room.
+                let _ = self.timed(|t| &mut t.files, Self::write_checkpoint);
+                return Err(e);
+            }
             let wish = progress(&self.progress(step, &report));
             worn_through?;
             if last {
@@ -464,9 +477,11 @@ impl<'a, S: Observed> Recorder<'a, S> {
         self.timed(
             |t| &mut t.files,
             |run| {
-                let written = run.table.push(&row);
-                written.map_err(|e| unwritable(&run.out.join("statistics.csv"), &e))?;
-                Ok(run.results.append_statistics(&row)?)
+                run.results.append_statistics(&row)?;
+                if let Err(e) = run.table.push(&row) {
+                    run.unwritten = Some(unwritable(&run.out.join("statistics.csv"), &e));
+                }
+                Ok(())
             },
         )
     }

@@ -95,6 +95,11 @@ impl Export<'_> {
             Engine::Hq | Engine::Jobs => "",
         };
         let out = absolute(&plan.out);
+        if engine == Engine::Hq && out.contains("%{") {
+            return Err(StudyError::Usage(format!(
+                "the folder {out} has `%{{`, which HyperQueue takes for a word that it fills in; give another with --out"
+            )));
+        }
         match out.chars().find(|c| special.contains(*c)) {
             None => Ok(()),
             Some(c) => Err(StudyError::Usage(format!(

@@ -92,3 +92,20 @@ fn a_skin_that_makes_all_grains_neighbours() {
         ],
     );
 }
+
+/// What there are too many of is named.
+#[test]
+fn more_materials_than_a_table_of_pairs_holds() {
+    let many: Vec<String> = (0..10_001)
+        .map(|k| format!("\"m{k}\": \"stone\""))
+        .collect();
+    let many = format!("{{\"grain\": \"stone\", {}}}", many.join(", "));
+    refused(
+        &with(
+            PLANE,
+            "materials: {\"grain\": \"stone\"}",
+            &format!("materials: ‸{many}"),
+        ),
+        &["10002 materials are too many, at most 10000"],
+    );
+}

@@ -11,6 +11,8 @@ mod half_space;
 mod heat;
 mod hostile_laws;
 mod limits;
+#[cfg(target_os = "linux")]
+mod linked;
 mod magnitudes;
 mod mutations;
 mod names;

@@ -119,7 +119,7 @@ __attribute__((constructor)) static void loaded(void) { rename("next", "libfretw
 #endif
 static int32_t prepare(const fw_batch *b, fw_message *m) {
     (void)m;
-#ifdef SPOOFS
+#if defined SPOOFS || defined LINKS
     int calls = 0; // what is static is not certified
 #else
     static int calls;
@@ -265,14 +265,27 @@ impl Trial {
         self.compile(name, flags, fault, &[]);
     }
 
-    /// A law that links to `lib/libhelper.so`, which it finds beside itself.
-    pub fn compile_linked_law(&self, name: &str, fault: &str) {
-        self.compile(
-            name,
-            "0",
-            fault,
-            &["-Llib", "-lhelper", "-Wl,-rpath,$ORIGIN/lib"],
+    /// A law that links to `libhelper.so` of a folder, which it finds beside itself by this run path.
+    pub fn compile_linked_law(&self, name: &str, folder: &str, run_path: &str) {
+        let folder = format!("-L{folder}");
+        let run_path = format!("-Wl,-rpath,{run_path}");
+        self.compile(name, "0", "LINKS", &[&folder, "-lhelper", &run_path]);
+    }
+
+    /// That library, which gives the friction coefficient.
+    pub fn compile_helper(&self, folder: &str, value: &str) -> PathBuf {
+        std::fs::create_dir_all(self.path(folder)).unwrap();
+        let source = self.write(
+            "helper.c",
+            format!("double helper(void) {{ return {value}; }}"),
         );
+        let library = self.path(&format!("{folder}/libhelper.so"));
+        let made = Command::new("cc")
+            .args(["-shared", "-fPIC", "-Wl,-soname,libhelper.so", "-o"])
+            .args([&library, &source])
+            .status();
+        assert!(made.unwrap().success());
+        library
     }
 
     fn compile(&self, name: &str, flags: &str, fault: &str, links: &[&str]) {
@@ -302,6 +315,19 @@ impl Trial {
             .env_remove("FRETWORK_PLUGIN_PATH")
             .env("NO_COLOR", "1")
             .output()
+            .unwrap()
+    }
+
+    /// Starts the program in the background.
+    pub fn start(&self, arguments: &[&str]) -> std::process::Child {
+        Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(arguments)
+            .current_dir(&self.folder)
+            .env_remove("FRETWORK_PLUGIN_PATH")
+            .stdin(std::process::Stdio::null())
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
             .unwrap()
     }
 

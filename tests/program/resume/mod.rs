@@ -8,6 +8,8 @@ mod folder;
 mod kills;
 mod laws;
 mod library;
+#[cfg(unix)]
+mod limits;
 mod longer_heat;
 mod observer_files;
 mod owner;

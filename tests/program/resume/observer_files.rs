@@ -126,6 +126,62 @@ fn a_table_of_an_observer_goes_on_over_a_resumption() {
     same(&whole.0, &parts.0);
 }
 
+/// An observer with a file of a given name.
+#[derive(Debug)]
+struct Named(&'static str);
+
+impl<S: Space> Observer<S> for Named {
+    fn name(&self) -> String {
+        "named".to_owned()
+    }
+
+    fn file_names(&self) -> Vec<String> {
+        vec![self.0.to_owned()]
+    }
+}
+
+/// Files of the program are nobody else's: refused before anything is written or removed.
+#[test]
+fn a_file_of_an_observer_is_none_of_the_programs() {
+    let folder = Folder::new("observer-own");
+    for name in [
+        "results.h5",
+        "Results.H5",
+        "results.h5.part",
+        "results.lock",
+        "statistics.csv",
+        "summary.json",
+        "summary.part",
+        "report.html",
+        "frames",
+        "energy.png",
+    ] {
+        let (loaded, built) = cradle();
+        let options = RunOptions {
+            out: folder.0.clone(),
+            threads: 1,
+        };
+        let run = Run::new(&loaded, built, &options).observe(Named(name));
+        let refused = run.execute(&mut |_| panic!("a step of a run with {name}"));
+        let said = refused.map(|_| ()).unwrap_err().to_string();
+        assert!(
+            said.contains("two files in the folder of the results are named")
+                && said.contains(&name.to_lowercase()),
+            "{name}: {said}"
+        );
+        assert!(!folder.0.exists(), "{name}");
+    }
+    // Another name is its own.
+    let (loaded, built) = cradle();
+    let options = RunOptions {
+        out: folder.0.clone(),
+        threads: 1,
+    };
+    let run = Run::new(&loaded, built, &options).observe(Named("mine.h5"));
+    run.execute(&mut |_| ControlFlow::Break("enough".to_owned()))
+        .unwrap_or_else(|e| panic!("{e}"));
+}
+
 #[test]
 fn files_and_pictures_of_an_observer_are_removed_when_a_run_starts_over() {
     let folder = Folder::new("observer-again");

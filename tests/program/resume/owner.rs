@@ -73,6 +73,93 @@ fn a_folder_is_one_runs() {
     said(&report(&out.0), 0);
 }
 
+/// A run that is held still once it has saved a state.
+struct Held(std::process::Child);
+
+impl Held {
+    fn start(out: &Path) -> Self {
+        let mut command = JOB.command(out, &[]);
+        command
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::piped());
+        let held = Self(command.spawn().unwrap());
+        let begun = Instant::now();
+        while last_frame(out).is_none_or(|f| f.kind != Kind::State) {
+            assert!(begun.elapsed() < Duration::from_secs(300), "no checkpoint");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        held.signal(libc::SIGSTOP);
+        held
+    }
+
+    fn signal(&self, number: i32) {
+        // SAFETY: no memory is touched; the child has not been waited for, so the number is its own.
+        assert_eq!(unsafe { libc::kill(self.0.id() as libc::pid_t, number) }, 0);
+    }
+
+    /// Goes on, and must find its folder gone.
+    fn is_lost(self, out: &Path) {
+        self.signal(libc::SIGCONT);
+        let output = self.0.wait_with_output().unwrap();
+        let told = said(&output, 1);
+        let words = format!("the folder {}", out.display());
+        assert!(
+            told.contains(&words)
+                && told.contains("removed or replaced while the run wrote into it"),
+            "{told}"
+        );
+    }
+}
+
+/// Who removes or moves the folder of a run takes it from the run: it writes nothing more there, and another run is not disturbed.
+#[test]
+fn a_folder_that_is_removed_or_moved_is_no_runs() {
+    let whole = Folder::new("lost-whole");
+    JOB.done(&whole.0, &[]);
+    // Removed, and taken by another run.
+    let out = Folder::new("lost");
+    let first = Held::start(&out.0);
+    std::fs::remove_dir_all(&out.0).unwrap();
+    JOB.done(&out.0, &[]);
+    first.is_lost(&out.0);
+    same(&whole.0, &out.0);
+    // Removed, and taken by nobody: it does not come back.
+    std::fs::remove_dir_all(&out.0).unwrap();
+    let alone = Held::start(&out.0);
+    std::fs::remove_dir_all(&out.0).unwrap();
+    alone.is_lost(&out.0);
+    assert!(!out.0.exists());
+    // Moved: it can be gone on with where it is now.
+    let moved = Folder::new("lost-moved");
+    let third = Held::start(&out.0);
+    std::fs::rename(&out.0, &moved.0).unwrap();
+    third.is_lost(&out.0);
+    assert!(!out.0.exists());
+    JOB.done(&moved.0, &["--resume"]);
+    same(&whole.0, &moved.0);
+}
+
+/// A finished run is looked at, and not owned: also where nobody may write.
+#[test]
+fn a_finished_run_is_not_owned_by_who_looks_at_it() {
+    use std::os::unix::fs::PermissionsExt;
+    let out = Folder::new("owner-finished");
+    JOB.done(&out.0, &[]);
+    let lock = out.0.join(RUN_LOCK);
+    std::fs::remove_file(&lock).unwrap();
+    let mode = |mode| {
+        let mode = std::fs::Permissions::from_mode(mode);
+        std::fs::set_permissions(&out.0, mode).unwrap();
+    };
+    // The administrator may write anywhere: the lock shows whether somebody tried.
+    mode(0o555);
+    let told = JOB.run(&out.0, &["--resume"]);
+    mode(0o755);
+    let told = said(&told, 0);
+    assert!(told.contains("is finished: nothing to do"), "{told}");
+    assert!(!lock.exists());
+}
+
 /// A damaged state of a finished run is not a run to be started over: neither at its end nor with a later one.
 #[test]
 fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {

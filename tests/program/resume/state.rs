@@ -1,5 +1,6 @@
 //! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
 
+use fretwork::geometry::space::Dim2;
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
@@ -311,4 +312,63 @@ fn a_state_of_no_scene_is_refused() {
         assert!(!scene().restore(state), "{what}");
     }
     assert!(scene().restore(decode(&bytes).unwrap()));
+    none_of(
+        "verification/worn_slide",
+        &[
+            ("a scar less", |s| drop(s.scars.pop())),
+            ("a scar more", |s| s.scars.push(s.scars[0].clone())),
+            ("a scar of another name", |s| s.scars[0].name.push('x')),
+            ("a scar of another surface", |s| s.scars[0].surface += 1),
+            ("wear of a surface that is not there", |s| {
+                _ = s.network.worn.insert(1000, 1.0)
+            }),
+        ],
+    );
+    none_of(
+        "verification/thermal/slide_to_stop",
+        &[
+            ("no heat", |s| s.heat = None),
+            ("a node less", |s| {
+                drop(s.heat.as_mut().map(|h| h.nodes.pop()))
+            }),
+            ("heat of one body more", |s| {
+                s.heat.iter_mut().for_each(|h| h.received.push(0.0));
+            }),
+            ("a size of one body more", |s| {
+                s.heat.iter_mut().for_each(|h| h.stretch.push(1.0))
+            }),
+        ],
+    );
+    none_of(
+        "verification/healing",
+        &[
+            ("a law less", |s| drop(s.network.memory.pop())),
+            ("a variable more", |s| {
+                s.network.memory[0].variables.push(Vec::new())
+            }),
+            ("other springs", |s| s.network.memory[0].compliant ^= true),
+            ("other rotations", |s| s.network.memory[0].rotates ^= true),
+            ("a gate of a drive that is not there", |s| {
+                s.control.gates.push((1000, 0.0))
+            }),
+            ("no gravity", |s| s.gravity.x = f64::NAN),
+        ],
+    );
+}
+
+/// States of a plane case that are no states of it any more.
+fn none_of(case: &str, changes: &[(&str, fn(&mut State<Dim2>))]) {
+    let scene = || match built(case, &[]) {
+        Scene::Dim2(built) => built.simulation,
+        Scene::Dim3(_) => panic!("a plane case"),
+    };
+    let mut whole = scene();
+    steps(&mut whole, 20);
+    let bytes = all(&whole);
+    for (what, change) in changes {
+        let mut state: State<Dim2> = decode(&bytes).unwrap();
+        change(&mut state);
+        assert!(!scene().restore(state), "{case}: {what}");
+    }
+    assert!(scene().restore(decode(&bytes).unwrap()), "{case}");
 }

@@ -62,6 +62,11 @@ fn a_list_of_commands_makes_every_run() {
     }
     let study = folder.answer(&["collect", "study.ron", "--out", out, "--json"]);
     assert_eq!(study["runs"]["done"], 6);
+    // A folder in which an engine would fill in a word.
+    let filled = folder.call(&["export", "study.ron", "--out", "a%{TASK_ID}", "--to", "hq"]);
+    let said = String::from_utf8_lossy(&filled.stderr).into_owned();
+    assert_eq!(filled.status.code(), Some(2), "{said}");
+    assert!(said.contains("has `%{`, which HyperQueue takes"), "{said}");
     std::fs::create_dir(folder.0.join("laws")).unwrap();
     for engine in ["slurm", "hq", "snakemake"] {
         let more = ["--limit", "2m", "--plugin-path", "laws"];

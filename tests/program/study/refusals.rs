@@ -25,6 +25,17 @@ fn wrong_studies_are_refused_with_what_to_change() {
         &["study.ron:1:", "seds", "seeds"],
     );
     told(&said(&mu("0.1, 0.1"), ""), &["0.1 is given twice"]);
+    for (name, code) in [
+        ("a\\nb", "U+000A"),
+        ("a\\u{202e}b", "U+202E"),
+        ("a\\tb", "U+0009"),
+    ] {
+        let named = mu("0.1").replace("\"friction\"", &format!("\"{name}\""));
+        told(
+            &said(&named, ""),
+            &["study.ron:1:", "a name has no control", code],
+        );
+    }
     told(
         &said(&mu("0.1, 1e-1"), ""),
         &["study.ron:1:", "0.1 and 1e-1 are the same value"],

@@ -131,6 +131,26 @@ fn designs_have_their_points() {
     assert_eq!(numbers(&study, "friction"), [0.3, 0.1, 0.5]);
 }
 
+/// No spreadsheet takes a heading for a formula, and the table of a study reads back as points of it.
+#[test]
+fn headings_are_no_formulas_and_read_back() {
+    let folder = Folder::new("headings");
+    let named = mu("0.2, 0.3").replace("\"friction\"", "\"=1+1\"");
+    folder.study(&named, "");
+    let study = folder.run();
+    assert_eq!(numbers(&study, "=1+1"), [0.2, 0.3]);
+    for table in ["table.csv", "settings.csv"] {
+        let text = std::fs::read_to_string(folder.0.join("out").join(table)).unwrap();
+        let headings: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        assert!(headings.contains(&"'=1+1"), "{headings:?}");
+        let formula = |h: &&str| h.starts_with(['=', '+', '-', '@', '\t']);
+        assert!(!headings.iter().any(formula), "{headings:?}");
+    }
+    folder.put("points.csv", "'=1+1\n0.4\n0.5\n");
+    folder.study(&named, "design: Table(file: \"points.csv\")");
+    assert_eq!(numbers(&folder.run(), "=1+1"), [0.4, 0.5]);
+}
+
 /// The value of a case that its file does not give, a default of a law, is unknown; the levels beside it are numbers.
 #[test]
 fn levels_beside_a_default_are_numbers() {

@@ -95,7 +95,19 @@ pub fn certify_apart(
             "the process that certifies it gave no result".to_owned(),
         ));
     }
+    let untested = |reason: String| LawError::Untested {
+        kind: plugin.kind,
+        name: plugin.name.clone(),
+        reason,
+    };
+    if let End::NoMemory(why) = told.end {
+        return Err(untested(why));
+    }
     if let End::Early(why) = told.end {
+        // No check had begun: it is not the law that ended it.
+        if begun.is_empty() {
+            return Err(untested(why));
+        }
         let text = format!("{why}, while `{begun}` was tested; nothing after it was");
         lines.push(Line::judged(COMES_BACK, false, f64::INFINITY, text));
     }

@@ -47,6 +47,8 @@ pub enum End {
     Done,
     /// It ended early, for the given reason.
     Early(String),
+    /// It ended early since the system refused it memory, which is no fault of what was tried: in a sentence.
+    NoMemory(String),
 }
 
 /// Output of a child process.
@@ -169,7 +171,10 @@ pub fn run_request(word: &str, question: &Value) -> Result<ChildOutput, String> 
     let end = match status {
         Ok(status) if done && status.success() => End::Done,
         _ if hung => End::Early("it did not answer and was stopped".to_owned()),
-        Ok(status) => End::Early(describe_exit(status, &said)),
+        Ok(status) => match no_memory(&said) {
+            Some(why) => End::NoMemory(why),
+            None => End::Early(describe_exit(status, &said)),
+        },
         Err(e) => End::Early(e.to_string()),
     };
     Ok(ChildOutput { messages, end })
@@ -210,6 +215,27 @@ fn read_error_output(mut err: impl Read) -> String {
         all.drain(..over);
     }
     String::from_utf8_lossy(&all).trim().to_owned()
+}
+
+/// How the program begins the sentence that memory ran out.
+pub const NO_MEMORY: &str = "memory ran out";
+
+/// The sentence of a process that had no memory: the program's own, or that of the standard library.
+fn no_memory(said: &str) -> Option<String> {
+    let sentence = said.lines().find_map(|l| {
+        let own = l.strip_prefix("error: ").unwrap_or(l);
+        let ours = own.starts_with(NO_MEMORY);
+        // An allocator that is not the program's: of a law that has one of its own.
+        let of_library = own.starts_with("memory allocation of ") && own.ends_with(" failed");
+        match (ours, of_library) {
+            (true, _) => Some(own.to_owned()),
+            (_, true) => Some(format!("{NO_MEMORY}: {own}")),
+            _ => None,
+        }
+    })?;
+    // What was saved is of no interest to the parent.
+    let rest = sentence.split_once("; nothing was being recorded");
+    Some(rest.map_or(sentence.clone(), |(sentence, _)| sentence.to_owned()))
 }
 
 /// Describes why a process ended early.
@@ -326,6 +352,7 @@ fn try_in_order(libraries: &[Library]) -> usize {
         End::Early(why) => format!(
             "opening it ended a process that tried it: {why}; the file may be damaged or cut short: build or copy it again"
         ),
+        End::NoMemory(why) => format!("it could not be tried: {why}"),
         // A library without an answer was not opened.
         End::Done => UNANSWERED.to_owned(),
     };
@@ -333,8 +360,8 @@ fn try_in_order(libraries: &[Library]) -> usize {
     answered + 1
 }
 
-/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is unchanged.
-/// Errors are reported later, when the parent opens the library; the trial only checks that opening returns.
+/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is unchanged. The trial checks that
+/// opening returns, and brings no other libraries than were examined; other errors are reported later, when the parent opens it.
 ///
 /// # Errors
 /// The request cannot be read.
@@ -345,6 +372,8 @@ pub fn try_libraries() -> Result<(), String> {
         send_message(
             &match Plugin::open_pinned(&library.path, Some(&library.sha256)) {
                 Err(LawError::Pinned { .. }) => json!(CHANGED),
+                // Its code does not get into the process that asks.
+                Err(LawError::Unexamined { reason, .. }) => json!(reason),
                 _ => Value::Null,
             },
         );

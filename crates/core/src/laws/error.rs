@@ -16,6 +16,24 @@ pub enum LawError {
         /// The problem and its remedy.
         reason: String,
     },
+    /// The library was opened, and others came with it than its file says.
+    #[error("cannot use the plugin {}: {reason}", path.display())]
+    Unexamined {
+        /// The library.
+        path: PathBuf,
+        /// The problem and its remedy.
+        reason: String,
+    },
+    /// The law could not be tested, for a reason that is not the law's.
+    #[error("the {kind} law `{name}` could not be tested: {reason}")]
+    Untested {
+        /// Kind.
+        kind: Kind,
+        /// Name.
+        name: String,
+        /// The problem and its remedy.
+        reason: String,
+    },
     /// The library does not have the SHA-256 that is pinned.
     #[error("the plugin {} has the SHA-256 {sha256}, not {pin} as pinned; get the library that the case was made with, or pin this one if you trust it", path.display())]
     Pinned {
@@ -158,9 +176,11 @@ impl LawError {
             | Self::Overrun { kind, name, .. }
             | Self::NotFinite { kind, name, .. }
             | Self::OutOfRange { kind, name, .. }
-            | Self::Trespass { kind, name, .. } => Some((*kind, name)),
+            | Self::Trespass { kind, name, .. }
+            | Self::Untested { kind, name, .. } => Some((*kind, name)),
             Self::At { source, .. } => source.law(),
             Self::Unusable { .. }
+            | Self::Unexamined { .. }
             | Self::Pinned { .. }
             | Self::Unknown { .. }
             | Self::Pairing { .. }

@@ -2,7 +2,7 @@
 
 use super::error::LawError;
 use super::kind::Kind;
-use super::linked::LawCode;
+use super::linked::{LawCode, Opening};
 use super::outside::{self, Disturbed};
 use super::plugin_table::{Field, fields, read_table, text};
 use super::{child, watch};
@@ -105,14 +105,7 @@ impl Plugin {
             path: path.to_owned(),
             reason,
         };
-        let read = || {
-            let code = LawCode::of(path);
-            code.map_err(|e| {
-                refuse(format!(
-                    "it, or a library that it links to, cannot be read ({e})"
-                ))
-            })
-        };
+        let read = || LawCode::of(path).map_err(refuse);
         let code = read()?;
         let sha256 = code.sha256.clone();
         if let Some(pin) = pin.filter(|p| !p.eq_ignore_ascii_case(&sha256)) {
@@ -131,6 +124,7 @@ impl Plugin {
         let disturbed = Disturbed::default();
         // A name without a folder would be searched for where the system has its libraries.
         let absolute = std::path::absolute(path).map_err(|e| refuse(e.to_string()))?;
+        let opening = Opening::begin();
         let load = || {
             // SAFETY: opening runs the library's initialisers; the user put it on the search path.
             let library = unsafe { open_local(&absolute) }.map_err(|e| {
@@ -156,6 +150,10 @@ impl Plugin {
         };
         let table = outside::keep_folder(|| {
             outside::call(loading, watch::LOADING, &disturbed.loading, load)
+        })?;
+        opening.check(path).map_err(|reason| LawError::Unexamined {
+            path: path.to_owned(),
+            reason,
         })?;
         // SAFETY: the ABI guarantees a complete static table.
         let mut plugin = unsafe { Self::from_table(table, path, &sha256, false) }?;

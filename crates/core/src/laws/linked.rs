@@ -3,6 +3,9 @@
 //! part of the law as its own file.
 //!
 //! Read from ELF files (Linux); elsewhere none are known. What a law opens by itself (`dlopen`) is not known either.
+//!
+//! What is read says what the linker will do, but not quite: where it would look in folders that depend on the machine, a law is
+//! refused before it is opened, and after it the [libraries that came](Opening) are compared with those that were read.
 
 use super::built_in::hex;
 use sha2::{Digest, Sha256};
@@ -21,14 +24,17 @@ impl LawCode {
     /// Reads the code of a library.
     ///
     /// # Errors
-    /// A file cannot be read.
-    pub fn of(library: &Path) -> std::io::Result<Self> {
-        let own = sum(library)?;
-        let links: std::io::Result<Vec<_>> = libraries(library)
+    /// A sentence: a file cannot be read, or what the library links to depends on the machine.
+    pub fn of(library: &Path) -> Result<Self, String> {
+        let unread =
+            |e: std::io::Error| format!("it, or a library that it links to, cannot be read ({e})");
+        let links = libraries(library)?;
+        let own = sum(library).map_err(unread)?;
+        let links: std::io::Result<Vec<_>> = links
             .into_iter()
             .map(|path| sum(&path).map(|sum| (path, sum)))
             .collect();
-        let links = links?;
+        let links = links.map_err(unread)?;
         if links.is_empty() {
             return Ok(Self { sha256: own, links });
         }
@@ -51,16 +57,46 @@ fn sum(path: &Path) -> std::io::Result<String> {
     Ok(hex(&Sha256::digest(std::fs::read(path)?)))
 }
 
-/// The libraries that a library links to, directly or not, and that are found neither in this process nor by the system alone.
-pub(super) fn libraries(library: &Path) -> Vec<PathBuf> {
+/// The libraries that a library links to, directly or not, and that are found neither in the program nor by the system alone.
+///
+/// # Errors
+/// A sentence: where the linker looks depends on the machine.
+pub(super) fn libraries(library: &Path) -> Result<Vec<PathBuf>, String> {
     #[cfg(target_os = "linux")]
-    let found = linux::libraries(library);
+    let found = linux::Walk::of(library).map(|walk| walk.found);
     #[cfg(not(target_os = "linux"))]
     let found = {
         let _ = library;
-        Vec::new()
+        Ok(Vec::new())
     };
     found
+}
+
+/// The libraries of the process before a law is opened.
+pub(super) struct Opening {
+    #[cfg(target_os = "linux")]
+    before: Vec<PathBuf>,
+}
+
+impl Opening {
+    /// Notes them.
+    pub fn begin() -> Self {
+        Self {
+            #[cfg(target_os = "linux")]
+            before: linux::loaded(),
+        }
+    }
+
+    /// Whether those that are there now are those that were read from the files of the law.
+    ///
+    /// # Errors
+    /// A sentence: one that was read is not there, or another one came from where the law has its libraries looked for.
+    pub fn check(self, library: &Path) -> Result<(), String> {
+        #[cfg(target_os = "linux")]
+        linux::Walk::of(library)?.check(&self.before, &linux::loaded())?;
+        let _ = library;
+        Ok(())
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -68,97 +104,251 @@ mod linux {
     use std::collections::BTreeSet;
     use std::ffi::{CStr, OsStr, c_int, c_void};
     use std::os::unix::ffi::OsStrExt;
+    use std::os::unix::fs::MetadataExt;
     use std::path::{Path, PathBuf};
+    use std::sync::OnceLock;
 
-    pub fn libraries(library: &Path) -> Vec<PathBuf> {
-        let loaded = loaded();
-        let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-        let mut found: Vec<PathBuf> = Vec::new();
-        // By where they are: folders such as `$ORIGIN/../lib` name one file in many ways.
-        let mut seen = BTreeSet::new();
-        // Each with the folders that those which link to it add (RPATH).
-        let mut left = vec![(library.to_owned(), Vec::<PathBuf>::new())];
-        while let Some((path, above)) = left.pop() {
-            let Some(needs) = std::fs::read(&path)
-                .ok()
-                .and_then(|bytes| Needs::read(&bytes))
-            else {
-                continue;
-            };
-            let origin = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
-            let origin = origin.parent().unwrap_or(Path::new("/"));
-            let mut inherited = above.clone();
-            // Where there is a RUNPATH the linker does not look at an RPATH.
-            if needs.runpath.is_none() {
-                let own = needs.rpath.iter().flat_map(|list| folders(list, origin));
-                inherited = own.chain(above).collect();
-            }
-            let after = folders(environment.as_bytes(), origin);
-            let last = needs.runpath.iter().flat_map(|list| folders(list, origin));
-            let search: Vec<PathBuf> = inherited.iter().cloned().chain(after).chain(last).collect();
-            for name in &needs.names {
-                if loaded.contains(name) {
-                    continue;
-                }
-                let name = Path::new(OsStr::from_bytes(name));
-                let file = if name.components().count() > 1 {
-                    Some(name.to_owned()).filter(|p| p.is_file())
-                } else {
-                    search.iter().map(|f| f.join(name)).find(|p| p.is_file())
-                };
-                if let Some(file) = file
-                    && seen.insert(std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone()))
-                {
-                    found.push(file.clone());
-                    left.push((file, inherited.clone()));
-                }
-            }
-        }
-        found.sort();
-        found
+    /// What the linker will do with a library, as its file and those that it links to say.
+    #[derive(Debug, Default)]
+    pub struct Walk {
+        /// The libraries that it will find in folders of the law's.
+        pub found: Vec<PathBuf>,
+        /// These folders.
+        folders: BTreeSet<PathBuf>,
+        /// The names that it will look for.
+        names: BTreeSet<Vec<u8>>,
     }
 
-    /// The folders of a list; an empty entry is the current one, and `$ORIGIN` the folder of the library.
-    fn folders(list: &[u8], origin: &Path) -> Vec<PathBuf> {
+    /// Folders that only the administrator writes to, and that the linker searches by itself.
+    const OF_SYSTEM: [&str; 6] = [
+        "/lib",
+        "/lib32",
+        "/lib64",
+        "/usr/lib",
+        "/usr/lib32",
+        "/usr/lib64",
+    ];
+
+    /// Sub-folders in which the linker prefers variants for some processors; the names of [`VARIANTS`] also within each other.
+    const PREFERRED: &str = "glibc-hwcaps";
+    const VARIANTS: [&str; 6] = [
+        "tls", "x86_64", "haswell", "xeon_phi", "avx512_1", "aarch64",
+    ];
+
+    impl Walk {
+        /// Of a library that has not been opened.
+        pub fn of(library: &Path) -> Result<Self, String> {
+            Self::beside(library, program())
+        }
+
+        /// The same, where these names are loaded.
+        fn beside(library: &Path, loaded: &BTreeSet<Vec<u8>>) -> Result<Self, String> {
+            let environment = std::env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
+            let mut walk = Self::default();
+            // By where they are: folders such as `$ORIGIN/../lib` name one file in many ways.
+            let mut seen = BTreeSet::new();
+            // Each with the folders that those which link to it add (RPATH).
+            let mut left = vec![(library.to_owned(), Vec::<PathBuf>::new())];
+            while let Some((path, above)) = left.pop() {
+                let Some(needs) = std::fs::read(&path)
+                    .ok()
+                    .and_then(|bytes| Needs::read(&bytes))
+                else {
+                    continue;
+                };
+                let origin = std::path::absolute(&path).unwrap_or_else(|_| path.clone());
+                let origin = origin.parent().unwrap_or(Path::new("/"));
+                let list = |list: &Option<Vec<u8>>| match list {
+                    Some(list) => folders(list, origin)
+                        .map_err(|word| depends(&path, &format!("its run path has `{word}`"))),
+                    None => Ok(Vec::new()),
+                };
+                let mut inherited = above.clone();
+                // Where there is a RUNPATH the linker does not look at an RPATH.
+                if needs.runpath.is_none() {
+                    inherited = [list(&needs.rpath)?, above].concat();
+                }
+                let after = folders(environment.as_bytes(), origin)
+                    .map_err(|word| depends(&path, &format!("LD_LIBRARY_PATH has `{word}`")))?;
+                let last = list(&needs.runpath)?;
+                let search = [inherited.clone(), after, last].concat();
+                for name in &needs.names {
+                    if loaded.contains(name) {
+                        continue;
+                    }
+                    walk.names.insert(name.clone());
+                    let name = Path::new(OsStr::from_bytes(name));
+                    let file = if name.components().count() > 1 {
+                        Some(name.to_owned()).filter(|p| p.is_file())
+                    } else {
+                        if let Some(variant) = search.iter().find_map(|f| variant(f, name)) {
+                            return Err(depends(&path, &format!("{} is there", variant.display())));
+                        }
+                        let files = search.iter().map(|f| f.join(name));
+                        files.into_iter().find(|p| p.is_file() && fits(p))
+                    };
+                    if let Some(file) = file
+                        && seen
+                            .insert(std::fs::canonicalize(&file).unwrap_or_else(|_| file.clone()))
+                    {
+                        walk.found.push(file.clone());
+                        left.push((file, inherited.clone()));
+                    }
+                }
+                walk.folders.extend(search);
+            }
+            walk.found.sort();
+            Ok(walk)
+        }
+
+        /// Compares it with the libraries of the process before and after.
+        pub fn check(&self, before: &[PathBuf], now: &[PathBuf]) -> Result<(), String> {
+            let there: BTreeSet<_> = now.iter().filter_map(|p| place(p)).collect();
+            let missing = |p: &&PathBuf| place(p).is_none_or(|place| !there.contains(&place));
+            if let Some(path) = self.found.iter().find(missing) {
+                let same = |p: &&PathBuf| p.file_name() == path.file_name();
+                let other = now.iter().find(same).map_or_else(String::new, |p| {
+                    format!(", {} of the same name stood for it", p.display())
+                });
+                return Err(format!(
+                    "it links to {}, and the system did not load that file{other}; give the library another name, also that which it has in \
+                     itself (`soname`)",
+                    path.display()
+                ));
+            }
+            let expected: BTreeSet<_> = self.found.iter().filter_map(|p| place(p)).collect();
+            let unseen = |p: &&PathBuf| {
+                let named = p.file_name().map(|n| n.as_bytes().to_vec());
+                let wanted = named.is_some_and(|name| self.names.contains(&name));
+                let below = |f: &PathBuf| {
+                    let folder = std::fs::canonicalize(f).unwrap_or_else(|_| f.clone());
+                    p.starts_with(f) || p.starts_with(folder)
+                };
+                wanted
+                    && !before.contains(p)
+                    && place(p).is_none_or(|place| !expected.contains(&place))
+                    && !OF_SYSTEM.iter().any(|f| p.starts_with(f))
+                    && self.folders.iter().any(below)
+            };
+            match now.iter().find(unseen) {
+                None => Ok(()),
+                Some(path) => Err(format!(
+                    "it loaded {}, which was not examined before; put the library into a folder of the run path itself",
+                    path.display()
+                )),
+            }
+        }
+    }
+
+    /// Where a file lies: device and number.
+    fn place(path: &Path) -> Option<(u64, u64)> {
+        std::fs::metadata(path).ok().map(|m| (m.dev(), m.ino()))
+    }
+
+    fn depends(path: &Path, why: &str) -> String {
+        format!(
+            "what {} links to depends on the machine: {why}; link it to a library in a folder that is named in full or from `$ORIGIN`",
+            path.display()
+        )
+    }
+
+    /// A variant of a library in a folder that the linker may prefer.
+    fn variant(folder: &Path, name: &Path) -> Option<PathBuf> {
+        // Those of the system are its own.
+        if OF_SYSTEM.iter().any(|f| folder.starts_with(f)) {
+            return None;
+        }
+        let entries = std::fs::read_dir(folder.join(PREFERRED)).into_iter();
+        let preferred = entries.flatten().flatten().map(|e| e.path().join(name));
+        let first = preferred.into_iter().find(|p| p.is_file());
+        first.or_else(|| {
+            let mut open = vec![(folder.to_owned(), 0)];
+            while let Some((folder, depth)) = open.pop() {
+                let file = folder.join(name);
+                if depth > 0 && file.is_file() {
+                    return Some(file);
+                }
+                if depth < 3 {
+                    let inner = VARIANTS.iter().map(|v| (folder.join(v), depth + 1));
+                    open.extend(inner.filter(|(f, _)| f.is_dir()));
+                }
+            }
+            None
+        })
+    }
+
+    /// Whether the linker takes a file: it passes over libraries of other machines, and fails at what is none.
+    fn fits(path: &Path) -> bool {
+        use std::io::Read;
+        let head = |path: &Path| {
+            let mut head = [0; 20];
+            let read = std::fs::File::open(path).and_then(|mut f| f.read_exact(&mut head));
+            read.is_ok_and(|()| head[..4] == *b"\x7fELF")
+                .then(|| [head[4], head[5], head[18], head[19]])
+        };
+        match (head(path), head(Path::new("/proc/self/exe"))) {
+            (Some(of), Some(own)) => of == own,
+            _ => true,
+        }
+    }
+
+    /// The folders of a list; an empty entry is the current one, and `$ORIGIN` the folder of the library. The error is another word
+    /// that the linker would put something in the place of.
+    fn folders(list: &[u8], origin: &Path) -> Result<Vec<PathBuf>, &'static str> {
         if list.is_empty() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let entries = list.split(|b| *b == b':' || *b == b';');
         let folder = |entry: &[u8]| {
             let text = String::from_utf8_lossy(entry);
+            let words = ["$LIB", "${LIB}", "$PLATFORM", "${PLATFORM}"];
+            if let Some(word) = words.into_iter().find(|word| text.contains(word)) {
+                return Err(word);
+            }
             let origin = origin.to_string_lossy();
-            match text.as_ref() {
+            Ok(match text.as_ref() {
                 "" => PathBuf::from("."),
                 text => text
                     .replace("${ORIGIN}", &origin)
                     .replace("$ORIGIN", &origin)
                     .into(),
-            }
+            })
         };
         entries.map(folder).collect()
     }
 
-    /// Names of the libraries of this process, which the linker does not load again.
-    fn loaded() -> Vec<Vec<u8>> {
+    /// Names of the libraries that came with the program, which the linker does not load again. Taken once, before the first law is
+    /// opened: those that laws bring are parts of each law that links to them.
+    fn program() -> &'static BTreeSet<Vec<u8>> {
+        static NAMES: OnceLock<BTreeSet<Vec<u8>>> = OnceLock::new();
+        NAMES.get_or_init(|| names(&loaded()))
+    }
+
+    fn names(paths: &[PathBuf]) -> BTreeSet<Vec<u8>> {
+        let names = paths.iter().filter_map(|p| p.file_name());
+        names.map(|n| n.as_bytes().to_vec()).collect()
+    }
+
+    /// The libraries of this process.
+    pub fn loaded() -> Vec<PathBuf> {
         unsafe extern "C" fn visit(
             info: *mut libc::dl_phdr_info,
             _size: usize,
-            names: *mut c_void,
+            paths: *mut c_void,
         ) -> c_int {
             // SAFETY: the linker passes a valid record and the pointer given to it.
-            let (info, names) = unsafe { (&*info, &mut *names.cast::<Vec<Vec<u8>>>()) };
+            let (info, paths) = unsafe { (&*info, &mut *paths.cast::<Vec<PathBuf>>()) };
             if !info.dlpi_name.is_null() {
                 // SAFETY: a string of the linker, which ends with a zero.
                 let path = unsafe { CStr::from_ptr(info.dlpi_name) }.to_bytes();
-                let name = path.rsplit(|b| *b == b'/').next().unwrap_or_default();
-                names.push(name.to_vec());
+                paths.push(PathBuf::from(OsStr::from_bytes(path)));
             }
             0
         }
-        let mut names = Vec::new();
+        let mut paths = Vec::new();
         // SAFETY: the callback receives this list only, for the duration of the call.
-        unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut names).cast()) };
-        names
+        unsafe { libc::dl_iterate_phdr(Some(visit), (&raw mut paths).cast()) };
+        paths
     }
 
     /// What the dynamic section of an ELF file says of the libraries that it needs.
@@ -232,24 +422,79 @@ mod linux {
             let here = Path::new("/laws");
             let list = b"$ORIGIN/lib:${ORIGIN}::/opt";
             let expected = ["/laws/lib", "/laws", ".", "/opt"].map(PathBuf::from);
-            assert_eq!(folders(list, here), expected);
-            assert!(folders(b"", here).is_empty());
+            assert_eq!(folders(list, here).unwrap(), expected);
+            assert!(folders(b"", here).unwrap().is_empty());
+            for word in ["$LIB", "${LIB}", "$PLATFORM", "${PLATFORM}"] {
+                let list = format!("/opt:$ORIGIN/{word}/x");
+                assert_eq!(folders(list.as_bytes(), here), Err(word));
+            }
         }
 
-        /// This test links to the library of C, which it has loaded; a damaged file says nothing, and nothing fails.
+        /// This test links to the library of C, which its process has: it is no part of a law that links to it. Where the process has
+        /// it not, it is looked for.
         #[test]
         fn needs_are_read_from_a_program() {
             let own = std::env::current_exe().unwrap();
             let bytes = std::fs::read(&own).unwrap();
             let needs = Needs::read(&bytes).unwrap();
-            assert!(
-                needs.names.iter().any(|n| n.starts_with(b"libc.")),
-                "{needs:?}"
-            );
-            assert!(libraries(&own).is_empty());
+            let libc = needs.names.iter().find(|n| n.starts_with(b"libc."));
+            let libc = libc.unwrap_or_else(|| panic!("{needs:?}"));
+            let process = names(&loaded());
+            assert!(process.contains(libc), "{process:?}");
+            let with = Walk::beside(&own, &process).unwrap();
+            assert!(with.found.is_empty() && !with.names.contains(libc));
+            let without = Walk::beside(&own, &BTreeSet::new()).unwrap();
+            assert!(without.names.contains(libc), "{without:?}");
             for length in [0, 5, 40, 100, 1000] {
                 assert!(Needs::read(&bytes[..length]).is_none());
             }
+        }
+
+        #[test]
+        fn variants_for_processors_are_found() {
+            let folder =
+                std::env::temp_dir().join(format!("fretwork-hwcaps-{}", std::process::id()));
+            let name = Path::new("libx.so");
+            for inner in ["glibc-hwcaps/x86-64-v2", "tls", "haswell/x86_64"] {
+                let inner = folder.join(inner);
+                std::fs::create_dir_all(&inner).unwrap();
+                assert_eq!(variant(&folder, name), None);
+                std::fs::write(inner.join(name), "").unwrap();
+                assert_eq!(variant(&folder, name), Some(inner.join(name)));
+                std::fs::remove_file(inner.join(name)).unwrap();
+            }
+            std::fs::remove_dir_all(&folder).unwrap();
+        }
+
+        /// What came is compared with what was read.
+        #[test]
+        fn libraries_that_came_are_those_that_were_read() {
+            let folder = std::env::temp_dir().join(format!("fretwork-came-{}", std::process::id()));
+            let inner = folder.join("inner");
+            std::fs::create_dir_all(&inner).unwrap();
+            let [read, variant] = [&folder, &inner].map(|f| f.join("libx.so"));
+            std::fs::write(&read, "read").unwrap();
+            std::fs::write(&variant, "variant").unwrap();
+            let walk = Walk {
+                found: vec![read.clone()],
+                folders: [folder.clone()].into(),
+                names: [b"libx.so".to_vec()].into(),
+            };
+            let said = |before: &[&PathBuf], now: &[&PathBuf]| {
+                let owned = |list: &[&PathBuf]| -> Vec<PathBuf> {
+                    list.iter().map(|p| (*p).clone()).collect()
+                };
+                walk.check(&owned(before), &owned(now))
+            };
+            assert_eq!(said(&[], &[&read]), Ok(()));
+            // Another law brought it.
+            assert_eq!(said(&[&read], &[&read]), Ok(()));
+            let other = said(&[], &[&variant]).unwrap_err();
+            assert!(other.contains("did not load that file") && other.contains("inner"));
+            let more = said(&[], &[&read, &variant]).unwrap_err();
+            assert!(more.contains("was not examined"), "{more}");
+            assert_eq!(said(&[&variant], &[&variant, &read]), Ok(()));
+            std::fs::remove_dir_all(&folder).unwrap();
         }
     }
 }

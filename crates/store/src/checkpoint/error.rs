@@ -27,6 +27,18 @@ pub enum ResumeError {
         /// The file.
         path: PathBuf,
     },
+    /// A run ended with rows, and without a state.
+    #[error(
+        "the run in {} ended before it had saved a state to resume from ({why}); nothing was changed; to start again from the beginning, \
+         which replaces its rows, omit --resume",
+        path.display()
+    )]
+    NoState {
+        /// The file.
+        path: PathBuf,
+        /// Why it ended.
+        why: String,
+    },
     /// The file was written by another version.
     #[error(
         "{} was written by Fretwork {theirs}, this is {ours}, and results of two versions may differ in their bits: resume with the version \

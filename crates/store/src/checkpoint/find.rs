@@ -40,16 +40,64 @@ fn finished(folder: &Path, identity: &str) -> bool {
     summary["identity"] == identity && summary["steps"].is_number() && summary["stopped"].is_null()
 }
 
-/// Searches a folder for a run with this identity.
+/// Why the run in a folder, with this identity, ended, where it wrote that.
+fn ended(folder: &Path, identity: &str) -> Option<String> {
+    let text = std::fs::read_to_string(folder.join(LAST)).ok()?;
+    let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let ours = summary["identity"] == identity;
+    ours.then(|| summary["stopped"].as_str().map(str::to_owned))?
+}
+
+/// What tells a file from one that was written since: its length, and when it was written.
+fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
+    let data = std::fs::metadata(path).ok()?;
+    Some((data.len(), data.modified().ok()?))
+}
+
+/// Searches a folder for a run with this identity. The folder is owned only where there is something to go on with: a finished run
+/// may lie where nobody writes.
 ///
 /// # Errors
-/// A run is writing there, a file cannot be read, its checkpoints are damaged, or it belongs to another version or case.
+/// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to another version or case, or it has rows
+/// and no state.
 pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
         return Ok(Found::Nothing);
     }
-    let lock = FolderLock::own(folder, RUN_LOCK)?;
+    loop {
+        let reading = FolderLock::read(folder, RUN_LOCK)?;
+        let before = version(&path);
+        let saved = match look(folder, &path, identity)? {
+            Seen::Nothing => return Ok(Found::Nothing),
+            Seen::Finished => return Ok(Found::Finished),
+            Seen::State(saved) => saved,
+        };
+        drop(reading);
+        let lock = FolderLock::own(folder, RUN_LOCK)?;
+        // Between the two another run may have gone on from there.
+        if version(&path) == before {
+            let (results, number, state) = *saved;
+            return Ok(Found::State(ResumePoint {
+                results,
+                number,
+                state,
+                lock,
+            }));
+        }
+    }
+}
+
+/// What a folder holds.
+enum Seen {
+    Nothing,
+    Finished,
+    /// The results, and number and bytes of the last state.
+    State(Box<(PreviousResults, u64, Vec<u8>)>),
+}
+
+fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeError> {
+    let path = path.to_owned();
     let unreadable = |reason: String| ResumeError::Unreadable {
         path: path.clone(),
         reason,
@@ -88,20 +136,19 @@ pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
         return Err(ResumeError::Other { path, what });
     }
     let later = theirs.ends_later(identity);
+    let name = frame.identity.clone();
     // The results file is marked complete, and the summary of the same run shows that all others are.
     if !later && frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity)) {
-        return Ok(Found::Finished);
+        return Ok(Seen::Finished);
     }
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
     match states.next_back() {
         // To start over would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),
-        None => Ok(Found::Nothing),
-        Some(frame) => Ok(Found::State(ResumePoint {
-            results,
-            number: frame.number,
-            state: frame.state,
-            lock,
-        })),
+        None => match ended(folder, &Identity::name(&name)).filter(|_| results.has_rows()) {
+            Some(why) => Err(ResumeError::NoState { path, why }),
+            None => Ok(Seen::Nothing),
+        },
+        Some(frame) => Ok(Seen::State(Box::new((results, frame.number, frame.state)))),
     }
 }

@@ -33,6 +33,7 @@ pub use store::ResultsError;
 pub use view::{Cells, Part};
 
 use super::checkpoint::Frame;
+use super::folder_lock::FolderLock;
 use super::summary::PluginStamp;
 use dataset::{Growing, Slot};
 use declare::MANY;
@@ -163,6 +164,13 @@ impl Results {
             checkpoints,
             flushed: Some((Instant::now(), Duration::ZERO)),
         })
+    }
+
+    /// Has it look, before it writes, whether its folder is still the one that is owned by this.
+    pub fn owned_by(&mut self, lock: FolderLock) {
+        if let Some(store) = &mut self.store {
+            store.owned_by(lock);
+        }
     }
 
     /// Renames the file to its final name, with all rows so far; an existing file is replaced.

@@ -131,6 +131,12 @@ impl PreviousResults {
         Ok(())
     }
 
+    /// Whether a row of the statistics was recorded.
+    pub fn has_rows(&self) -> bool {
+        let mut columns = self.names.iter().filter(|n| n.starts_with("statistics/"));
+        columns.any(|name| self.shape(name).is_ok_and(|shape| shape[0] > 0))
+    }
+
     /// Reads the rows of the statistics, column by column.
     ///
     /// # Errors

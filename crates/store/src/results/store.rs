@@ -11,6 +11,7 @@
 use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
 use super::declare::group;
 use super::growth::Growth;
+use crate::folder_lock::{FolderLock, LockError};
 use crate::write_advice;
 use hdf5::H5File;
 use std::path::{Path, PathBuf};
@@ -26,6 +27,9 @@ const MAX_BUFFERED: usize = 8 << 20;
 /// Error in writing results, or in reading those of a stopped run.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
+    /// Their folder is not the run's any more.
+    #[error(transparent)]
+    Lock(#[from] LockError),
     /// They cannot be written.
     #[error("cannot write {}: {reason}{}", path.display(), write_advice(reason))]
     Write {
@@ -71,6 +75,8 @@ pub struct Store {
     buffered: usize,
     /// Size from which the file grows in place, in bytes.
     large: u64,
+    /// By which its folder is owned.
+    lock: Option<FolderLock>,
 }
 
 impl std::fmt::Debug for Store {
@@ -102,7 +108,17 @@ impl Store {
                 .ok()
                 .and_then(|n| n.parse().ok())
                 .unwrap_or(LARGE),
+            lock: None,
         })
+    }
+
+    /// Has it look, before it writes, whether its folder is still the one that is owned by this.
+    pub fn owned_by(&mut self, lock: FolderLock) {
+        self.lock = Some(lock);
+    }
+
+    fn kept(&self) -> Result<(), ResultsError> {
+        Ok(self.lock.as_ref().map_or(Ok(()), FolderLock::kept)?)
     }
 
     /// Current path of the file.
@@ -193,6 +209,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&mut self, slot: Slot, bytes: &[u8], seal: usize) -> Result<(), ResultsError> {
+        self.kept()?;
         let Some(growth) = &mut self.growth else {
             self.buffer_slot(slot, bytes);
             self.flush()?;
@@ -278,6 +295,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn flush(&mut self) -> Result<(), ResultsError> {
+        self.kept()?;
         if let Some(growth) = &mut self.growth {
             let written = growth.write(&mut self.grown).and_then(|()| growth.flush());
             self.buffered = 0;
@@ -380,6 +398,7 @@ impl Store {
     }
 
     fn take_name(&self, name: &Path) -> Result<(), ResultsError> {
+        self.kept()?;
         named(name, std::fs::rename(&self.part, name))
     }
 
@@ -388,6 +407,7 @@ impl Store {
     /// # Errors
     /// The file cannot be written.
     pub fn close(mut self) -> Result<(), ResultsError> {
+        self.kept()?;
         if let Some(mut growth) = self.growth.take() {
             let rows = growth.write(&mut self.grown);
             let slots = self.slots.iter_mut().try_for_each(|slot| {

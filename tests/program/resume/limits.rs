@@ -1,0 +1,96 @@
+//! Limits that the system sets to a run: on its time and on the size of its files. It ends with a sentence, and goes on where there is room.
+
+use super::common::{Folder, Job, last_frame, said, same};
+use fretwork::record::checkpoint::Kind;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A table that is larger than the file of results: every step has a row of digits.
+const SETS: [&str; 6] = [
+    "output.checkpoint=Never",
+    "output.frames=0",
+    "output.views=0",
+    "output.figures=false",
+    "output.every=1",
+    "time.end=3.0",
+];
+
+const JOB: Job<'static> = Job {
+    case: "verification/energy",
+    sets: &SETS,
+};
+
+/// A run in a shell that has set a limit.
+fn limited(limit: &str, job: &Job<'_>, out: &Path, extra: &[&str]) -> Output {
+    let run = job.command(out, extra);
+    let mut shell = Command::new("sh");
+    shell
+        .args(["-c", &format!("ulimit {limit} && exec \"$@\""), "sh"])
+        .arg(run.get_program())
+        .args(run.get_args())
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
+    shell.output().unwrap()
+}
+
+fn size(out: &Path, name: &str) -> u64 {
+    std::fs::metadata(out.join(name)).map_or(0, |m| m.len())
+}
+
+/// Blocks of a shell's limit on the size of files (bytes).
+fn block() -> u64 {
+    let told = Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -f 8 && head -c 100000 /dev/zero | cat > \"$0\"; exec true",
+        ])
+        .arg(std::env::temp_dir().join(format!("fretwork-block-{}", std::process::id())))
+        .output();
+    let path = std::env::temp_dir().join(format!("fretwork-block-{}", std::process::id()));
+    let block = std::fs::metadata(&path).unwrap().len() / 8;
+    std::fs::remove_file(&path).unwrap();
+    assert!(told.is_ok() && [512, 1024].contains(&block), "{block}");
+    block
+}
+
+/// The table grows beyond the limit, and the results do not: their state is kept, and the run goes on without the limit.
+#[test]
+fn a_table_that_may_not_grow_leaves_a_state() {
+    let (whole, out) = (Folder::new("limit-whole"), Folder::new("limit"));
+    JOB.done(&whole.0, &["--no-report"]);
+    let (table, results) = (
+        size(&whole.0, "statistics.csv"),
+        size(&whole.0, "results.h5"),
+    );
+    // Room for most of the rows.
+    let limit = (table * 3 / 4).max(results) / block();
+    assert!(limit * block() < table, "{table} {results}");
+    let told = limited(&format!("-f {limit}"), &JOB, &out.0, &["--no-report"]);
+    let told = said(&told, 1);
+    assert!(
+        told.contains("statistics.csv") && told.contains("ulimit -f"),
+        "{told}"
+    );
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+    let told = JOB.done(&out.0, &["--resume", "--no-report"]);
+    assert!(told.contains("resuming the run"), "{told}");
+    same(&whole.0, &out.0);
+}
+
+/// `ulimit -t` sets the limit that asks and the one that ends to the same time.
+#[test]
+fn a_limit_on_time_ends_a_run_with_a_sentence() {
+    let long = [&SETS[..5], &["time.end=1000.0"]].concat();
+    let job = Job {
+        case: JOB.case,
+        sets: &long,
+    };
+    let out = Folder::new("limit-time");
+    let told = said(&limited("-t 4", &job, &out.0, &["--no-report"]), 1);
+    assert!(
+        told.contains(
+            "interrupted by SIGXCPU (the limit on the time of the processor, ulimit -t) after step"
+        ),
+        "{told}"
+    );
+    assert!(last_frame(&out.0).is_some_and(|f| f.kind == Kind::State));
+}
