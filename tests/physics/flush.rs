@@ -195,7 +195,8 @@ fn what_passes_a_corner_closer_than_it_moves_is_not_touched() {
 /// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts: what holds it up acts upwards alone, whatever
 /// it is over.
 fn slides_deep<S: Dimensional + Steps>(floor: &str, bodies: &str) {
-    let rigid = ("coulomb", String::new(), 1e-3);
+    // They move less than the alert distance in a step.
+    let rigid = ("coulomb", String::new(), 5e-4);
     let springs = [1e5, 1e6, 1e7].map(|stiffness: f64| {
         let more = format!(", \"stiffness\": {stiffness:?}, \"ratio\": 0.0, \"restitution\": 0.2");
         ("linear-contact", more, 1e-4)
@@ -262,9 +263,9 @@ fn stops_at_a_step<S: Dimensional + Steps>() {
         for (depth, rise) in [
             (0.0, 2e-3),
             (2e-4, 2e-3),
-            (2e-3, 2e-3),
+            (1e-3, 2e-3),
             (2e-4, 0.02),
-            (2e-3, 0.02),
+            (1e-3, 0.02),
         ] {
             for one in [true, false] {
                 let [grain, _] = sliders::<S>(1.0);
@@ -434,5 +435,5 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
         let way = point.on_candidate - point.on_antagonist;
         assert!((way - n * point.gap).norm() < 1e-12, "{point:?}");
     }
-    assert!(taken > 300, "{taken}");
+    assert!(taken > 100, "{taken}");
 }
