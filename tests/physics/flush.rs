@@ -1,9 +1,16 @@
 //! Convex shapes side by side are one surface, and what passes another body closer than it moves in a step passes it untouched.
 
 use crate::extremes::bench::{G, Sketch};
+use fretwork::geometry::convex::passing::{PairMotion, keep_ball_apart};
+use fretwork::geometry::convex::polygon::Polygon;
+use fretwork::geometry::convex::polyhedron::Polyhedron;
+use fretwork::geometry::convex::{ContactTolerances, Core, PairFace};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, Steps};
+use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use std::fmt::Write as _;
 
 fn build<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
@@ -183,4 +190,250 @@ fn what_passes_a_corner_closer_than_it_moves_is_not_touched() {
         &[shape::<Dim3>([0.5, -0.5, -0.5], [1.0, 0.5, 0.0])],
         true,
     ));
+}
+
+/// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts: what holds it up acts upwards alone, whatever
+/// it is over.
+fn slides_deep<S: Dimensional + Steps>(floor: &str, bodies: &str) {
+    // They move less than the alert distance in a step.
+    let rigid = ("coulomb", String::new(), 5e-4);
+    let springs = [1e5, 1e6, 1e7].map(|stiffness: f64| {
+        let more = format!(", \"stiffness\": {stiffness:?}, \"ratio\": 0.0, \"restitution\": 0.2");
+        ("linear-contact", more, 1e-4)
+    });
+    for (contact, of_contact, step) in std::iter::once(rigid).chain(springs) {
+        // 0.1 % and 0.5 % of the grain's height.
+        for depth in [2e-4, 1e-3] {
+            for (grain, name) in sliders::<S>(1.0).into_iter().zip(["box", "ball"]) {
+                let ball = name == "ball";
+                let height = 0.1 - if ball { 0.5 * depth } else { depth };
+                let grain = grain
+                    .replace("at: [0.3, 0.1]", &format!("at: [0.3, {height:?}]"))
+                    .replace(
+                        "at: [0.3, 0.03, 0.1]",
+                        &format!("at: [0.3, 0.03, {height:?}]"),
+                    );
+                let mut s = build::<S>(&Sketch {
+                    step,
+                    contact,
+                    of_contact: of_contact.clone(),
+                    mu: 0.0,
+                    gravity: G,
+                    bodies: bodies.to_owned(),
+                    grains: grain,
+                    ..Sketch::default()
+                });
+                go(&mut s, (2.0 / step) as usize);
+                let (velocity, spin) = motion(&s);
+                let what = format!(
+                    "{}D, {name} on {floor}, {contact}{of_contact}, {depth} m deep: {velocity:?}, {spin:?}",
+                    S::D
+                );
+                println!("{what}");
+                // A box on springs of which there are more over a joint rocks, and its weight has a part along its own faces.
+                let bound = if ball || contact == "coulomb" {
+                    1e-8
+                } else {
+                    0.01
+                };
+                assert!((velocity[0] - 1.0).abs() < bound, "{what}");
+                assert!(!ball || spin.norm() < 1e-6, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_grain_slides_over_flush_blocks_in_which_it_lies_a_little() {
+    for one in [true, false] {
+        let name = if one { "a body of blocks" } else { "blocks" };
+        slides_deep::<Dim2>(name, &as_bodies(&blocks::<Dim2>(), one));
+        slides_deep::<Dim3>(name, &as_bodies(&blocks::<Dim3>(), one));
+    }
+}
+
+/// The next block is higher by 1 % or 10 % of the height of a box that slides into it, deep in the first one: it is stopped.
+fn stops_at_a_step<S: Dimensional + Steps>() {
+    let rigid = ("coulomb", String::new(), 1e-3);
+    let springs = [1e6, 1e7].map(|stiffness: f64| {
+        let more = format!(", \"stiffness\": {stiffness:?}, \"ratio\": 0.0, \"restitution\": 0.2");
+        ("linear-contact", more, 1e-4)
+    });
+    for (contact, of_contact, step) in std::iter::once(rigid).chain(springs) {
+        for (depth, rise) in [
+            (0.0, 2e-3),
+            (2e-4, 2e-3),
+            (1e-3, 2e-3),
+            (2e-4, 0.02),
+            (1e-3, 0.02),
+        ] {
+            for one in [true, false] {
+                let [grain, _] = sliders::<S>(1.0);
+                let height = 0.1 - depth;
+                let grain = grain
+                    .replace("at: [0.3, 0.1]", &format!("at: [0.3, {height:?}]"))
+                    .replace(
+                        "at: [0.3, 0.03, 0.1]",
+                        &format!("at: [0.3, 0.03, {height:?}]"),
+                    );
+                let floor = [
+                    shape::<S>([0.0, -0.7, -0.5], [1.0, 0.8, 0.0]),
+                    shape::<S>([1.0, -0.7, -0.5], [2.0, 0.8, rise]),
+                ];
+                let mut s = build::<S>(&Sketch {
+                    step,
+                    contact,
+                    of_contact: of_contact.clone(),
+                    mu: 0.0,
+                    gravity: G,
+                    bodies: as_bodies(&floor, one),
+                    grains: grain,
+                    ..Sketch::default()
+                });
+                let mut farthest = 0.0f64;
+                for _ in 0..(1.5 / step) as usize {
+                    go(&mut s, 1);
+                    let grain = s.state.bodies.grains().next().expect("a grain");
+                    farthest = farthest.max(s.state.bodies.position[grain][0]);
+                }
+                let (velocity, _) = motion(&s);
+                let what = format!(
+                    "{}D, {contact}{of_contact}, {depth} m deep, a step of {rise} m, one body: {one}: up to {farthest} m, {velocity:?}",
+                    S::D
+                );
+                println!("{what}");
+                // It tips by 13 degrees at most: its middle goes on by 0.024 m.
+                assert!(farthest > 0.89 && farthest < 0.9 + 0.04, "{what}");
+                assert!(velocity[0] < 0.2, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_stops_a_box_that_lies_deeper_than_others() {
+    stops_at_a_step::<Dim2>();
+    stops_at_a_step::<Dim3>();
+}
+
+const TOLERANCES: ContactTolerances = ContactTolerances {
+    reach: 1.0,
+    slack: 1e-6,
+    held: false,
+};
+
+/// A body that is turned over the edge of a face is kept above the plane of the face by its lowest corner, which is beside it.
+#[test]
+fn the_points_on_a_plane_have_the_lowest_corner() {
+    let block = Polyhedron::cuboid([2.0; 3]);
+    let upright = Vector3::y() * 0.3;
+    let over = block.turned(&UnitQuaternion::from_scaled_axis(upright));
+    let square = Polygon::new(
+        [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| Vector2::new(x, y))
+            .to_vec(),
+    )
+    .unwrap();
+    let turned = square.turned(&-0.3);
+    // One below the lowest corner is at the side of the face.
+    let lowest = |heights: &mut dyn Iterator<Item = f64>| heights.fold(f64::INFINITY, f64::min);
+    for of_candidate in [false, true] {
+        let sign = if of_candidate { -1.0 } else { 1.0 };
+        let face = |n: &[f64]| n.iter().position(|up| *up > 0.9).unwrap();
+        for shift in [0.0, 0.7, 1.5] {
+            let apart = Vector3::new(shift, 0.0, 2.5) * sign;
+            let up: Vec<f64> = block.normals().iter().map(|n| n.z).collect();
+            let (a, b) = if of_candidate {
+                (&block, &over)
+            } else {
+                (&over, &block)
+            };
+            let (mut out, face_of_block) = (Vec::new(), face(&up));
+            let named = PairFace {
+                of_candidate,
+                face: face_of_block,
+            };
+            Core::<Dim3>::points_on_face(a, b, &apart, [0.1, 0.05], &TOLERANCES, named, &mut out);
+            let gap = lowest(&mut over.points().iter().map(|p| p.z)) + 2.5 - 1.0 - 0.15;
+            let found = lowest(&mut out.iter().map(|m| m.gap));
+            assert!(
+                (found - gap).abs() < 1e-12,
+                "{of_candidate}, {shift}: {found} {gap}"
+            );
+
+            let apart = Vector2::new(shift, 2.5) * sign;
+            let up: Vec<f64> = square.normals().iter().map(|n| n.y).collect();
+            let (a, b) = if of_candidate {
+                (&square, &turned)
+            } else {
+                (&turned, &square)
+            };
+            let (mut out, side) = (Vec::new(), face(&up));
+            let named = PairFace {
+                of_candidate,
+                face: side,
+            };
+            Core::<Dim2>::points_on_face(a, b, &apart, [0.1, 0.05], &TOLERANCES, named, &mut out);
+            let gap = lowest(&mut turned.points().iter().map(|p| p.y)) + 2.5 - 1.0 - 0.15;
+            let found = lowest(&mut out.iter().map(|m| m.gap));
+            assert!(
+                (found - gap).abs() < 1e-12,
+                "2D, {of_candidate}, {shift}: {found} {gap}"
+            );
+            for m in &out {
+                let way = m.on_candidate - m.on_antagonist;
+                assert!((way - m.normal * m.gap).norm() < 1e-12, "{m:?}");
+            }
+        }
+    }
+}
+
+/// The plane that takes the place of the nearest points of a ball and a core that turns leaves more room at the end of the step, over all
+/// corners of the core.
+#[test]
+fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
+    let mut rng = Pcg64::seed_from_u64(31);
+    let core = Polygon::regular(4, 1.0);
+    let (radius, mut taken) = (0.5, 0);
+    for _ in 0..20_000 {
+        let angle = rng.random_range(0.0..std::f64::consts::TAU);
+        let apart = Vector2::new(angle.cos(), angle.sin()) * rng.random_range(1.1..1.6);
+        let before = core.contact_point_with_ball(&apart, radius, 0.0);
+        if before.gap < 0.0 {
+            continue;
+        }
+        let motion = PairMotion::<Dim2> {
+            shift: Vector2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.3..0.3)),
+            turns: [0.0, rng.random_range(-0.3..0.3)].map(Vector1::new),
+        };
+        let mut point = before;
+        keep_ball_apart::<Dim2>(
+            &core,
+            &apart,
+            [radius, 0.0],
+            &TOLERANCES,
+            &motion,
+            &mut point,
+        );
+        if point == before {
+            continue;
+        }
+        taken += 1;
+        let n = point.normal;
+        let end = |q: &Vector2<f64>| n.dot(&(q + Vector2::new(-q.y, q.x) * motion.turns[1].x));
+        let top = core
+            .points()
+            .iter()
+            .map(end)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let left = n.dot(&(apart + motion.shift)) - top - radius;
+        let moved = motion.shift
+            - Vector2::new(-before.on_antagonist.y, before.on_antagonist.x) * motion.turns[1].x;
+        let least = before.gap + before.normal.dot(&moved);
+        assert!(left > least, "{left} {least}");
+        // What acts there turns the pair by nothing.
+        let way = point.on_candidate - point.on_antagonist;
+        assert!((way - n * point.gap).norm() < 1e-12, "{point:?}");
+    }
+    assert!(taken > 100, "{taken}");
 }

@@ -120,7 +120,9 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("IMPOSSIBLE MOTION", summary.impossible_motions.warning());
     serious("TOO FAST", summary.step_size.warning());
     serious("FOUND OVERLAPPING", summary.step_size.sunk_warning());
-    serious("OVERLAP", overlap(summary));
+    // No smaller step helps against a motion that cannot be obeyed.
+    let possible = summary.impossible_motions.is_empty();
+    serious("OVERLAP", overlap(summary).filter(|_| possible));
     serious("MOTION LOST", summary.step_size.rounding_warning());
     for body in &summary.small_strain {
         serious("NOT SMALL STRAIN", body.warning());

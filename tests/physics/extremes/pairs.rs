@@ -76,7 +76,13 @@ impl Throw {
         }
     }
 
-    /// Returns whether the grain is held, or the end that the run is silent about.
+    /// Whether grains of this reach are still apart at the first detection, half a step after the start, `distance` being that of their
+    /// centres along the throw, and `reach` what they need of it (m): then all of the meeting is seen.
+    fn is_seen(&self, distance: f64, reach: f64) -> bool {
+        distance - 0.5 * self.step > reach
+    }
+
+    /// Returns whether the grain is held, or the end that the run is silent about. Balls that are seen are held.
     fn run<S: Dimensional + Steps>(
         &self,
         name: &str,
@@ -140,7 +146,12 @@ impl Throw {
             apart[last] + ground
         };
         if s.state.network.step_size.warning().is_some() {
-            Ok(false)
+            // All walls are flat at this scale, and below zero. Others than balls may touch by a corner that turns.
+            let ball = ["disk", "sphere"].contains(&name);
+            match ball && self.is_seen(self.from, R / self.tilt.cos()) {
+                true => Err(format!("{}; told, although it is seen", what())),
+                false => Ok(false),
+            }
         } else if height > 0.0 || (apart[0] + wall.origin[0]).abs() > wall.half {
             Ok(true)
         } else {
@@ -149,11 +160,12 @@ impl Throw {
     }
 }
 
-/// Throws each grain at each wall, `times` times at each speed. What starts too near to be found before the first detection may be
-/// told; all others are held.
+/// Throws each grain at each wall, `times` times at each speed. What meets before the first detection may be told, and what
+/// turns a corner into the wall; all others are held.
 fn throw_all<S: Dimensional + Steps>(grains: &[(&str, Grain)], walls: &[Wall], times: usize) {
     let mut rng = Pcg64::seed_from_u64(19);
     let mut silent = Vec::new();
+    let (mut all_held, mut all_told) = (0, 0);
     for wall in walls {
         for (name, grain) in grains {
             let (mut held, mut told) = (0, 0);
@@ -167,13 +179,19 @@ fn throw_all<S: Dimensional + Steps>(grains: &[(&str, Grain)], walls: &[Wall], t
                 }
             }
             println!("{name} on {}: {held} held, {told} told", wall.name);
+            (all_held, all_told) = (all_held + held, all_told + told);
         }
     }
     assert!(
         silent.is_empty(),
-        "{} silent:\n{}",
+        "{} not held:\n{}",
         silent.len(),
         silent.join("\n")
+    );
+    // A quarter of the places to start from are nearer than half of a step, if that is long.
+    assert!(
+        4 * all_told < all_held + all_told,
+        "{all_held} held, {all_told} told"
     );
 }
 
@@ -479,9 +497,11 @@ fn throw_at_each_other<S: Dimensional + Steps>(grains: &[(&str, Grain)]) {
         }
     }
     println!("{}D: {hit} hit, {told} told", S::D);
+    // Two turning grains start within half of a step of each other more often than one and a wall.
+    assert!(5 * told < 2 * (hit + told), "{hit} hit, {told} told");
     assert!(
         silent.is_empty(),
-        "{} silent:\n{}",
+        "{} not hit:\n{}",
         silent.len(),
         silent.join("\n")
     );

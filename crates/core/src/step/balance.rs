@@ -1,7 +1,7 @@
-//! Books the momentum of a step.
+//! Books the momentum of a step, and the deepest overlap in the same pass over its contacts.
 
-use super::Simulation;
 use super::motion::StepStart;
+use super::{Simulation, StepReport};
 use crate::geometry::space::{Space, VectorLike};
 use crate::momentum::MomentumSum;
 use crate::threads::{map_ranges, pays};
@@ -15,9 +15,14 @@ const CONTACT: f64 = 4.0;
 impl<S: Space> Simulation<S> {
     /// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the angular momentum of a step by its moment,
     /// whatever theta is.
-    pub(super) fn book_momentum(&mut self, start: &StepStart<S>) {
-        let (bodies, network) = (&self.state.bodies, &self.state.network);
-        let mut free = bodies.grain_flags();
+    pub(super) fn book_momentum(&mut self, start: &StepStart<S>, report: &mut StepReport) {
+        let (bodies, network, laws) = (
+            &self.state.bodies,
+            &self.state.network,
+            self.laws.as_slice(),
+        );
+        let grain = bodies.grain_flags();
+        let mut free = grain.clone();
         for (free, carrier) in free.iter_mut().zip(&bodies.carriers) {
             *free &= carrier.is_none();
         }
@@ -49,8 +54,9 @@ impl<S: Space> Simulation<S> {
         });
         let divide = pays(parallel, network.contacts.len(), CONTACT);
         let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {
-            let mut sum = MomentumSum::<S>::zero();
+            let (mut sum, mut deepest) = (MomentumSum::<S>::zero(), 0.0f64);
             for contact in &network.contacts[some] {
+                deepest = deepest.max(Self::overlap(contact, (bodies, network, laws), &grain));
                 let sides = contact.bodies.map(|b| free[b as usize]);
                 let side = match sides {
                     [true, false] => 0,
@@ -66,13 +72,14 @@ impl<S: Space> Simulation<S> {
                     sum.angular -= S::moment(&(at - about), &impulse) + contact.moment * sign;
                 }
             }
-            sum
+            (sum, deepest)
         });
         let mut step = MomentumSum::zero();
-        of_bodies
-            .iter()
-            .chain(&of_contacts)
-            .for_each(|part| step.add(part));
+        of_bodies.iter().for_each(|part| step.add(part));
+        for (part, deepest) in &of_contacts {
+            step.add(part);
+            report.overlap = report.overlap.max(*deepest);
+        }
         self.state.momentum.about = Some(about.padded());
         self.state.momentum.book(&step);
     }

@@ -14,10 +14,13 @@ const LEAST_ITERATIONS: u32 = 100;
 /// at most, where they squeeze what does not yield.
 const WASTED: f64 = 0.2;
 const UNEXPLAINED: f64 = 0.3;
-/// Share of the work of all drives, or of the largest impulse, from which a body is named.
+/// Share of the work of all drives from which a body is named, and of the largest impulse on a body from which a contact passes on what
+/// presses on it.
 const NAMED: f64 = 0.05;
-/// Overlap of two bodies with imposed motion, over the length of the smaller one, that is no rounding of their paths.
-const OVERLAP: f64 = 1e-3;
+/// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be rounding of their places, and share of what
+/// they travel by which they may close by rounding.
+const ROUNDING: f64 = 1e-9;
+const GRAZING: f64 = 1e-6;
 
 /// Two bodies whose motions are both imposed, and that overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,11 +118,10 @@ impl ImpossibleMotions {
     }
 }
 
-/// Work that a driven body does on others by its imposed motion in a step (J), and the length of the impulse on it (N s).
+/// Work that a driven body does on others by its imposed motion in a step (J).
 struct Push {
     body: u32,
     work: f64,
-    impulse: f64,
 }
 
 impl<S: Space> Simulation<S> {
@@ -129,6 +131,10 @@ impl<S: Space> Simulation<S> {
             squeezing: self.squeezing(received, report),
             overlap: self.driven_overlap(),
         };
+        if let Some(DrivenOverlap { bodies, depth }) = impossible.overlap {
+            let length = bodies.map(|b| self.state.bodies.length[b as usize]);
+            report.overlap = report.overlap.max(depth / length[0].min(length[1]));
+        }
         if impossible != Impossible::default() {
             report.impossible = Some(Box::new(impossible));
         }
@@ -151,11 +157,43 @@ impl<S: Space> Simulation<S> {
                 return Vec::new();
             }
         }
-        let most = pushes.iter().fold(0.0, |m: f64, p| m.max(p.impulse));
         let works = |p: &&Push| p.work > NAMED * work && p.work > 0.0;
-        let holds = |p: &&Push| !works(p) && p.impulse > NAMED * most;
+        let pressed = self.pressed_by(pushes.iter().filter(works).map(|p| p.body as usize));
+        let holds = |p: &&Push| !works(p) && pressed[p.body as usize];
         let (first, then) = (pushes.iter().filter(works), pushes.iter().filter(holds));
         first.chain(then).map(|p| p.body).collect()
+    }
+
+    /// Which bodies some press on through chains of contacts. Far from where a motion is imposed impulses may be small when the iterations
+    /// end, so links are compared with those before them.
+    fn pressed_by(&self, those: impl Iterator<Item = usize>) -> Vec<bool> {
+        let (bodies, contacts) = (&self.state.bodies, &self.state.network.contacts);
+        let mut largest = vec![0.0f64; bodies.len()];
+        for contact in contacts {
+            for b in contact.bodies {
+                largest[b as usize] = largest[b as usize].max(contact.impulse.norm());
+            }
+        }
+        let mut pressed = vec![false; bodies.len()];
+        let mut passes_on = vec![false; bodies.len()];
+        for b in those {
+            (pressed[b], passes_on[b]) = (true, true);
+        }
+        let mut changed = true;
+        while std::mem::take(&mut changed) {
+            for contact in contacts {
+                let [i, j] = contact.bodies.map(|b| b as usize);
+                let size = contact.impulse.norm();
+                for (from, to) in [(i, j), (j, i)] {
+                    if passes_on[from] && !pressed[to] && size > NAMED * largest[from] {
+                        pressed[to] = true;
+                        passes_on[to] = !bodies.immovable(to);
+                        changed = true;
+                    }
+                }
+            }
+        }
+        pressed
     }
 
     /// What driven bodies do to others.
@@ -173,7 +211,6 @@ impl<S: Space> Simulation<S> {
             Push {
                 body: driven.body,
                 work: imposed.map(along).sum::<f64>() + turning,
-                impulse: impulse.norm(),
             }
         };
         bodies.driven.iter().zip(received).map(of).collect()
@@ -214,8 +251,15 @@ impl<S: Space> Simulation<S> {
         let closing = contact.normal.dot(self.workspace.solved.after.get(k)?);
         let scheme = &self.options.scheme;
         let depth = -contact.gap - scheme.theta * scheme.h * closing;
-        let length = |side: usize| bodies.length[contact.bodies[side] as usize];
-        let size = length(0).min(length(1));
-        (closing < 0.0 && depth > OVERLAP * size).then_some(depth)
+        let b = contact.bodies.map(|b| b as usize);
+        let size = bodies.length[b[0]].min(bodies.length[b[1]]);
+        let speed = |side: usize| {
+            let turning = S::spin_velocity(&bodies.spin[b[side]], &contact.arms[side]);
+            (bodies.velocity[b[side]] + turning).norm()
+        };
+        let travelled = scheme.h * (speed(0) + speed(1));
+        // Steps are chords of curved paths.
+        let told = depth > ROUNDING * size + travelled * travelled / size;
+        (-closing * scheme.h > GRAZING * travelled && told).then_some(depth)
     }
 }

@@ -34,7 +34,7 @@ impl<S: Space> Simulation<S> {
         self.book_expansion();
         self.conduct()?;
         self.book(&start, &mut report);
-        self.book_momentum(&start);
+        self.book_momentum(&start, &mut report);
         self.move_to_end();
         self.end_step(&mut report)?;
         Ok(report)
@@ -161,7 +161,6 @@ impl<S: Space> Simulation<S> {
         let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
         let parallel = self.options.solver.parallel;
         report.active = count(parallel, steps.len(), ACTS, acts);
-        report.overlap = self.deepest_overlap();
         let beyond = self.workspace.evaluator.beyond();
         report.contacts = steps.len() - beyond.filter(|k| !acts(*k)).count();
         debug_assert_eq!(

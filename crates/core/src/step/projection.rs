@@ -122,29 +122,41 @@ impl<S: Space> Simulation<S> {
     /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller body's
     /// length (a grain's radius; walls do not count).
     pub fn deepest_overlap(&self) -> f64 {
-        let bodies = &self.state.bodies;
+        let (bodies, network, laws) = (
+            &self.state.bodies,
+            &self.state.network,
+            self.laws.as_slice(),
+        );
         let grain = bodies.grain_flags();
-        let depth = |c: &Contact<S>| {
-            // One that was found on its way has the place where it closes.
-            if c.gap >= 0.0 || c.closing || self.laws[usize::from(c.law)].compliant() {
-                return 0.0;
-            }
-            let [i, j] = c.bodies.map(|b| b as usize);
-            let along = |b: usize| c.normal.scaled_by(&bodies.inverse_mass[b]).dot(&c.normal);
-            let held = self.state.network.bond(c).is_some_and(|b| b.intact());
-            if held || along(i) + along(j) <= 0.0 {
-                return 0.0;
-            }
-            let least = match (grain[i], grain[j]) {
-                (true, false) => bodies.length[i],
-                (false, true) => bodies.length[j],
-                _ => bodies.length[i].min(bodies.length[j]),
-            };
-            -c.gap / least
-        };
-        let contacts = &self.state.network.contacts;
         let parallel = self.options.solver.parallel;
-        largest(parallel, contacts.len(), DEPTH, |k| depth(&contacts[k]))
+        largest(parallel, network.contacts.len(), DEPTH, |k| {
+            Self::overlap(&network.contacts[k], (bodies, network, laws), &grain)
+        })
+    }
+
+    /// The same of one contact; `grain` tells which bodies are grains.
+    #[inline]
+    pub(super) fn overlap(
+        c: &Contact<S>,
+        (bodies, network, laws): (&Bodies<S>, &Network<S>, &[Interface]),
+        grain: &[bool],
+    ) -> f64 {
+        // One that was found on its way has the place where it closes.
+        if c.gap >= 0.0 || c.closing || laws[usize::from(c.law)].compliant() {
+            return 0.0;
+        }
+        let [i, j] = c.bodies.map(|b| b as usize);
+        let along = |b: usize| c.normal.scaled_by(&bodies.inverse_mass[b]).dot(&c.normal);
+        let held = network.bond(c).is_some_and(|b| b.intact());
+        if held || along(i) + along(j) <= 0.0 {
+            return 0.0;
+        }
+        let least = match (grain[i], grain[j]) {
+            (true, false) => bodies.length[i],
+            (false, true) => bodies.length[j],
+            _ => bodies.length[i].min(bodies.length[j]),
+        };
+        -c.gap / least
     }
 
     /// Books the work of displacements against gravity and imposed forces; returns the latter (J).

@@ -7,8 +7,12 @@
 //! Surfaces that bend away need nothing: their gap opens, and closes in the next step.
 
 use super::Simulation;
-use crate::contact::{Contact, Key};
+use crate::bodies::Bodies;
+use crate::contact::{Contact, Key, Network};
+use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
+use crate::laws::Interface;
+use crate::threads::fill;
 
 /// Velocity and spin of a body.
 type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
@@ -25,26 +29,43 @@ impl<S: Space> Simulation<S> {
         turning.sort_unstable();
         if hollow || !turning.is_empty() {
             let turns = |b: u32| turning.binary_search(&(b as usize)).is_ok();
-            let contacts = self.state.network.contacts.iter();
-            swerves.extend(contacts.map(|c| {
-                let bends = hollow && self.is_on_hollow(c);
+            let contacts = &self.state.network.contacts;
+            let scene = Scene {
+                network: &self.state.network,
+                bodies: &self.state.bodies,
+                shapes: &self.shapes,
+                laws: &self.laws,
+            };
+            fill(self.divides_contacts(), &mut swerves, contacts.len(), |k| {
+                let c = &contacts[k];
+                let bends = hollow && scene.is_on_hollow(c);
                 if bends || c.bodies.into_iter().any(turns) {
-                    self.swerve(c, free, h)
+                    scene.swerve(c, free, h)
                 } else {
                     0.0
                 }
-            }));
+            });
         }
         self.workspace.swerves = swerves;
     }
+}
 
+/// What swerves follow from.
+struct Scene<'a, S: Space> {
+    network: &'a Network<S>,
+    bodies: &'a Bodies<S>,
+    shapes: &'a Shapes<S>,
+    laws: &'a [Interface],
+}
+
+impl<S: Space> Scene<'_, S> {
     fn is_on_hollow(&self, contact: &Contact<S>) -> bool {
         let surface = contact.key.surface();
         surface.is_some_and(|s| self.shapes.surfaces[s].shape.is_hollow())
     }
 
     fn swerve(&self, contact: &Contact<S>, free: &[Motion<S>], h: f64) -> f64 {
-        let network = &self.state.network;
+        let network = self.network;
         // A spring pushes out what it lets in, a bond holds what it joins; a contact found on the way has the place where it closes.
         let held = network.bond(contact).is_some_and(|b| b.intact());
         if contact.closing || held || self.laws[usize::from(contact.law)].compliant() {
@@ -75,7 +96,7 @@ impl<S: Space> Simulation<S> {
         free: &[Motion<S>],
         h: f64,
     ) -> f64 {
-        let bodies = &self.state.bodies;
+        let bodies = self.bodies;
         let [i, j] = sides.map(|side| contact.bodies[side] as usize);
         // Contacts change the motion along the surface little; loads without them may change it much.
         let motion = |b: usize| {

@@ -7,8 +7,12 @@ use crate::contact::network::{Contact, ContactGeometry, Key};
 use crate::geometry::convex::passing::{
     PairMotion, keep_apart, keep_apart_from_surface, keep_ball_apart,
 };
+use crate::geometry::convex::seam::{Beside, DEEPEST, ball_is_over_seam, leave_seam};
 use crate::geometry::convex::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
+
+/// Share of the cosine between two directions that is of rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// The pair: bodies, materials, and the size used where the contact point defines none (m).
 struct Pair<S: Space> {
@@ -61,6 +65,31 @@ impl<S: Space> Narrow<'_, S> {
             shift: shift - shift_other,
             turns: [turn, turn_other],
         }
+    }
+
+    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece.
+    fn beside(&self, pair: [u32; 2]) -> Vec<Beside<'_, S>> {
+        let balls = self.shapes.balls.len();
+        let origin = self.centres[balls + (pair[1] & !Key::PIECE) as usize];
+        let mut out = Vec::new();
+        for (side, name) in pair.into_iter().enumerate() {
+            let others = self
+                .partners
+                .of(self.pairs, self.centres.len(), balls, name);
+            for other in others.iter().filter(|other| **other != pair[1 - side]) {
+                let k = (*other & !Key::PIECE) as usize;
+                let centre = self.centres[balls + k];
+                out.push(Beside {
+                    core: &self.cores[k],
+                    at: self.shapes.periodic.shortest(centre - origin),
+                    rounding: self.shapes.pieces[k].rounding,
+                    // What is near the candidate is beside the antagonist.
+                    of_candidate: side == 1,
+                    name: *other,
+                });
+            }
+        }
+        out
     }
 
     /// Returns whether the bounding balls of a pair without bonds are too far from each other for contacts.
@@ -163,7 +192,20 @@ impl<S: Space> Narrow<'_, S> {
                 let motion = self.motion([ball.body, other.body], [own_centre, centre]);
                 keep_ball_apart::<S>(core, &apart, sizes, tolerances, &motion, &mut meeting);
             }
-            if meeting.gap <= tolerances.reach {
+            // The inside of a face is on no seam.
+            let inside = |n: &S::Vector| n.dot(&meeting.normal) > 1.0 - ROUNDING;
+            let over_seam = meeting.gap <= tolerances.reach
+                && !tolerances.held
+                && !core.normals().iter().any(inside)
+                && ball_is_over_seam::<S>(
+                    &meeting,
+                    &apart,
+                    ball.radius,
+                    tolerances.slack,
+                    b,
+                    || self.beside([a, b]),
+                );
+            if meeting.gap <= tolerances.reach && !over_seam {
                 out.push(meeting);
             }
             bodies = [ball.body, other.body];
@@ -181,6 +223,17 @@ impl<S: Space> Narrow<'_, S> {
             if !(out.is_empty() || tolerances.held) {
                 let motion = self.motion(bodies, [own_centre, centre]);
                 keep_apart::<S>(cores, &apart, roundings, tolerances, &motion, out);
+                let deepest = DEEPEST * piece.size.min(other.size);
+                leave_seam::<S>(
+                    cores,
+                    &apart,
+                    roundings,
+                    tolerances,
+                    &motion,
+                    deepest,
+                    || self.beside([a, b]),
+                    out,
+                );
             }
             law = self.laws.get(piece.material, other.material)?;
             radius = piece.size * other.size / (piece.size + other.size);

@@ -8,6 +8,7 @@ mod meeting;
 mod narrow;
 mod neighbours;
 mod order;
+mod partners;
 mod prediction;
 mod renewal;
 mod sorted;

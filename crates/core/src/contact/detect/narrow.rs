@@ -1,5 +1,6 @@
 //! Narrow phase: gaps and normals of candidate pairs, and transfer of contact memory.
 
+use super::partners::Partners;
 use super::renewal::{Found, Touch};
 use super::{LawTable, held};
 use crate::bodies::Bodies;
@@ -22,6 +23,9 @@ pub(super) struct Narrow<'a, S: Space> {
     /// The balls.
     pub(super) round: &'a [Round<S>],
     pub(super) laws: &'a LawTable,
+    /// All pairs, and the pieces in them by their partners.
+    pub(super) pairs: &'a [(u32, u32)],
+    pub(super) partners: &'a Partners,
     pub(super) time: f64,
     pub(super) h: f64,
 }

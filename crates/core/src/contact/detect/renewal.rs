@@ -2,6 +2,7 @@
 //! second list is not needed.
 
 use super::narrow::{Narrow, Round};
+use super::partners::Partners;
 use super::{LawTable, drop_contact};
 use crate::bodies::Bodies;
 use crate::contact::network::{Contact, ContactGeometry, Key, Network};
@@ -297,6 +298,7 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
         written: 0,
         read: 0,
     };
+    let partners = Partners::default();
     let mut rest = &candidates[..];
     while !rest.is_empty() {
         let (pairs, after) = rest.split_at(rest.len().min(batch * size));
@@ -310,6 +312,8 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
             frames: &frames,
             round: &round,
             laws: scene.laws,
+            pairs: &candidates,
+            partners: &partners,
             time: scene.time,
             h: scene.h,
         };

@@ -7,6 +7,7 @@ mod boundary;
 pub mod mass;
 pub mod passing;
 pub mod polygon;
+mod polygon_line;
 pub mod polygon_pair;
 pub mod polygon_surface;
 pub mod polyhedron;
@@ -18,6 +19,7 @@ mod polyhedron_pair;
 mod polyhedron_surface;
 #[cfg(test)]
 mod polyhedron_tests;
+pub mod seam;
 mod topology;
 
 pub use boundary::Boundary;

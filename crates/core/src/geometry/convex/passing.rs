@@ -10,7 +10,7 @@ use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
 /// Room that a plane must leave more than the nearest points do, as a fraction of the slack: half of a closing that is shallower.
-const ALIKE: f64 = 1e-3;
+pub(super) const ALIKE: f64 = 1e-3;
 
 /// Depth of a closing that is one of rounding, as a fraction of the slack.
 const ROUNDING: f64 = 1e-9;
@@ -44,7 +44,7 @@ impl<S: Space> PairMotion<S> {
     }
 
     /// Gap that is left at a point at the end of the step (m), and by how much it changes.
-    fn left(&self, point: &ContactPoint<S::Vector>, apart: &S::Vector) -> [f64; 2] {
+    pub(super) fn left(&self, point: &ContactPoint<S::Vector>, apart: &S::Vector) -> [f64; 2] {
         let moved = self.of(&(point.on_candidate - *apart), &point.on_antagonist);
         let change = point.normal.dot(&moved);
         [point.gap + change, change]
@@ -77,20 +77,20 @@ pub struct PairFace {
     pub face: usize,
 }
 
-/// The pair, its centres apart (m).
-struct Pair<'a, S: Space> {
-    cores: [&'a S::Core; 2],
-    apart: S::Vector,
-    roundings: [f64; 2],
-    motion: &'a PairMotion<S>,
+/// The corners of a pair, its centres apart (m).
+pub(super) struct Pair<'a, S: Space> {
+    pub(super) corners: [&'a [S::Vector]; 2],
+    pub(super) apart: S::Vector,
+    /// Sum of the roundings (m).
+    pub(super) thickness: f64,
+    pub(super) motion: &'a PairMotion<S>,
 }
 
-/// A direction from the antagonist to the candidate along which they are separate.
+/// A direction from the antagonist to the candidate, and where the two are along it.
 struct Plane<V> {
     normal: V,
-    /// Gap along it now and at the end of the step (m).
+    /// Gap along it (m).
     gap: f64,
-    left: f64,
     /// The face that it belongs to.
     face: Option<PairFace>,
     /// The point of the candidate that is lowest along it, from the antagonist's centre, without its rounding (m).
@@ -98,35 +98,47 @@ struct Plane<V> {
 }
 
 impl<S: Space> Pair<'_, S> {
-    /// The plane across a direction.
-    fn across(&self, normal: S::Vector, face: Option<PairFace>) -> Plane<S::Vector> {
-        let [a, b] = self.cores;
-        let [turn, other] = &self.motion.turns;
-        let mut plane = Plane {
-            normal,
-            gap: f64::INFINITY,
-            left: f64::INFINITY,
-            face,
-            lowest: self.apart,
-        };
-        for p in a.corners() {
+    /// Gap along a direction now (m), and the point of the candidate that is lowest along it; `None` where it is less than `least`.
+    pub(super) fn gap(&self, normal: &S::Vector, least: f64) -> Option<(f64, S::Vector)> {
+        let [a, b] = self.corners;
+        let top = b.iter().map(|q| normal.dot(q));
+        let below = top.fold(f64::NEG_INFINITY, f64::max) + self.thickness;
+        let (mut gap, mut lowest) = (f64::INFINITY, self.apart);
+        for p in a {
             let now = *p + self.apart;
-            let end = now + self.motion.shift + S::spin_velocity(turn, p);
-            if normal.dot(&now) < plane.gap {
-                (plane.gap, plane.lowest) = (normal.dot(&now), now);
+            let height = normal.dot(&now) - below;
+            if height < least {
+                return None;
             }
-            plane.left = plane.left.min(normal.dot(&end));
+            if height < gap {
+                (gap, lowest) = (height, now);
+            }
         }
-        let mut top = [f64::NEG_INFINITY; 2];
-        for q in b.corners() {
-            let end = *q + S::spin_velocity(other, q);
-            top = [top[0].max(normal.dot(q)), top[1].max(normal.dot(&end))];
-        }
-        let thickness = self.roundings[0] + self.roundings[1];
-        plane.gap -= top[0] + thickness;
-        plane.left -= top[1] + thickness;
-        plane
+        Some((gap, lowest))
     }
+
+    /// The gap that is left along a direction at the end of the step (m).
+    pub(super) fn left(&self, normal: &S::Vector) -> f64 {
+        let ([a, b], [turn, other]) = (self.corners, &self.motion.turns);
+        let shift = self.apart + self.motion.shift;
+        let end = |p: &S::Vector| normal.dot(&(*p + S::spin_velocity(turn, p)));
+        let low = a.iter().map(end).fold(f64::INFINITY, f64::min);
+        let end = |q: &S::Vector| normal.dot(&(*q + S::spin_velocity(other, q)));
+        let top = b.iter().map(end).fold(f64::NEG_INFINITY, f64::max);
+        normal.dot(&shift) + low - top - self.thickness
+    }
+}
+
+/// The normals of the faces of a pair, from the antagonist to the candidate.
+pub(super) fn faces<S: Space>(cores: [&S::Core; 2]) -> impl Iterator<Item = (S::Vector, PairFace)> {
+    let of = move |of_candidate: bool| {
+        let normals = cores[usize::from(!of_candidate)].normals().iter();
+        let sign = if of_candidate { -1.0 } else { 1.0 };
+        let named =
+            move |(face, n): (usize, &S::Vector)| (*n * sign, PairFace { of_candidate, face });
+        normals.enumerate().map(named)
+    };
+    of(true).chain(of(false))
 }
 
 /// Puts points on a plane that keeps a pair apart in place of those that close in the step although the pair passes; `apart` and
@@ -147,30 +159,29 @@ pub fn keep_apart<S: Space>(
         return;
     };
     let pair = Pair::<S> {
-        cores,
+        corners: cores.map(Core::corners),
         apart: *apart,
-        roundings,
+        thickness: roundings[0] + roundings[1],
         motion,
     };
+    let beside = beside::<S>(&nearest, pair.thickness, apart, motion);
+    let planes = faces::<S>(cores).map(|(n, face)| (n, Some(face)));
+    let mut room = room(least, tolerances.slack);
     let mut best: Option<Plane<S::Vector>> = None;
-    let mut consider = |plane: Plane<S::Vector>| {
-        let room = best
-            .as_ref()
-            .map_or(room(least, tolerances.slack), |b| b.left);
-        if plane.gap >= -tolerances.slack && plane.left > room {
-            best = Some(plane);
+    for (normal, face) in planes.chain(beside.map(|n| (n, None))) {
+        let Some((gap, lowest)) = pair.gap(&normal, -tolerances.slack) else {
+            continue;
+        };
+        let left = pair.left(&normal);
+        if left > room {
+            room = left;
+            best = Some(Plane {
+                normal,
+                gap,
+                face,
+                lowest,
+            });
         }
-    };
-    for of_candidate in [true, false] {
-        let own = cores[usize::from(!of_candidate)];
-        for (face, n) in own.normals().iter().enumerate() {
-            let outward = if of_candidate { *n * -1.0 } else { *n };
-            consider(pair.across(outward, Some(PairFace { of_candidate, face })));
-        }
-    }
-    let thickness = roundings[0] + roundings[1];
-    if let Some(beside) = beside::<S>(&nearest, thickness, apart, motion) {
-        consider(pair.across(beside, None));
     }
     let Some(plane) = best else {
         return;
@@ -220,27 +231,32 @@ pub fn keep_ball_apart<S: Space>(
     let Some(least) = motion.closing(point, apart, tolerances.slack) else {
         return;
     };
-    let beside = beside::<S>(point, radius + rounding, apart, motion);
+    let centre = [S::Vector::zero()];
+    let pair = Pair::<S> {
+        corners: [&centre, core.corners()],
+        apart: *apart,
+        thickness: radius + rounding,
+        motion,
+    };
+    let beside = beside::<S>(point, pair.thickness, apart, motion);
     let mut room = room(least, tolerances.slack);
     for n in core.normals().iter().copied().chain(beside) {
-        let top = core
-            .corners()
-            .iter()
-            .map(|c| c.dot(&n))
-            .fold(f64::NEG_INFINITY, f64::max);
-        let gap = n.dot(apart) - top - radius - rounding;
-        let plane = ContactPoint {
-            on_candidate: *apart - n * radius,
-            on_antagonist: *apart - n * (radius + gap),
-            normal: n,
-            gap,
-            // The core is beside the ball.
-            facing: false,
-            ..*point
+        let Some((gap, _)) = pair.gap(&n, -tolerances.slack) else {
+            continue;
         };
-        let [left, _] = motion.left(&plane, apart);
-        if gap >= -tolerances.slack && left > room {
-            (room, *point) = (left, plane);
+        let left = pair.left(&n);
+        if left > room {
+            room = left;
+            *point = ContactPoint {
+                on_candidate: *apart - n * radius,
+                // On one line with it, so that what acts there turns the pair by nothing, even where this is beside the face.
+                on_antagonist: *apart - n * (radius + gap),
+                normal: n,
+                gap,
+                // The core is beside the ball.
+                facing: false,
+                ..*point
+            };
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Convex polygons in 2D.
 
 use super::{
-    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, mass, polygon_pair,
-    polygon_surface,
+    Boundary, ContactPoint, ContactTolerances, ConvexPart, Core, PairFace, mass, polygon_line,
+    polygon_pair, polygon_surface,
 };
 use crate::geometry::shape::Surface;
 use crate::geometry::space::{Dim2, Space};
@@ -310,7 +310,7 @@ impl Core<Dim2> for Polygon {
         face: PairFace,
         out: &mut Vec<ContactPoint<Vector2<f64>>>,
     ) {
-        polygon_pair::points_on_side(self, other, apart, roundings, tolerances, face, out);
+        polygon_line::points_on_line(self, other, apart, roundings, tolerances, face, out);
     }
 
     fn feature_from_other_side(feature: u64) -> u64 {

@@ -124,7 +124,7 @@ pub fn points_on_side(
 }
 
 /// Returns the name of a corner of the candidate or the antagonist.
-fn name(corner: usize, of_candidate: bool) -> u64 {
+pub(super) fn name(corner: usize, of_candidate: bool) -> u64 {
     2 * corner as u64 + u64::from(!of_candidate)
 }
 

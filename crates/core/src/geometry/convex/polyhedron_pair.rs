@@ -63,7 +63,8 @@ pub fn contact_points(
     }
 }
 
-/// Finds the points of a pair that touch the plane of a face of one of the two: those of the opposite face above it, or its lowest corner.
+/// Finds the points of a pair that touch the plane of a face of one of the two: those of the opposite face above it, and its lowest corner
+/// where that is beside the face and lower.
 pub fn points_on_face(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -92,13 +93,14 @@ pub fn points_on_face(
         of_candidate,
     };
     let mut points = polyhedron_clip::clip(&lead, tolerances.slack);
-    if points.is_empty() {
-        let normal = own.normals()[face];
-        let corner = other.lowest(&normal);
-        let at = other.points()[corner] + apart;
+    let normal = own.normals()[face];
+    let corner = other.lowest(&normal);
+    let at = other.points()[corner] + apart;
+    let height = (at - own.points()[own.topology().faces[face][0] as usize]).dot(&normal);
+    if points.iter().all(|p| p.height > height + tolerances.slack) {
         points.push(polyhedron_clip::Point {
             at,
-            height: (at - own.points()[own.topology().faces[face][0] as usize]).dot(&normal),
+            height,
             normal,
             feature: name::corner(corner, !of_candidate),
             share: 0.0,

@@ -1,0 +1,80 @@
+//! The pieces that each ball and piece may touch.
+
+use crate::contact::network::Key;
+use std::sync::OnceLock;
+
+/// Lists of pieces by ball or piece, made when the first is asked for: few steps of few scenes need them.
+#[derive(Default)]
+pub(super) struct Partners(OnceLock<Lists>);
+
+/// The lists one after the other, and where each starts.
+struct Lists {
+    starts: Vec<u32>,
+    names: Vec<u32>,
+}
+
+impl Partners {
+    /// The pieces in pairs with a ball or piece, in the order of the pairs; `count` is the number of balls and pieces, `balls` that of balls.
+    pub fn of(&self, pairs: &[(u32, u32)], count: usize, balls: usize, name: u32) -> &[u32] {
+        let lists = self.0.get_or_init(|| Lists::new(pairs, count, balls));
+        let at = place(name, balls);
+        &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
+    }
+}
+
+/// Index in the list of centres.
+fn place(name: u32, balls: usize) -> usize {
+    let k = (name & !Key::PIECE) as usize;
+    if name & Key::PIECE == 0 { k } else { balls + k }
+}
+
+impl Lists {
+    fn new(pairs: &[(u32, u32)], count: usize, balls: usize) -> Self {
+        let with_pieces = || {
+            let both = pairs.iter().filter(|p| p.1 & Key::SURFACE == 0);
+            let ways = both.flat_map(|(a, b)| [(*a, *b), (*b, *a)]);
+            ways.filter(|(_, piece)| piece & Key::PIECE != 0)
+        };
+        let mut starts = vec![0; count + 1];
+        for (name, _) in with_pieces() {
+            starts[place(name, balls) + 1] += 1;
+        }
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let mut names = vec![0; starts[count] as usize];
+        let mut next = starts.clone();
+        for (name, piece) in with_pieces() {
+            let at = &mut next[place(name, balls)];
+            names[*at as usize] = piece;
+            *at += 1;
+        }
+        Self { starts, names }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_are_listed_by_what_they_pair_with() {
+        let piece = |k: u32| Key::PIECE | k;
+        let pairs = [
+            (0, 1),
+            (0, piece(0)),
+            (1, piece(2)),
+            (1, Key::SURFACE),
+            (piece(0), piece(1)),
+            (piece(1), piece(2)),
+            (piece(2), Key::SURFACE | 1),
+        ];
+        let partners = Partners::default();
+        let of = |name: u32| partners.of(&pairs, 5, 2, name).to_vec();
+        assert_eq!(of(0), [piece(0)]);
+        assert_eq!(of(1), [piece(2)]);
+        assert_eq!(of(piece(0)), [piece(1)]);
+        assert_eq!(of(piece(1)), [piece(0), piece(2)]);
+        assert_eq!(of(piece(2)), [piece(1)]);
+    }
+}
