@@ -21,13 +21,44 @@ fn least_friction() -> f64 {
 /// A body between two pads that are pressed together along x; names of the bodies with "held" are watched.
 struct Pinched {
     bodies: String,
+    /// Grains of the scene, as in a case.
+    grains: String,
     dimension: usize,
 }
 
 impl Pinched {
     fn new(dimension: usize, pad: &str, bodies: &[(&str, [f64; 3], f64)]) -> Self {
+        Self {
+            bodies: Self::pinched(dimension, pad, bodies, [0.0; 3], ""),
+            grains: String::new(),
+            dimension,
+        }
+    }
+
+    /// Copies of what two pads pinch, 0.1 m apart, which have nothing to do with each other.
+    fn copies(count: usize, pad: &str, bodies: &[(&str, [f64; 3], f64)]) -> Self {
+        let all = (0..count).map(|k| {
+            let at = [0.0, 0.1 * k as f64, 0.0];
+            Self::pinched(3, pad, bodies, at, &format!("_{k}"))
+        });
+        Self {
+            bodies: all.collect(),
+            grains: String::new(),
+            dimension: 3,
+        }
+    }
+
+    /// Two pads at a place, and what they pinch.
+    fn pinched(
+        dimension: usize,
+        pad: &str,
+        bodies: &[(&str, [f64; 3], f64)],
+        origin: [f64; 3],
+        suffix: &str,
+    ) -> String {
         let place = |at: &[f64; 3]| {
-            let at: Vec<String> = at[..dimension].iter().map(|x| format!("{x:e}")).collect();
+            let at = at.iter().zip(origin).map(|(x, o)| format!("{:e}", x + o));
+            let at: Vec<String> = at.take(dimension).collect();
             at.join(", ")
         };
         let free = if dimension == 2 {
@@ -38,20 +69,17 @@ impl Pinched {
         let mut all = String::new();
         for (name, x, force) in [("left", -9e-3, FORCE), ("right", 9e-3, -FORCE)] {
             all += &format!(
-                r#"(name: "{name}", material: "grain", mass: 0.1, position: [{}], shapes: [{pad}], dofs: (x: Force({force}))),"#,
+                r#"(name: "{name}{suffix}", material: "grain", mass: 0.1, position: [{}], shapes: [{pad}], dofs: (x: Force({force}))),"#,
                 place(&[x, 0.0, 0.0])
             );
         }
         for (k, (shape, at, mass)) in bodies.iter().enumerate() {
             all += &format!(
-                r#"(name: "held{k}", material: "grain", mass: {mass}, position: [{}], shapes: [{shape}], dofs: ({free})),"#,
+                r#"(name: "held{k}{suffix}", material: "grain", mass: {mass}, position: [{}], shapes: [{shape}], dofs: ({free})),"#,
                 place(at)
             );
         }
-        Self {
-            bodies: all,
-            dimension,
-        }
+        all
     }
 
     /// The scene with a friction, solver settings and step.
@@ -69,9 +97,10 @@ impl Pinched {
     materials: {{"grain": "verification_grain"}},
     interfaces: [(name: "all", between: ("grain", "grain"), contact: "coulomb", parameters: (contact: {{"mu": {mu:e}}}))],
     bodies: [{}],
+    grains: [{}],
     output: (frames: 0, views: 0, figures: false),
 )"#,
-            self.dimension, self.bodies
+            self.dimension, self.bodies, self.grains
         );
         let loaded = load_text("pinched.ron", &text, Path::new("."), &[]);
         let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
@@ -239,4 +268,104 @@ fn several_solutions_are_reported() {
         report.solver
     );
     assert!(!s.step().unwrap().solver.several);
+}
+
+/// Seventeen pinched capsules that have nothing to do with each other hang, and one does beside balls at rest on a floor, whose contacts are
+/// more than the search takes in one set; the number of solutions is told in the first step, and no set is too large.
+#[test]
+fn what_is_pinched_hangs_whatever_else_there_is() {
+    let mu = 1.05 * least_friction();
+    let level = capsule([0.0, 1.0, 0.0]);
+    let one = [(level.as_str(), [0.0; 3], MASS)];
+    let mut beside = Pinched::new(3, PAD, &one);
+    let balls: Vec<String> = (0..65)
+        .map(|k| {
+            format!(
+                "(at: [{:e}, 0.0, 0.01], radius: 0.01)",
+                1.0 + 0.03 * f64::from(k)
+            )
+        })
+        .collect();
+    beside.grains = format!(r#"List(material: "grain", grains: [{}])"#, balls.join(", "));
+    beside.bodies += r#"(name: "floor", material: "grain", shapes: [Box(size: (5.0, 1.0, 0.1), at: (3.2, 0.0, -0.05))]),"#;
+    for (name, pinched) in [
+        ("copies", Pinched::copies(17, PAD, &one)),
+        ("balls", beside),
+    ] {
+        let [v, d] = pinched.falls::<Dim3>(mu, "tolerance: 1e-6", 1e-3, TIME);
+        let slow = 20.0 * 1e-6 * FORCE * 1e-3 / MASS;
+        assert!(
+            v < slow && d < slow * TIME + 1e-6,
+            "{name}: {v:e} m/s, {d:e} m"
+        );
+        let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-6", 1e-3);
+        let told: Vec<bool> = (0..10).map(|_| s.step().unwrap().solver.several).collect();
+        assert!(told[0] && !told[1..].contains(&true), "{name}: {told:?}");
+        let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-6", 1e-3);
+        assert!(
+            (0..10).all(|_| !s.step().unwrap().solver.not_searched),
+            "{name}"
+        );
+    }
+}
+
+/// Bodies that slide one by one on a floor are sets of their own: each has one solution, since its load is that of its weight, and the friction of
+/// a step is mu m g h whatever the others do.
+#[test]
+fn blocks_that_slide_have_one_solution() {
+    let blocks: Vec<String> = (0..20)
+        .map(|k| {
+            let [x, v] = [0.3 * f64::from(k), 0.05 * f64::from(k + 1)];
+            format!("(at: [{x:e}, 0.0, 0.05], size: (0.1, 0.1, 0.1), velocity: [{v:e}, 0.0, 0.0])")
+        })
+        .collect();
+    let (mu, h) = (0.3, 1e-3);
+    let pinched = Pinched {
+        bodies:
+            r#"(name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 0.0, 1.0])]),"#
+                .to_owned(),
+        grains: format!(
+            r#"Polyhedra(material: "grain", grains: [{}])"#,
+            blocks.join(", ")
+        ),
+        dimension: 3,
+    };
+    let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-8", h);
+    for step in 1..=60 {
+        let report = s.step().unwrap();
+        assert!(
+            !report.solver.several && !report.solver.not_searched,
+            "{step}"
+        );
+        let moving = s.state.bodies.velocity.iter().skip(1);
+        for (k, v) in moving.enumerate() {
+            let wanted = (0.05 * (k + 1) as f64 - mu * G * h * f64::from(step)).max(0.0);
+            assert!(
+                (v[0] - wanted).abs() < 1e-6,
+                "{k}, {step}: {} m/s, not {wanted}",
+                v[0]
+            );
+        }
+    }
+}
+
+/// Where a set is too large to search, a loaded contact of it that begins to slide is told: capsules that two pads hold without gravity, and drop
+/// with it. Not while they hold, nor of one capsule, whose set is searched.
+#[test]
+fn sets_too_large_to_search_are_told() {
+    let level = capsule([0.0, 1.0, 0.0]);
+    for (count, told) in [(20, true), (1, false)] {
+        let place = |k: i32| 0.03 * f64::from(k) - 0.015 * f64::from(count - 1);
+        let held: Vec<(&str, [f64; 3], f64)> = (0..count)
+            .map(|k| (level.as_str(), [0.0, place(k), 0.0], MASS))
+            .collect();
+        let pinched = Pinched::new(3, "Box(size: (0.01, 0.7, 0.06))", &held);
+        let mu = 0.5 * least_friction();
+        let mut s: Simulation<Dim3> = pinched.scene(mu, "tolerance: 1e-6", 1e-3);
+        let gravity = std::mem::replace(&mut s.state.gravity, [0.0; 3].into());
+        let not_searched = |s: &mut Simulation<Dim3>| s.step().unwrap().solver.not_searched;
+        assert!((0..3).all(|_| !not_searched(&mut s)), "{count} that hold");
+        s.state.gravity = gravity;
+        assert_eq!(not_searched(&mut s), told, "{count} that fall");
+    }
 }

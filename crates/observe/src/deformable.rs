@@ -32,8 +32,9 @@ pub struct Deformable {
     distortions: Vec<Option<[f64; 2]>>,
     /// Of each body the largest share of a force on its border.
     borders: Vec<f64>,
-    /// Elements across the contact of each.
+    /// Elements across the contact of each, and whether the material of each passes.
     resolutions: Vec<Resolution>,
+    rolls: Vec<bool>,
     /// Contacts that act on nearest places.
     nearest: NearestPlaces,
     /// Largest strain and rotation of grains that deform, and the names of their materials.
@@ -118,7 +119,10 @@ impl Deformable {
     /// Of the dynamical systems of the simulation of a case.
     pub fn of<S: Space>(case: &Case, s: &Simulation<S>) -> Self {
         let systems = || first_bodies(s);
-        let rolls = case.half_spaces.iter().any(|b| b.rolling.is_some());
+        let rolls = |name: &str| {
+            let mut all = case.half_spaces.iter();
+            all.any(|b| b.name == name && b.rolling.is_some())
+        };
         let named = systems().flat_map(|system| {
             let holders = system.holders().into_iter();
             holders.map(|h| format!("{}_{}_{}", system.name(), h.part, ["x", "y", "z"][h.axis]))
@@ -129,8 +133,9 @@ impl Deformable {
             distortions: systems().map(DynamicalSystem::small_strain).collect(),
             borders: vec![0.0; systems().count()],
             resolutions: systems()
-                .map(|system| Resolution::new(system.name(), rolls))
+                .map(|system| Resolution::new(system.name()))
                 .collect(),
+            rolls: systems().map(|system| rolls(system.name())).collect(),
             nearest: NearestPlaces::default(),
             grains: strain_of_grains(s),
             materials: case
@@ -221,7 +226,7 @@ impl<S: Space> Observer<S> for Deformable {
             *most = larger(*most, system.small_strain());
         }
         for (k, resolution) in self.resolutions.iter_mut().enumerate() {
-            resolution.add(s, k, s.state.energy.friction);
+            resolution.add(s, k, &self.rolls, s.state.energy.friction);
         }
         for (most, system) in self.borders.iter_mut().zip(systems()) {
             *most = system.load_at_border().unwrap_or(0.0).max(*most);

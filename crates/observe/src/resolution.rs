@@ -19,6 +19,8 @@ const OF_CYCLES: f64 = 0.3;
 const OF_ROLLING: f64 = 0.6;
 /// Fewest contacts with one body that are a contact of surfaces.
 const FEWEST: usize = 4;
+/// Share of the largest load of a contact from which one counts: some methods leave traces on those that do not touch.
+const TRACE: f64 = 1e-3;
 /// Share of the load of a body that a counterpart carries where the two are a contact of surfaces.
 const MOST: f64 = 0.5;
 /// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
@@ -44,43 +46,55 @@ pub struct Resolution {
     /// Heat of all contacts up to the last row (J; J/m).
     #[serde(skip)]
     before: f64,
-    /// Whether its material, or that of what touches it, passes.
+    /// Whether its material, or that of what touches it, passes, at the last row with a load.
     #[serde(skip)]
     rolls: bool,
 }
 
 /// What is kept over a pause.
-pub type State = (f64, Option<f64>, Option<f64>, [f64; 2], f64);
+pub type State = (f64, Option<f64>, Option<f64>, [f64; 2], f64, bool);
 
 impl Resolution {
     /// Of a system that touches.
-    pub fn new(body: &str, rolls: bool) -> Self {
+    pub fn new(body: &str) -> Self {
         Self {
             body: body.to_owned(),
-            rolls,
             ..Self::default()
         }
     }
 
     /// All of it, to go on after a pause.
     pub fn state(&self) -> State {
-        (self.across, self.stick, self.slip, self.sums, self.before)
+        (
+            self.across,
+            self.stick,
+            self.slip,
+            self.sums,
+            self.before,
+            self.rolls,
+        )
     }
 
     /// Goes on after a pause.
-    pub fn restore(&mut self, (across, stick, slip, sums, before): State) {
+    pub fn restore(&mut self, (across, stick, slip, sums, before, rolls): State) {
         (self.across, self.stick, self.slip) = (across, stick, slip);
-        (self.sums, self.before) = (sums, before);
+        (self.sums, self.before, self.rolls) = (sums, before, rolls);
         self.heat_error = share(sums);
     }
 
     /// Adds a row of the statistics: the state of a system after its last step, with the heat of friction of all contacts so far (J; J/m).
-    pub fn add<S: Space>(&mut self, s: &Simulation<S>, system: usize, heat: f64) {
+    /// `rolls` says of each system whether its material passes.
+    pub fn add<S: Space>(&mut self, s: &Simulation<S>, system: usize, rolls: &[bool], heat: f64) {
         let made = (heat - self.before).max(0.0);
         self.before = heat;
         let Some(strip) = Strip::of(s, system) else {
             return;
         };
+        let passes = |system: Option<usize>| {
+            let of = system.and_then(|system| rolls.get(system));
+            of.copied().unwrap_or(false)
+        };
+        self.rolls = passes(Some(system)) || passes(strip.system);
         let partial = strip.stick > 0.0 && strip.slip > 0.0;
         if partial && self.slip.is_none_or(|w| strip.slip < w) {
             (self.across, self.stick, self.slip) =
@@ -150,10 +164,20 @@ struct Strip {
     across: f64,
     stick: f64,
     slip: f64,
+    /// The system that carries most of the load, where it is one.
+    system: Option<usize>,
 }
 
-/// Of a point in contact: its place along the strip, what it carries, and whether it slips.
-type Loaded = (f64, f64, bool);
+/// A point in contact.
+#[derive(Clone, Copy, Debug)]
+struct Loaded<S: Space> {
+    place: S::Vector,
+    /// Normal of what touches it times the load, and the load (N; N/m).
+    pushes: S::Vector,
+    load: f64,
+    slips: bool,
+}
+
 /// A body, or a system of bodies, on the other side.
 type Counterpart = (u32, u32);
 /// A point of a deformable body may touch several facets at their corner; points of other bodies are told apart by their contacts.
@@ -163,36 +187,55 @@ impl Strip {
     /// Of a system and the body that carries most of its load; none where it touches many bodies.
     fn of<S: Space>(s: &Simulation<S>, system: usize) -> Option<Self> {
         // Bodies of one system are one counterpart.
-        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded>> = BTreeMap::new();
+        let mut all: BTreeMap<Counterpart, BTreeMap<Point, Loaded<S>>> = BTreeMap::new();
         let mut total = 0.0;
         for (k, acting) in loaded(s, system).enumerate() {
             let other = acting.contact.bodies[1 - acting.side];
             let carrier = s.state.bodies.carrier(other as usize);
             let counterpart = carrier.map_or((1, other), |c| (0, c.system));
             let own = acting.contact.bodies[acting.side];
-            let place = s.state.bodies.position[own as usize] + acting.contact.arms[acting.side];
             let load = acting.force.norm();
             total += load;
-            let slides = acting.contact.slides;
             let candidate = acting.contact.bodies[0];
             let is_point = s.state.bodies.carrier(candidate as usize).is_some();
             let point = (candidate, if is_point { 0 } else { k });
             let points = all.entry(counterpart).or_default();
-            let of_point = points.entry(point).or_insert((place[0], 0.0, slides));
-            of_point.1 += load;
-            of_point.2 &= slides;
+            let of_point = points.entry(point).or_insert(Loaded {
+                place: s.state.bodies.position[own as usize] + acting.contact.arms[acting.side],
+                pushes: S::Vector::zero(),
+                load: 0.0,
+                slips: true,
+            });
+            let towards = if acting.side == 0 { load } else { -load };
+            of_point.pushes += acting.contact.normal * towards;
+            of_point.load += load;
+            of_point.slips &= acting.contact.slides;
         }
-        let load = |list: &[Loaded]| list.iter().map(|c| c.1).sum::<f64>();
-        let lists = all
-            .into_values()
-            .map(|points| points.into_values().collect());
-        let mut most: Vec<Loaded> =
-            lists.max_by(|a: &Vec<Loaded>, b| load(a).total_cmp(&load(b)))?;
-        if most.len() < FEWEST || load(&most) < MOST * total {
+        let lists = all.into_iter().map(|((kind, other), points)| {
+            let system = (kind == 0).then_some(other as usize);
+            (system, points.into_values().collect::<Vec<_>>())
+        });
+        let sum = |list: &[Loaded<S>]| list.iter().map(|c| c.load).sum::<f64>();
+        let (other, most) = lists.max_by(|(_, a), (_, b)| sum(a).total_cmp(&sum(b)))?;
+        if sum(&most) < MOST * total {
+            return None;
+        }
+        let strip = Self::across(most)?;
+        Some(Self {
+            system: other,
+            ..strip
+        })
+    }
+
+    /// Of the points that touch one counterpart; none where these are few.
+    fn across<S: Space>(mut most: Vec<Loaded<S>>) -> Option<Self> {
+        let largest = most.iter().map(|c| c.load).fold(0.0, f64::max);
+        most.retain(|c| c.load >= TRACE * largest);
+        if most.len() < FEWEST {
             return None;
         }
         let count = most.len() as f64;
-        let slipping = most.iter().filter(|c| c.2).count() as f64;
+        let slipping = most.iter().filter(|c| c.slips).count() as f64;
         if S::D == 3 {
             let diameter = |n: f64| 2.0 * (n / std::f64::consts::PI).sqrt();
             let (across, stick) = (diameter(count), diameter(count - slipping));
@@ -200,15 +243,20 @@ impl Strip {
                 across,
                 stick,
                 slip: 0.5 * (across - stick),
+                system: None,
             });
         }
-        most.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let begins = |k: usize| most[k].2 && (k == 0 || !most[k - 1].2);
+        // In the order along the mean tangent.
+        let normal = most.iter().fold(S::Vector::zero(), |sum, c| sum + c.pushes);
+        let along = |c: &Loaded<S>| c.place[0] * normal[1] - c.place[1] * normal[0];
+        most.sort_by(|a, b| along(a).total_cmp(&along(b)));
+        let begins = |k: usize| most[k].slips && (k == 0 || !most[k - 1].slips);
         let strips = (0..most.len()).filter(|k| begins(*k)).count().max(1);
         Some(Self {
             across: count,
             stick: count - slipping,
             slip: slipping / strips as f64,
+            system: None,
         })
     }
 }
@@ -216,6 +264,8 @@ impl Strip {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_core::geometry::space::Dim2;
+    use nalgebra::Vector2;
 
     fn of(heat_error: f64, slip: Option<f64>) -> Resolution {
         Resolution {
@@ -223,7 +273,7 @@ mod tests {
             stick: slip.map(|_| 6.0),
             slip,
             heat_error,
-            ..Resolution::new("flat", false)
+            ..Resolution::new("flat")
         }
     }
 
@@ -239,9 +289,40 @@ mod tests {
     #[test]
     fn a_pause_loses_nothing() {
         let mut kept = of(0.5, Some(2.0));
-        kept.sums = [2.0, 1.0];
-        let mut other = Resolution::new("flat", false);
+        (kept.sums, kept.rolls) = ([2.0, 1.0], true);
+        let mut other = Resolution::new("flat");
         other.restore(kept.state());
         assert_eq!(other, kept);
+    }
+
+    /// Points along a line in the plane, loaded as in Hertz' contact, of which the outer ones slip, with traces beyond.
+    fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded<Dim2>> {
+        let normal = Vector2::new(-towards[1], towards[0]);
+        let of = |k: i32, load: f64, slips: bool| Loaded {
+            place: Vector2::new(towards[0], towards[1]) * (1e-3 * f64::from(k)),
+            pushes: normal * load,
+            load,
+            slips,
+        };
+        let load = |k: i32| (1.0 - (f64::from(k) / 20.0).powi(2)).sqrt();
+        // Sticks from -9 to 9, slips in ten elements at either side.
+        let mut points: Vec<_> = (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
+        points.extend((0..traces as i32).map(|k| of(20 + k, 1e-7, k % 2 == 0)));
+        // In no order.
+        points.sort_by_key(|p| ((p.place.x + p.place.y) * 1e6) as i64 * 7919 % 1009);
+        points
+    }
+
+    /// Whichever way the surface faces, and whatever a method leaves on points that do not touch.
+    #[test]
+    fn strips_are_counted_along_the_surface() {
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        for towards in [[1.0, 0.0], [0.0, 1.0], [half, -half], [-1.0, 0.0]] {
+            for traces in [0, 80] {
+                let strip = Strip::across(along_a_line(towards, traces)).unwrap();
+                let counts = (strip.across, strip.stick, strip.slip);
+                assert_eq!(counts, (39.0, 19.0, 10.0), "{towards:?}, {traces} traces");
+            }
+        }
     }
 }

@@ -155,6 +155,7 @@ impl<S: Space> Observer<S> for RunState {
         *solver.steps_by_method.entry(used).or_default() += 1;
         solver.choice.add(&report.solver);
         solver.several_steps += u64::from(report.solver.several);
+        solver.not_searched_steps += u64::from(report.solver.not_searched);
         self.impossible.add(s, report);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);

@@ -70,8 +70,12 @@ pub struct SolverSummary {
     pub error_parts: ErrorPartsOfRun,
     /// Steps that did not reach the tolerance.
     pub unconverged_steps: u64,
-    /// Steps of which another solution was found, of more energy than the one that was taken.
+    /// Steps of which another solution was found, of more energy than the one that was taken, in which a loaded contact slides that holds in the
+    /// other.
     pub several_steps: u64,
+    /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek another solution.
+    #[serde(default)]
+    pub not_searched_steps: u64,
     /// Steps in which damage and opening did not reach the coupling's tolerance.
     pub uncoupled_steps: u64,
     /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.

@@ -464,17 +464,34 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     let uncertainty = &summary.uncertainty;
     note("ESTIMATED ERROR", estimated_error(uncertainty));
     note("ERROR NOT KNOWN", unknown_error(uncertainty));
-    let several = summary.solver.several_steps;
-    note(
-        "NOT UNIQUE",
-        (several > 0).then(|| {
-            format!(
-                "{several} steps had several solutions, since more contacts carry a load than its balance determines; the one with the smaller kinetic \
-                 energy was taken, in which contacts stick where they can; compliant contacts (docs/compliant.md) have one"
-            )
-        }),
-    );
+    note("NOT UNIQUE", several_solutions(summary));
     notes
+}
+
+/// Steps of which another solution was found, with those in which it was not sought: alone these say nothing, as all dense flows have them.
+fn several_solutions(summary: &Summary) -> Option<String> {
+    let [several, not_searched] = [
+        summary.solver.several_steps,
+        summary.solver.not_searched_steps,
+    ];
+    if several == 0 {
+        return None;
+    }
+    let found = format!(
+        "in {several} steps another solution was found, in which loaded contacts slide that hold in the other, since more contacts carry a load than \
+             its balance determines; the one of less energy was kept, others may exist"
+    );
+    let left = (not_searched > 0).then(|| {
+        format!(
+            "in {not_searched} steps a loaded contact began to slide among more than 64 connected contacts that carry a load which its balance does not \
+             determine; no other solution was sought there"
+        )
+    });
+    let told: Vec<String> = std::iter::once(found).chain(left).collect();
+    Some(format!(
+        "{}; compliant contacts (docs/compliant.md) have one (docs/solvers.md, several solutions)",
+        told.join("; ")
+    ))
 }
 
 #[cfg(test)]

@@ -38,6 +38,32 @@ impl Occurrence {
     }
 }
 
+/// Relative speed of a contact (m/s), or a bound on it where a surface deforms: its body has the velocity of its origin alone.
+fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
+    /// Speed of any point of a surface over that of its origin, at most.
+    const ELSEWHERE: f64 = 100.0;
+    let at = |side: usize| {
+        let b = contact.bodies[side] as usize;
+        bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], &contact.arms[side])
+    };
+    // Points of a system are bodies of their own, and grains nearly rigid; what is alone in its system is a surface.
+    let deforms = |side: usize| {
+        let carrier = bodies.carrier(contact.bodies[side] as usize);
+        let carrier = carrier.filter(|c| !c.grain);
+        carrier.is_some_and(|carrier| {
+            let all = bodies.carriers.iter().flatten();
+            all.filter(|c| c.system == carrier.system).count() == 1
+        })
+    };
+    match [0, 1].map(deforms) {
+        [false, false] => (at(0) - at(1)).norm(),
+        surfaces => {
+            let of = |side: usize| at(side).norm() * if surfaces[side] { ELSEWHERE } else { 1.0 };
+            of(0) + of(1)
+        }
+    }
+}
+
 /// Indicators, over a run, of whether the time step was small enough to find every contact in time.
 ///
 /// Pairs whose motion in a step exceeds the range of detection are followed through the step and get their
@@ -103,17 +129,7 @@ impl StepSizeDiagnostics {
         if depth <= allowed + known / size {
             return;
         }
-        let of_side = |side: usize| {
-            let b = contact.bodies[side] as usize;
-            bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], &contact.arms[side])
-        };
-        let moved = h * (of_side(0) - of_side(1)).norm();
-        // Velocities of points of dynamical systems are not known here.
-        let carried = contact
-            .bodies
-            .iter()
-            .any(|b| bodies.carrier(*b as usize).is_some());
-        let sank = !carried && -contact.gap - known > NOT_BY_SPEED * moved;
+        let sank = -contact.gap - known > NOT_BY_SPEED * h * speed_of(contact, bodies);
         let (count, deepest, first) = if sank {
             (&mut self.sunk, &mut self.deepest_sunk, &mut self.first_sunk)
         } else {
@@ -245,6 +261,7 @@ impl StepSizeDiagnostics {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::Carrier;
     use crate::contact::Key;
     use crate::contact::network::ContactGeometry;
     use crate::geometry::space::Dim2;
@@ -303,6 +320,55 @@ mod tests {
             let mut found = StepSizeDiagnostics::default();
             found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], &bodies);
             assert_eq!((found.sunk, found.late), (sunk, 1 - sunk), "{speed}");
+        }
+    }
+
+    /// A point of a system that is as slow as the bodies above sank as they do; of a surface the speed is known at its origin, of which that
+    /// elsewhere may be a hundred times.
+    #[test]
+    fn what_systems_carry_sinks_too() {
+        let geometry = ContactGeometry {
+            gap: -2e-8,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::zeros(); 2],
+            radius: 1e-6,
+        };
+        let key = Key {
+            candidate: Key::PIECE,
+            antagonist: Key::PIECE | 1,
+            feature: 0,
+        };
+        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+        for (points, speed, sunk) in [
+            (2, 0.0, 1),
+            (2, 1e-9, 1),
+            (2, 2e-8, 0),
+            (0, 0.0, 1),
+            (0, 1e-11, 1),
+            (0, 1e-9, 0),
+        ] {
+            let mut bodies = Bodies::<Dim2>::default();
+            for b in 0..2 + points {
+                bodies.add_ball(Vector2::new(b as f64, 0.0), 1e-6, 1e3);
+            }
+            for b in 1..2 + points {
+                let carrier = Carrier {
+                    system: 0,
+                    contactor: b as u32 - 1,
+                    touches_itself: false,
+                    grain: false,
+                };
+                bodies.carriers.resize(2 + points, None);
+                bodies.carriers[b] = Some(carrier);
+            }
+            bodies.velocity[1] = Vector2::new(speed, 0.0);
+            let mut found = StepSizeDiagnostics::default();
+            found.record_late(&contact, [0.0, 1e-6], false, [1.0, 1.0], &bodies);
+            assert_eq!(
+                (found.sunk, found.late),
+                (sunk, 1 - sunk),
+                "{points}, {speed}"
+            );
         }
     }
 }

@@ -102,6 +102,8 @@ impl<S: Space> Problem<S> {
             }
         };
         self.places.push(place);
+        self.connected = None;
+        self.compliant |= contact.compliance != [0.0; 2];
     }
 
     /// Adds all contacts to a problem that has none, in the order of the iteration.
@@ -113,15 +115,19 @@ impl<S: Space> Problem<S> {
         let parts = map_chunks(divide, contacts, CHUNK, |first, contacts| {
             let mut of_kind: [Vec<u32>; 4] = Default::default();
             let mut places = Vec::with_capacity(contacts.len());
+            let mut compliant = false;
             for (contact, k) in contacts.iter().zip(first..) {
+                compliant |= contact.compliance != [0.0; 2];
                 let list = &mut of_kind[kind(contact) as usize];
                 places.push((kind(contact), list.len() as u32));
                 list.push(k as u32);
             }
-            (of_kind, places)
+            (of_kind, places, compliant)
         });
         self.places.reserve_exact(contacts.len());
-        for (lists, places) in parts {
+        self.connected = None;
+        for (lists, places, compliant) in parts {
+            self.compliant |= compliant;
             let before = [0, 1, 2, 3].map(|k: usize| of_kind[k].len() as u32);
             self.places.extend(places.iter().map(|(kind, k)| {
                 let k = before[*kind as usize] + k;
@@ -229,5 +235,64 @@ impl<S: Space> Problem<S> {
             "a contact of a body with itself"
         );
         LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use crate::solve::measure;
+    use nalgebra::{Matrix1, Vector1, Vector2};
+
+    fn contact(compliance: [f64; 2]) -> ContactForm<Dim2> {
+        ContactForm {
+            bodies: [0, 1],
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::new(0.0, -0.01), Vector2::new(0.0, 0.01)],
+            central: true,
+            apart: false,
+            shift_n: 0.0,
+            shift_t: Vector1::new(0.0),
+            friction: 0.5,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            compliance,
+            impulse: Vector2::new(0.1, 0.2),
+        }
+    }
+
+    /// The work of a step has c |p|^2 of contacts that yield, however these are added, and is not asked for it where none does.
+    #[test]
+    fn contacts_that_yield_are_known() {
+        for compliance in [[0.0; 2], [3.0, 0.0], [0.0, 5.0]] {
+            for at_once in [false, true] {
+                let mut problem = Problem::<Dim2>::default();
+                for inverse_mass in [2.0, 0.0] {
+                    let (v, w) = (Vector2::new(0.0, -1.0), Vector1::new(0.0));
+                    let mobility = (Vector2::repeat(inverse_mass), Matrix1::new(0.0));
+                    problem.push_body(v, w, mobility.0, mobility.1, 0.01);
+                }
+                let form = contact(compliance);
+                if at_once {
+                    problem.push_all(std::slice::from_ref(&form), false);
+                } else {
+                    problem.push(&form);
+                    crate::solve::nlgs::prepare(&mut problem);
+                }
+                let yields = compliance != [0.0; 2];
+                assert_eq!(problem.compliant, yields);
+                let free = measure::free_velocity(&mut problem, false);
+                problem.reload(false);
+                let sums = measure::measure(&mut problem, false);
+                let work = measure::scale(&mut problem, free, &sums, false).work;
+                let [n, t] = compliance;
+                let wanted = 2.0 * (0.1 * 0.1 + 0.2 * 0.2) + n * 0.2 * 0.2 + t * 0.1 * 0.1;
+                assert!((work - wanted).abs() < 1e-12, "{work} J, not {wanted}");
+                problem.clear();
+                assert!(!problem.compliant);
+            }
+        }
     }
 }

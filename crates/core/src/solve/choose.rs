@@ -15,8 +15,8 @@ use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
 use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
+use super::search::Search;
 use super::standard::{self, Standard};
-use super::sticking::Search;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
@@ -42,7 +42,7 @@ const ATTEMPTS: [u32; 2] = [4, 20];
 const INTERIOR: u32 = 120;
 
 /// What `auto` learned from previous steps.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AutoState {
     /// Factor on the number of iterations before Newton.
     patience: f64,
@@ -66,6 +66,11 @@ impl Default for AutoState {
 }
 
 impl AutoState {
+    /// Begins a step, whose problem may be solved several times.
+    pub fn begin_step(&mut self) {
+        self.search.begin_step();
+    }
+
     /// Returns whether to try the interior point: after each failure it is skipped twice as often, at most
     /// 64 times.
     fn interior_is_due(&mut self) -> bool {
@@ -122,7 +127,7 @@ pub fn solve<S: Space>(
 
 pub(super) struct SolveContext<'a, S: Space> {
     pub(super) forms: &'a [ContactForm<S>],
-    moments: &'a [MomentForm<S>],
+    pub(super) moments: &'a [MomentForm<S>],
     pub(super) options: &'a Options,
 }
 
@@ -197,15 +202,24 @@ impl<S: Space> SolveContext<'_, S> {
         method: Method,
         (mut tolerance, most, attempts): (f64, u32, u32),
     ) {
-        let mut left = most;
+        // Error that an attempt must leave at most, over that before; attempts in a row that may fail to; and the least factor on the
+        // tolerance: one that falls faster is below rounding before the method has answered to it.
+        const LESS: f64 = 0.9;
+        const STALLED: u32 = 2;
+        const FALLS: f64 = 1e-2;
+        let (mut left, mut stalled) = (most, 0);
         for _ in 0..attempts {
-            if report.converged || left == 0 {
+            if report.converged || left == 0 || stalled == STALLED {
                 break;
             }
+            let before = report.error;
             let next = self.improve(problem, method, tolerance, left);
             left = left.saturating_sub(next.iterations);
             report.add(&next);
-            tolerance *= 0.3 * (self.options.tolerance / report.error).min(1.0);
+            // One that had nothing to do is not at its end: its own measure lacks a part of the error.
+            let less = report.error < LESS * before || next.iterations == 0;
+            stalled = if less { 0 } else { stalled + 1 };
+            tolerance *= 0.3 * (self.options.tolerance / report.error).clamp(FALLS, 1.0);
         }
     }
 

@@ -13,7 +13,9 @@
 //! work, so that f^2 is the kinetic energy of the part that is not supported, relative to the part that is.
 //!
 //! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in small sets only: where a heavy body rests on
-//! light ones, p/rho is far above all velocities, and powers of opposite sign, of a body that rocks, have no sum.
+//! light ones, p/rho is far above all velocities, and powers of opposite sign, of a body that rocks, have no sum. It is the largest of all sets
+//! of contacts that are connected through bodies that move, each with its own N and work ([`super::rocking`]): a stack stands as well among others
+//! as alone.
 //!
 //! [`Norm::Power`]: error = sum_c |p_c . r_c| / sum_c |p_t,c . (u_t,c + s_t,c)|, the power of the residuals over that of slip, for
 //! contacts that are springs. `Balance` compares residuals with p/rho, which with scaled inertia is far above the velocities of a slow
@@ -71,7 +73,7 @@ impl Norm {
     pub fn formula(self) -> &'static str {
         match self {
             Self::Balance => {
-                "max(|r|/max(|u|, |u_free|, |p/rho|), (sum p.r / |v - v_free|_M^2)^2, (sum |p.r| / (max(1, N/20) |v - v_free|_M^2))^2), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
+                "max(|r|/max(|u|, |u_free|, |p/rho|), (sum p.r / |v - v_free|_M^2)^2, (sum |p.r| / (max(1, N/20) |v - v_free|_M^2))^2 of each connected set), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
             }
             Self::Velocity => {
                 "|r|/max(|u|, |u_free|), r = (p - proj_K(p - rho (u + mu |u_t| n)))/rho"
@@ -319,7 +321,7 @@ impl Sums {
     }
 
     /// Third part of the error in the norm Balance.
-    fn rocking(&self, scale: &Scale) -> f64 {
+    pub(super) fn rocking(&self, scale: &Scale) -> f64 {
         let allowed = (scale.contacts as f64 / FEW).max(1.0);
         over(self.unbalanced, allowed * scale.work.max(scale.energy)).powi(2)
     }

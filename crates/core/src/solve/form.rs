@@ -1,10 +1,11 @@
 //! The input of a solver: bodies as velocity records, contacts in the standard form.
 
+use super::connected::Connected;
 use super::loaded::Loaded;
 use super::nodal::NodalSystem;
 use super::row::{
-    Bonded, FullRow, LeverRow, Loose, MomentForm, MomentRow, MomentSolution, PlainRow, Row,
-    SolverBody, SystemRow,
+    Bonded, FullRow, LeverRow, LocalImpulse, Loose, MomentForm, MomentRow, MomentSolution,
+    PlainRow, Row, SolverBody, SystemRow,
 };
 use super::rows::Rows;
 use super::traction::Tractions;
@@ -278,6 +279,10 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
+    /// Connected sets of the contacts, where these were asked for.
+    pub(super) connected: Option<Connected>,
+    /// Whether a contact has a compliance.
+    pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
     pub(super) of_kind: [Vec<u32>; 4],
 }
@@ -299,6 +304,8 @@ impl<S: Space> Default for Problem<S> {
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
+            connected: None,
+            compliant: false,
             of_kind: Default::default(),
         }
     }
@@ -338,6 +345,8 @@ impl<S: Space> Problem<S> {
         self.clear_systems();
         self.moments.clear();
         self.places.clear();
+        self.connected = None;
+        self.compliant = false;
     }
 
     /// Adds the moments of a contact that was already pushed, given with its bodies and normal.
@@ -373,12 +382,17 @@ impl<S: Space> Problem<S> {
 
     /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
+        self.local_impulse(place).0
+    }
+
+    /// Returns the normal and the tangential impulse of a contact (N s).
+    pub(super) fn local_impulse(&self, place: Place) -> LocalImpulse<S> {
         match place {
-            Place::Plain(r) => self.plain.row(r).local_impulse().0,
-            Place::Full(r) => self.full.row(r).local_impulse().0,
-            Place::Lever(r) => self.levers.row(r).local_impulse().0,
-            Place::BondedLever(r) => self.bonded_levers.row(r).local_impulse().0,
-            Place::System(r) => self.of_systems[r as usize].impulse().0,
+            Place::Plain(r) => self.plain.row(r).local_impulse(),
+            Place::Full(r) => self.full.row(r).local_impulse(),
+            Place::Lever(r) => self.levers.row(r).local_impulse(),
+            Place::BondedLever(r) => self.bonded_levers.row(r).local_impulse(),
+            Place::System(r) => self.of_systems[r as usize].impulse(),
         }
     }
 

@@ -1,7 +1,8 @@
 //! Sums for the error of a step's problem, at the current velocities.
 
-use super::error::{Scale, Sums};
+use super::error::{Norm, Scale, Sums};
 use super::form::Problem;
+use super::rocking;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
 use crate::threads::{for_chunks, map_ranges, pays};
@@ -87,8 +88,8 @@ pub(super) fn scale<S: Space>(
     } else {
         sums.power.abs()
     };
-    if unbalanced > BALANCED * work.max(free.energy) {
-        work += yields(problem);
+    if problem.compliant && unbalanced > BALANCED * work.max(free.energy) {
+        work += yields(problem, parallel);
     }
     Scale {
         work,
@@ -98,15 +99,29 @@ pub(super) fn scale<S: Space>(
     }
 }
 
+/// The error in a norm; where the sums over all contacts are within the tolerance, of each connected set.
+pub(super) fn error<S: Space>(
+    problem: &mut Problem<S>,
+    (norm, tolerance): (Norm, f64),
+    sums: &Sums,
+    scale: &Scale,
+) -> f64 {
+    let error = sums.error(norm, scale);
+    if norm != Norm::Balance || error > tolerance || sums.residual <= scale.noise {
+        return error;
+    }
+    error.max(rocking::worst(problem, sums, scale))
+}
+
 /// The work on the compliance of contacts.
-fn yields<S: Space>(problem: &mut Problem<S>) -> f64 {
+fn yields<S: Space>(problem: &mut Problem<S>, parallel: bool) -> f64 {
     let of_systems = problem.of_systems.iter();
     let of_systems = of_systems.map(|row| row.yields(&problem.solver_bodies, &problem.systems));
     let of_systems: f64 = of_systems.sum();
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    problem.full.yields(&solver_bodies)
-        + problem.levers.yields(&solver_bodies)
-        + problem.bonded_levers.yields(&solver_bodies)
+    problem.full.yields(&solver_bodies, parallel)
+        + problem.levers.yields(&solver_bodies, parallel)
+        + problem.bonded_levers.yields(&solver_bodies, parallel)
         + of_systems
 }
 

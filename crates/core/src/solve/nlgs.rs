@@ -5,7 +5,7 @@ use super::chosen::SolvePath;
 use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
 use super::local::solver::Method;
-use super::measure::{free_velocity, measure, scale};
+use super::measure::{error, free_velocity, measure, scale};
 use super::momentum::Momentum;
 use super::nodal::NodalSystem;
 use super::row::{self, Row, SolverBodies, SolverBody};
@@ -60,8 +60,12 @@ pub struct Report {
     pub converged: bool,
     /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]: the problem has no solution.
     pub unbounded: bool,
-    /// Whether another solution, of more energy, was found first: the step has several.
+    /// Whether another solution was found, of more energy, in which a loaded contact slides that sticks in the one taken, or the reverse: the
+    /// step has several.
     pub several: bool,
+    /// Whether a set of contacts was too large to seek another solution, in which a loaded contact begins to slide and more contacts carry a load
+    /// than its balance determines.
+    pub not_searched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
     /// The method that ended the solve.
@@ -89,7 +93,7 @@ pub(super) fn judge<S: Space>(problem: &mut Problem<S>, options: &Options) -> Re
     problem.reload(options.parallel);
     let sums = measure(problem, options.parallel);
     let scale = scale(problem, free, &sums, options.parallel);
-    let error = sums.error(options.norm, &scale);
+    let error = error(problem, (options.norm, options.tolerance), &sums, &scale);
     let converged = error <= options.tolerance;
     Report {
         error,
@@ -154,7 +158,8 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
                 sums = measure(problem, options.parallel);
             }
             let scale = scale(problem, free, &sums, options.parallel);
-            report.error = sums.error(options.norm, &scale);
+            let limit = (options.norm, options.tolerance);
+            report.error = error(problem, limit, &sums, &scale);
             report.parts = sums.parts(&scale);
             report.converged = report.error <= options.tolerance;
             report.unbounded = sums.drowned(free.free, report.converged);
@@ -202,11 +207,14 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
 }
 
 impl Report {
-    /// Adds another solve of the same step: iterations are summed, the rest is taken from the last solve.
+    /// Adds another solve of the same step: iterations are summed, what was found of several solutions is kept, the rest is taken from the last
+    /// solve.
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
             chosen: self.chosen.or(other.chosen),
+            several: self.several || other.several,
+            not_searched: self.not_searched || other.not_searched,
             ..*other
         };
     }
@@ -325,6 +333,23 @@ impl<S: Space> Problem<S> {
                 Some(moment) => self.moments[k].set(moment),
                 None => self.solve_moment(k),
             }
+        }
+        self.reload(false);
+    }
+
+    /// Takes the impulses and moments of some contacts, and recomputes the velocities.
+    pub(super) fn adopt_some(&mut self, impulses: &[(u32, S::Vector)], moments: &[(u32, S::Spin)]) {
+        for (k, impulse) in impulses {
+            match self.places[*k as usize] {
+                Place::Plain(r) => self.plain.row_mut(r).set(impulse),
+                Place::Full(r) => self.full.row_mut(r).set(impulse),
+                Place::Lever(r) => self.levers.row_mut(r).set(impulse),
+                Place::BondedLever(r) => self.bonded_levers.row_mut(r).set(impulse),
+                Place::System(r) => self.of_systems[r as usize].set(impulse),
+            }
+        }
+        for (k, moment) in moments {
+            self.moments[*k as usize].set(moment);
         }
         self.reload(false);
     }

@@ -56,6 +56,11 @@ impl<R> Rows<R> {
         self.rows.len() as u32 - 1
     }
 
+    /// All of them, in the order of the iteration.
+    pub fn all(&self) -> &[R] {
+        &self.rows
+    }
+
     pub fn row(&self, place: u32) -> &R {
         &self.rows[place as usize]
     }
@@ -226,7 +231,7 @@ impl<R> Rows<R> {
     }
 
     /// The work on the compliance of the contacts, see [`Row::yields`].
-    pub fn yields<S: Space>(&self, solver_bodies: &SolverBodies<S>) -> f64
+    pub fn yields<S: Space>(&self, solver_bodies: &SolverBodies<S>, parallel: bool) -> f64
     where
         R: Row<S>,
     {
@@ -234,7 +239,11 @@ impl<R> Rows<R> {
             let (a, b) = solver_bodies.read(row.bodies());
             row.yields(&a, &b)
         };
-        self.rows.iter().map(of).sum()
+        let count = self.rows.len();
+        let parts = map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
+            self.rows[range].iter().map(of).sum::<f64>()
+        });
+        parts.iter().sum()
     }
 
     /// The scales of the error from the free velocities, which are the current ones.

@@ -2,163 +2,430 @@
 //!
 //! Where contacts are hyperstatic, Coulomb's law may have several solutions for one step. A block pinched at both ends by its friction may
 //! hang, or turn about one end that carries all of the load while the other slides. A sweep finds the one that the order of the contacts leads
-//! to: the first contact takes the load before the others are asked. Where contacts begin to slide the step is solved a second time from the
-//! impulses at its start, by a gradient method, whose impulses follow from all contacts at once. It minimises the energy
+//! to: the first contact takes the load before the others are asked. Where contacts begin to slide, those that are connected with them through
+//! bodies that can move ([`super::connected`]) are solved a second time, as a problem of their own, from the impulses at the start of the step, by
+//! a gradient method, whose impulses follow from all contacts at once. It minimises the energy
 //!
 //! E = p.W p/2 + p.(q + s),   the kinetic energy of the step, seen from the imposed motions,
 //!
 //! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
-//! there is one. Of both solutions the one of less energy is taken.
+//! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
+//!
+//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is said where
+//! a loaded contact begins to slide and more contacts touch than the freedoms of their bodies determine ([`Report::not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
-use super::form::{ContactForm, Problem};
+use super::form::{ContactForm, Place, Problem};
 use super::local::solver::Method;
-use super::nlgs::Report;
+use super::nlgs::{self, Options, Report};
+use super::row::MomentForm;
 use crate::geometry::space::{Space, VectorLike};
+use std::collections::BTreeMap;
 
-/// Contacts above which no second solution is sought: the order of a sweep has less to say in a large set, and a second solve costs more.
+/// Contacts of a set above which no second solution is sought: the order of a sweep has less to say in a large set, and a second solve costs more.
 const MOST: usize = 64;
-/// Largest number of steps that are passed over after those that had no other solution, while no loaded contact that held begins to slide.
-const PASSED: u32 = 8;
 /// Iterations of the gradient method, and sweeps from its end.
 const ITERATIONS: u32 = 300;
-/// Relative velocity of a contact that slides, over the largest without contacts; slower ones are the error of a solution.
+/// Tolerance of the solution of a set over that of the step, so that all sets together are within that.
+const FINER: f64 = 0.5;
+/// Relative velocity of a contact that slides, over the largest of its set without contacts; slower ones are the error of a solution.
 const SLIDES: f64 = 1e-3;
 /// Share of the friction bound from which a contact is at it.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 /// Share of the friction bound up to which a contact held at the start of the step.
 const HELD: f64 = 1.0 - 1e-3;
+/// Share of the largest normal impulse of a set from which a contact is loaded.
+const LOADED: f64 = 1e-3;
 /// Difference of the energies of two solutions, over the work of the step, from which the lower one is taken, and which their errors do
 /// not make.
 const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
+/// No place in a list.
+const NONE: u32 = u32::MAX;
 
-/// When a second solution is sought.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Search {
-    /// Steps that are still passed over, and that were after the last search without a result.
-    passed_over: [u32; 2],
-}
-
-impl Search {
-    fn is_due(&mut self) -> bool {
-        let due = self.passed_over[0] == 0;
-        self.passed_over[0] = self.passed_over[0].saturating_sub(1);
-        due
-    }
-
-    fn learn(&mut self, found: bool) {
-        let next = (2 * self.passed_over[1]).clamp(1, PASSED);
-        self.passed_over = if found { [0; 2] } else { [next; 2] };
-    }
-}
-
-/// What contacts do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Sliding {
-    None,
-    Goes,
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Does {
+    /// It carries nothing and does not slide, or leaves.
+    Nothing,
+    /// It carries a load without sliding.
+    Holds,
+    /// It slides as it did at the start of the step.
+    GoesOn,
+    /// It slides and touched nothing at the start of the step.
+    New,
+    /// It slides and held at the start of the step.
     Begins,
 }
 
+impl Does {
+    fn slides(self) -> bool {
+        matches!(self, Self::GoesOn | Self::New | Self::Begins)
+    }
+}
+
+/// A set of contacts, by their indices as pushed, in which some slide.
+struct SlidingSet {
+    /// Its first body.
+    name: u32,
+    contacts: Vec<u32>,
+}
+
+/// A solution of a set.
+struct Other<S: Space> {
+    report: Report,
+    impulses: Vec<(u32, S::Vector)>,
+    moments: Vec<(u32, S::Spin)>,
+    several: bool,
+}
+
+fn bound<S: Space>(form: &ContactForm<S>, n: f64) -> f64 {
+    form.friction * (n + form.tension) + form.cohesion
+}
+
+/// Rigid, and without a bond.
+fn simple<S: Space>(form: &ContactForm<S>) -> bool {
+    form.elastic.is_none() && form.compliance == [0.0; 2]
+}
+
+/// Relative velocity of a contact (m/s), by the motion of bodies.
+fn relative<S: Space>(
+    form: &ContactForm<S>,
+    motion: impl Fn(usize) -> (S::Vector, S::Spin),
+) -> S::Vector {
+    let of_side = |side: usize| {
+        let (v, w) = motion(form.bodies[side] as usize);
+        v + S::spin_velocity(&w, &form.arms[side])
+    };
+    of_side(0) - of_side(1)
+}
+
+/// Velocities of a contact (m/s): that of opening, and of its slip.
+fn parts<S: Space>(problem: &Problem<S>, form: &ContactForm<S>) -> [f64; 2] {
+    let u = relative(form, |b| problem.velocity(b));
+    let slip = S::tangential(&form.normal, &u) + form.shift_t;
+    [form.normal.dot(&u) + form.shift_n, slip.norm()]
+}
+
+/// Whether friction is at its bound; where nothing is carried, too: the others may have been given all of the load.
+fn at_bound<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>) -> bool {
+    let (n, t) = problem.local_impulse(problem.places[k as usize]);
+    form.friction > 0.0 && t.norm() >= AT_BOUND * bound(form, n)
+}
+
+/// What a contact does where relative velocities below `least` are errors.
+fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f64) -> Does {
+    let [opens, slip] = parts(problem, form);
+    let loaded = problem.local_impulse(problem.places[k as usize]).0 > 0.0;
+    if opens > least || form.friction == 0.0 {
+        return Does::Nothing;
+    }
+    if slip <= least || !at_bound(problem, k, form) {
+        return if loaded { Does::Holds } else { Does::Nothing };
+    }
+    let before = form.normal.dot(&form.impulse);
+    let across = S::tangential(&form.normal, &form.impulse);
+    if before <= 0.0 {
+        Does::New
+    } else if across.norm() < HELD * bound(form, before) {
+        Does::Begins
+    } else {
+        Does::GoesOn
+    }
+}
+
+/// Largest relative velocity of contacts without impulses (m/s), times the share from which one slides.
+fn least_slip<'a, S: Space>(
+    problem: &Problem<S>,
+    forms: impl Iterator<Item = &'a ContactForm<S>>,
+) -> f64 {
+    let free = forms.map(|form| {
+        let u = relative(form, |b| problem.free[b]);
+        u.dot(&u)
+    });
+    SLIDES * free.fold(0.0, f64::max).sqrt()
+}
+
+/// Whether impulses of contacts, D of each with friction and one of each without, outnumber the freedoms of their bodies.
+fn outnumber<'a, S: Space>(
+    problem: &Problem<S>,
+    forms: impl Iterator<Item = &'a ContactForm<S>>,
+) -> bool {
+    let mut touched = BTreeMap::new();
+    let mut unknowns = 0;
+    for form in forms {
+        unknowns += if form.friction > 0.0 { S::D } else { 1 };
+        for body in form.bodies {
+            touched.entry(body).or_insert_with(|| {
+                let m = &problem.masses[body as usize];
+                let turns = if m.turns() { S::Spin::N } else { 0 };
+                (0..S::D).filter(|k| m.mass[*k] > 0.0).count() + turns
+            });
+        }
+    }
+    unknowns > touched.values().sum::<usize>()
+}
+
 impl<S: Space> SolveContext<'_, S> {
-    /// Takes another solution than that of the sweeps, where one of less energy is found.
+    /// Takes another solution than that of the sweeps in each connected set of which one of less energy is found.
     pub(super) fn prefer_sticking(
         &self,
         problem: &mut Problem<S>,
         report: &mut Report,
         auto_state: &mut AutoState,
     ) {
-        if !report.converged || !self.may_have_several(problem) {
+        if !report.converged || self.forms.len() < 2 {
             return;
         }
-        let search = &mut auto_state.search;
-        let due = search.is_due();
-        let searched = match self.sliding(problem) {
-            Sliding::None => false,
-            Sliding::Goes => due,
-            Sliding::Begins => true,
-        };
-        if searched {
-            let found = self.adopt_lower(problem, report);
-            search.learn(found);
+        let candidates = self.candidates(problem);
+        if candidates.is_empty() {
+            return;
+        }
+        problem.connected();
+        let (small, not_searched) = self.sets(problem, &candidates);
+        report.not_searched |= not_searched;
+        let mut found = Vec::new();
+        for set in small {
+            let due = auto_state.search.is_due(set.name);
+            let form = |k: &u32| &self.forms[*k as usize];
+            let all = || set.contacts.iter().map(form);
+            let many = || outnumber(problem, all().filter(|f| f.shift_n.is_finite()));
+            if self.is_sought(problem, &set.contacts, due) && all().all(simple) && many() {
+                let other = self.lower(problem, &set.contacts);
+                auto_state.search.learn(set.name, other.is_some());
+                found.extend(other);
+            }
+        }
+        if !found.is_empty() {
+            self.take(problem, report, &found);
         }
     }
 
-    /// Whether there are more impulses than motions, of rigid contacts without bonds.
-    fn may_have_several(&self, problem: &Problem<S>) -> bool {
-        let count = self.forms.len();
-        if !(2..=MOST).contains(&count) || !problem.systems.is_empty() {
-            return false;
-        }
-        let simple = |f: &ContactForm<S>| f.elastic.is_none() && f.compliance == [0.0; 2];
-        if !self.forms.iter().all(simple) {
-            return false;
-        }
-        let mut touched = vec![false; problem.masses.len()];
-        let mut unknowns = 0;
-        for form in self.forms.iter().filter(|f| f.shift_n.is_finite()) {
-            unknowns += if form.friction > 0.0 { S::D } else { 1 };
-            for body in form.bodies {
-                touched[body as usize] = true;
+    /// Contacts that may slide: told by their impulses first, which costs little, then by their velocities.
+    fn candidates(&self, problem: &Problem<S>) -> Vec<u32> {
+        let may_slide = |k: &u32| {
+            let form = &self.forms[*k as usize];
+            let system = matches!(problem.places[*k as usize], Place::System(_));
+            if system || !simple(form) || !form.shift_n.is_finite() {
+                return false;
+            }
+            if !at_bound(problem, *k, form) {
+                return false;
+            }
+            let [opens, slip] = parts(problem, form);
+            // No bound on the velocities of its set is needed to see that this one opens, or stays.
+            slip > 0.0 && opens <= slip
+        };
+        (0..self.forms.len() as u32).filter(may_slide).collect()
+    }
+
+    /// The sets of these contacts that are small enough to search, and whether one that is too large should be.
+    fn sets(&self, problem: &Problem<S>, candidates: &[u32]) -> (Vec<SlidingSet>, bool) {
+        let Some(sets) = &problem.connected else {
+            return (Vec::new(), false);
+        };
+        let mut place = vec![NONE; sets.len()];
+        let mut small: Vec<SlidingSet> = Vec::new();
+        let mut large: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for k in candidates {
+            let set = sets.of(self.forms[*k as usize].bodies);
+            let Some(set) = set.filter(|set| !sets.with_systems(*set)) else {
+                continue;
+            };
+            let count = sets.contacts(set);
+            if count > MOST {
+                large.entry(set).or_default().push(*k);
+            } else if count > 1 && place[set] == NONE {
+                place[set] = small.len() as u32;
+                small.push(SlidingSet {
+                    name: NONE,
+                    contacts: Vec::with_capacity(count),
+                });
             }
         }
-        let touched = touched.iter().zip(&problem.masses).filter(|(t, _)| **t);
-        let freedoms = touched.map(|(_, m)| {
-            let turns = if m.turns() { S::Spin::N } else { 0 };
-            (0..S::D).filter(|k| m.mass[*k] > 0.0).count() + turns
+        if !small.is_empty() {
+            for (form, k) in self.forms.iter().zip(0..) {
+                let set = sets.of(form.bodies).map(|set| place[set]);
+                if let Some(set) = set.filter(|set| *set != NONE) {
+                    let set = &mut small[set as usize];
+                    set.contacts.push(k);
+                    let moves = |b: &&u32| sets.of_body(**b).is_some();
+                    let first = form.bodies.iter().filter(moves).min();
+                    set.name = first.map_or(set.name, |b| set.name.min(*b));
+                }
+            }
+        }
+        let mut large = large.iter();
+        let not_searched = large.any(|(set, of)| {
+            let begins = self.one_begins(problem, of);
+            begins && self.touch_more_than_needed(problem, |f| sets.of(f.bodies) == Some(*set))
         });
-        unknowns > freedoms.sum::<usize>()
+        (small, not_searched)
     }
 
-    /// Relative velocity of a contact (m/s), by the motion of bodies.
-    fn relative(
-        form: &ContactForm<S>,
-        motion: impl Fn(usize) -> (S::Vector, S::Spin),
-    ) -> S::Vector {
-        let of_side = |side: usize| {
-            let (v, w) = motion(form.bodies[side] as usize);
-            v + S::spin_velocity(&w, &form.arms[side])
-        };
-        of_side(0) - of_side(1)
+    /// Whether one of these contacts carries a load and begins to slide.
+    fn one_begins(&self, problem: &Problem<S>, of: &[u32]) -> bool {
+        let form = |k: &u32| &self.forms[*k as usize];
+        let least = least_slip(problem, of.iter().map(form));
+        of.iter().any(|k| {
+            let loaded = problem.normal(problem.places[*k as usize]) > 0.0;
+            loaded && does(problem, *k, form(k), least) == Does::Begins
+        })
     }
 
-    /// Whether contacts slide, and begin to.
-    fn sliding(&self, problem: &Problem<S>) -> Sliding {
-        let bound =
-            |form: &ContactForm<S>, n: f64| form.friction * (n + form.tension) + form.cohesion;
-        let at_bound = |(k, form): &(usize, &ContactForm<S>)| {
-            let p = problem.solution(*k);
-            let limit = bound(form, p.unilateral_n);
-            form.friction > 0.0 && p.unilateral_t.norm() >= AT_BOUND * limit
+    /// Whether the contacts of a set are rigid and without bonds, and those that carry a load outnumber the freedoms of their bodies.
+    fn touch_more_than_needed(
+        &self,
+        problem: &Problem<S>,
+        is_of_set: impl Fn(&ContactForm<S>) -> bool,
+    ) -> bool {
+        let of_set = || (self.forms.iter().zip(&problem.places)).filter(|(f, _)| is_of_set(f));
+        let carries = |(_, place): &(&ContactForm<S>, &Place)| problem.normal(**place) > 0.0;
+        of_set().all(|(form, _)| simple(form))
+            && outnumber(problem, of_set().filter(carries).map(|(form, _)| form))
+    }
+
+    /// Whether another solution of a set is to be sought: where a contact begins to slide, and in steps that are `due` where some slide while
+    /// others hold or are new. Where all that carry a load go on to slide, friction is used up.
+    fn is_sought(&self, problem: &Problem<S>, of: &[u32], due: bool) -> bool {
+        let form = |k: &u32| &self.forms[*k as usize];
+        let least = least_slip(problem, of.iter().map(form));
+        let all: Vec<_> = of
+            .iter()
+            .map(|k| does(problem, *k, form(k), least))
+            .collect();
+        let some = |what: Does| all.contains(&what);
+        some(Does::Begins) || due && (some(Does::New) || some(Does::GoesOn) && some(Does::Holds))
+    }
+
+    /// Another solution of a set, of less energy than the present one.
+    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> Option<Other<S>> {
+        let mut alone = Problem::default();
+        let mut bodies = BTreeMap::new();
+        let mut body = |b: u32| {
+            *bodies.entry(b).or_insert_with(|| {
+                let (b, next) = (b as usize, alone.free.len() as u32);
+                let ((v, w), m) = (problem.free[b], problem.masses[b]);
+                alone.push_body(v, w, m.mass, m.inertia, problem.lengths[b]);
+                next
+            })
         };
-        let all = self.forms.iter().enumerate();
-        let at_bound: Vec<_> = all.filter(at_bound).map(|(_, form)| form).collect();
-        if at_bound.is_empty() {
-            return Sliding::None;
+        let forms = of.iter().map(|k| {
+            let mut form = self.forms[*k as usize].clone();
+            form.bodies = form.bodies.map(&mut body);
+            form
+        });
+        let forms: Vec<_> = forms.collect();
+        alone.push_all(&forms, false);
+        let of_set = |m: &MomentForm<S>| of.binary_search(&m.contact).ok();
+        let (mut moments, mut turned) = (Vec::new(), Vec::new());
+        for (form, k) in self.moments.iter().zip(0u32..) {
+            if let Some(contact) = of_set(form) {
+                let contact = contact as u32;
+                moments.push(MomentForm { contact, ..*form });
+                turned.push(k);
+            }
         }
-        let free = |form: &ContactForm<S>| {
-            let u = Self::relative(form, |b| problem.free[b]);
-            u.dot(&u)
+        for form in &moments {
+            alone.push_moment(form, &forms[form.contact as usize]);
+        }
+        let options = Options {
+            tolerance: FINER * self.options.tolerance,
+            parallel: false,
+            ..*self.options
         };
-        let fastest = self.forms.iter().map(free).fold(0.0, f64::max);
-        let of = |form: &ContactForm<S>| {
-            let n = &form.normal;
-            let u = Self::relative(form, |b| problem.velocity(b));
-            let slip = S::tangential(n, &u) + form.shift_t;
-            // One that touches without a load slides, too: the others may have been given all of it.
-            let (opens, least) = (n.dot(&u) + form.shift_n, SLIDES * fastest.sqrt());
-            if slip.dot(&slip) <= least * least || opens > least {
-                return Sliding::None;
-            }
-            let (before, across) = (n.dot(&form.impulse), S::tangential(n, &form.impulse));
-            if before > 0.0 && across.norm() < HELD * bound(form, before) {
-                Sliding::Begins
+        let context = SolveContext {
+            forms: &forms,
+            moments: &moments,
+            options: &options,
+        };
+        let now = of
+            .iter()
+            .map(|k| Some(problem.solution(*k as usize).impulse));
+        let now: Vec<_> = now.collect();
+        let now_turned = turned
+            .iter()
+            .map(|k| Some(problem.moments[*k as usize].moment()));
+        let now_turned: Vec<_> = now_turned.collect();
+        alone.adopt(&now, &now_turned);
+        let (report, differs) = context.find_lower(&mut alone)?;
+        let impulses = of.iter().enumerate();
+        let impulses = impulses.map(|(k, of)| (*of, alone.solution(k).impulse));
+        let moments = turned.iter().zip(&alone.moments);
+        Some(Other {
+            report,
+            impulses: impulses.collect(),
+            moments: moments.map(|(k, row)| (*k, row.moment())).collect(),
+            several: differs,
+        })
+    }
+
+    /// Solves a set again from the start of the step. Whether a contact slides in one of both solutions and holds a load in the other; none where
+    /// no solution of less energy was found.
+    fn find_lower(&self, alone: &mut Problem<S>) -> Option<(Report, bool)> {
+        let before = self.energy(alone)[0];
+        let least = least_slip(alone, self.forms.iter());
+        let did = self.all_do(alone, least);
+        self.start_anew(alone);
+        let tolerance = 0.3 * self.options.tolerance;
+        let mut other = self.improve(alone, Method::Pcpg, tolerance, ITERATIONS);
+        let is_lower = |problem: &Problem<S>, by: f64| {
+            let [energy, work] = self.energy(problem);
+            before - energy > by * work.abs()
+        };
+        if !other.converged && is_lower(alone, LOWER) {
+            other.add(&self.sweep(alone, true, ITERATIONS));
+        }
+        if !(other.converged && is_lower(alone, LOWER)) {
+            return None;
+        }
+        let does = self.all_do(alone, least);
+        let differs = |(a, b): (&Does, &Does)| {
+            a.slides() && *b == Does::Holds || b.slides() && *a == Does::Holds
+        };
+        let one_differs = did.iter().zip(&does).any(differs);
+        Some((other, one_differs && is_lower(alone, DIFFERS)))
+    }
+
+    /// What the contacts of a problem do; those without a load do not hold.
+    fn all_do(&self, problem: &Problem<S>, least: f64) -> Vec<Does> {
+        let normal = |k: u32| problem.normal(problem.places[k as usize]);
+        let count = self.forms.len() as u32;
+        let largest = (0..count).map(normal).fold(0.0, f64::max);
+        let of = |k: u32| {
+            let form = &self.forms[k as usize];
+            let what = does(problem, k, form, least);
+            // What slides may have lost its load to the others.
+            if what == Does::Holds && normal(k) <= LOADED * largest {
+                Does::Nothing
             } else {
-                Sliding::Goes
+                what
             }
         };
-        at_bound.into_iter().map(of).max().unwrap_or(Sliding::None)
+        (0..count).map(of).collect()
+    }
+
+    /// Takes solutions of sets, unless all contacts together are not solved then.
+    fn take(&self, problem: &mut Problem<S>, report: &mut Report, found: &[Other<S>]) {
+        let mut saved = Vec::new();
+        problem.store(&mut saved);
+        let list = |of: &Other<S>| of.impulses.clone();
+        let impulses: Vec<_> = found.iter().flat_map(list).collect();
+        let moments: Vec<_> = found.iter().flat_map(|of| of.moments.clone()).collect();
+        problem.adopt_some(&impulses, &moments);
+        let mut whole = nlgs::judge(problem, self.options);
+        if !whole.converged {
+            whole.add(&self.sweep(problem, true, ITERATIONS));
+        }
+        if !whole.converged {
+            problem.restore(&saved);
+            return;
+        }
+        whole.iterations += found.iter().map(|of| of.report.iterations).sum::<u32>();
+        whole.several = found.iter().any(|of| of.several);
+        let used = report.used;
+        report.add(&whole);
+        report.used = used;
     }
 
     /// The energy E of the module, and the work p.W p/2 in it (J).
@@ -170,8 +437,8 @@ impl<S: Space> SolveContext<'_, S> {
             if p == S::Vector::zero() {
                 continue;
             }
-            let u = Self::relative(form, |b| problem.velocity(b));
-            let free = Self::relative(form, |b| problem.free[b]);
+            let u = relative(form, |b| problem.velocity(b));
+            let free = relative(form, |b| problem.free[b]);
             let by_shift =
                 solution.unilateral_n * form.shift_n + solution.unilateral_t.dot(&form.shift_t);
             energy += 0.5 * p.dot(&(u + free)) + by_shift;
@@ -186,31 +453,5 @@ impl<S: Space> SolveContext<'_, S> {
             work += 0.5 * moment.moment.dot(&(w - free));
         }
         [energy, work]
-    }
-
-    /// Solves the step again from its start, and takes that solution if its energy is less.
-    fn adopt_lower(&self, problem: &mut Problem<S>, report: &mut Report) -> bool {
-        let mut saved = Vec::new();
-        problem.store(&mut saved);
-        let before = self.energy(problem)[0];
-        self.start_anew(problem);
-        let tolerance = 0.3 * self.options.tolerance;
-        let mut other = self.improve(problem, Method::Pcpg, tolerance, ITERATIONS);
-        let is_lower = |problem: &Problem<S>, by: f64| {
-            let [energy, work] = self.energy(problem);
-            before - energy > by * work.abs()
-        };
-        if !other.converged && is_lower(problem, LOWER) {
-            other.add(&self.sweep(problem, true, ITERATIONS));
-        }
-        if !(other.converged && is_lower(problem, LOWER)) {
-            problem.restore(&saved);
-            return false;
-        }
-        let used = report.used;
-        report.add(&other);
-        report.used = used;
-        report.several = is_lower(problem, DIFFERS);
-        true
     }
 }

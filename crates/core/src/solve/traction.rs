@@ -9,15 +9,20 @@
 //! max_c |r_c|/w_c / max |p|      w_c = sum_a weight_a^2 (C_aa - C_ab)
 //! ```
 //!
-//! where b is the touched node before or after a in the list of the system whose motion is most like that of a. It is the error of systems
-//! that touch at many points; one that touches at few, as a grain, takes part as a rigid body does.
+//! where b is the touched node before or after a in the list of the system whose motion is most like that of a. Systems number the nodes of their
+//! surfaces along it: the cells of a half-space row by row, the points of a mesh as its file has them. A node that is next in number but far away
+//! shares less of the motion than one of the same facet, so that w_c comes out larger and the error smaller, at most by the ratio of a node's own
+//! compliance to that against a neighbour; the solver does not know the facets, and a search for the nearest of all touched nodes would need the
+//! blocks of all pairs. It is the error of systems that touch at many points; one that touches at few, as a grain, takes part as a rigid body does.
 
 use super::form::Problem;
 use super::nodal::NodalSystem;
 use super::row::{Residual, SystemRow};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
-/// Contacts from which on a body or a system is a surface that touches, with a motion that its contacts share.
+/// Contacts from which on a body or a system is a surface that touches, with a motion that its contacts share. The rigid motion of a body has six
+/// freedoms, so that in up to six contacts it is all that they answer with, and their tractions are those that its balance demands, which the norms
+/// measure; beyond that tractions vary from point to point by the deformation. Corners of blocks on a surface are four to eight contacts.
 const MANY: u32 = 8;
 /// Least compliance of a node against its neighbours, over its own: of nodes that move as one.
 const LEAST: f64 = 1e-3;

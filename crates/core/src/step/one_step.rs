@@ -56,6 +56,7 @@ impl<S: Space> Simulation<S> {
     /// forces.
     fn begin_step(&mut self) -> Result<(), StepError> {
         self.begin_records();
+        self.state.auto_state.begin_step();
         self.strain_systems();
         let driven = self.state.bodies.motion_of_driven();
         self.begin_motion();

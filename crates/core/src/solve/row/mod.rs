@@ -24,7 +24,7 @@ pub(super) use moment::{MomentRow, turning};
 pub(super) use plain::PlainRow;
 pub(super) use solver_bodies::SolverBodies;
 pub(super) use system::{SystemRow, Term};
-pub(super) use visit::{Free, Load, Measure, Update, Visit, visit};
+pub(super) use visit::{Free, Load, Measure, Update, Visit, noise, visit};
 
 use super::form::{ContactForm, ContactSolution};
 use super::{cone as cones, error};

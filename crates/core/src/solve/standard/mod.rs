@@ -438,7 +438,14 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
 /// is rigid, and both bodies are held along the normal.
 fn open<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, row: Option<&SystemRow<S>>) -> bool {
     let n = &form.normal;
+    let free = |body: &u32| {
+        let mass = &problem.masses[*body as usize].mass;
+        (0..S::D).all(|k| mass[k] > 0.0)
+    };
     let held = || {
+        if row.is_none() && form.bodies.iter().any(free) {
+            return false;
+        }
         let sides = form.bodies.iter().zip(&form.arms);
         let of_bodies = || {
             sides.fold(S::Matrix::uniform(0.0), |sum, (body, arm)| {

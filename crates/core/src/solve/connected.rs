@@ -1,0 +1,158 @@
+//! Sets of contacts that are connected through bodies that can move. Within a step nothing that happens in one of them acts on another: bodies
+//! whose motion is given pass no impulse on.
+
+use super::form::Problem;
+use super::row::Row;
+use super::rows::Rows;
+use crate::geometry::space::Space;
+
+/// No set.
+const NONE: u32 = u32::MAX;
+
+/// See the module. It is that of the contacts of a problem until these change.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Connected {
+    /// The set of each body; none of those that do not move, or that nothing touches.
+    of_body: Vec<u32>,
+    /// Number of contacts of each set.
+    contacts: Vec<u32>,
+    /// Whether contacts with dynamical systems are among them.
+    with_systems: Vec<bool>,
+}
+
+impl Connected {
+    /// Of bodies, some of which move, and the pairs that touch.
+    fn new(moves: &[bool], pairs: impl Fn(&mut dyn FnMut([u32; 2]))) -> Self {
+        let mut parent: Vec<u32> = (0..moves.len() as u32).collect();
+        pairs(&mut |[a, b]: [u32; 2]| {
+            if moves[a as usize] && moves[b as usize] {
+                let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+        });
+        let mut out = Self {
+            of_body: vec![NONE; moves.len()],
+            contacts: Vec::new(),
+            with_systems: Vec::new(),
+        };
+        pairs(&mut |[a, b]: [u32; 2]| {
+            let body = if moves[a as usize] { a } else { b };
+            if moves[body as usize] {
+                let set = out.enter(root(&mut parent, body));
+                out.contacts[set] += 1;
+            }
+        });
+        // Parents come before their children.
+        for b in 0..parent.len() {
+            out.of_body[b] = out.of_body[parent[b] as usize];
+        }
+        out
+    }
+
+    /// The set of a body that is its root.
+    fn enter(&mut self, root: u32) -> usize {
+        let set = &mut self.of_body[root as usize];
+        if *set == NONE {
+            *set = self.contacts.len() as u32;
+            self.contacts.push(0);
+            self.with_systems.push(false);
+        }
+        *set as usize
+    }
+
+    /// Number of sets.
+    pub fn len(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// Number of contacts of a set between rigid bodies.
+    pub fn contacts(&self, set: usize) -> usize {
+        self.contacts[set] as usize
+    }
+
+    /// Whether contacts with dynamical systems are among those of a set.
+    pub fn with_systems(&self, set: usize) -> bool {
+        self.with_systems[set]
+    }
+
+    /// The set of a body.
+    pub fn of_body(&self, body: u32) -> Option<usize> {
+        let set = *self.of_body.get(body as usize)?;
+        (set != NONE).then_some(set as usize)
+    }
+
+    /// The set of a contact of two bodies; none where neither moves.
+    pub fn of(&self, [a, b]: [u32; 2]) -> Option<usize> {
+        self.of_body(a).or_else(|| self.of_body(b))
+    }
+}
+
+/// The first body of a tree, whose branches are shortened on the way.
+fn root(parent: &mut [u32], mut body: u32) -> u32 {
+    while parent[body as usize] != body {
+        let above = parent[parent[body as usize] as usize];
+        parent[body as usize] = above;
+        body = above;
+    }
+    body
+}
+
+/// The bodies of rows, one after the other.
+fn each<S: Space, R: Row<S>>(rows: &Rows<R>, found: &mut dyn FnMut([u32; 2])) {
+    rows.all().iter().for_each(|row| found(row.bodies()));
+}
+
+impl<S: Space> Problem<S> {
+    /// Its connected sets, which are found once.
+    pub(super) fn connected(&mut self) -> &Connected {
+        if self.connected.is_none() {
+            let movable = self.movable(false);
+            let mut sets = Connected::new(&movable, |found| {
+                each(&self.plain, found);
+                each(&self.full, found);
+                each(&self.levers, found);
+                each(&self.bonded_levers, found);
+            });
+            for row in &self.of_systems {
+                for (body, _) in row.rigid_masses() {
+                    if let Some(set) = sets.of_body(body) {
+                        sets.with_systems[set] = true;
+                    }
+                }
+            }
+            self.connected = Some(sets);
+        }
+        self.connected.get_or_insert_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two chains over a floor that joins nothing, a body that touches the floor alone, one that touches nothing, and two fixed ones.
+    #[test]
+    fn what_does_not_move_connects_nothing() {
+        let moves = [false, true, true, true, true, true, true, false];
+        let touching = [[0, 1], [2, 1], [4, 3], [0, 4], [3, 7], [5, 0], [0, 7]];
+        let sets = Connected::new(&moves, |found| touching.into_iter().for_each(found));
+        assert_eq!(sets.len(), 3);
+        let of = [0, 1, 2, 3, 4, 5, 6, 7].map(|b| sets.of_body(b));
+        let (a, b, c) = (Some(0), Some(1), Some(2));
+        assert_eq!(of, [None, a, a, b, b, c, None, None]);
+        assert_eq!([0, 1, 2].map(|k| sets.contacts(k)), [2, 3, 1]);
+        assert_eq!((sets.of([0, 7]), sets.of([3, 7])), (None, b));
+    }
+
+    /// A long chain whose links are found in any order is one set.
+    #[test]
+    fn chains_are_one_set() {
+        let moves = [true; 200];
+        let links: Vec<[u32; 2]> = (0..199)
+            .map(|k| (k * 83) % 199)
+            .map(|k| [k + 1, k])
+            .collect();
+        let sets = Connected::new(&moves, |found| links.iter().copied().for_each(found));
+        assert_eq!((sets.len(), sets.contacts(0)), (1, 199));
+    }
+}

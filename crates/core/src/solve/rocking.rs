@@ -1,0 +1,141 @@
+//! The third part of the norm [`Norm::Balance`](super::error::Norm::Balance) by connected sets: what one of them gets wrong is not made up for by
+//! others, which it does not touch. Asked for where the sums over all contacts say that a step is solved.
+
+use super::connected::Connected;
+use super::error::{Scale, Sums};
+use super::form::Problem;
+use super::row::{Row, SolverBody, noise};
+use super::rows::Rows;
+use crate::geometry::space::{Space, VectorLike};
+
+/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding.
+const KNOWN: f64 = 1e-6;
+
+/// The error of the worst set, given the sums over all; 0 where all contacts are of one.
+pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Scale) -> f64 {
+    problem.connected();
+    let Some(sets) = problem.connected.take() else {
+        return 0.0;
+    };
+    let worst = if sets.len() < 2 {
+        0.0
+    } else {
+        of_sets(problem, &sets, sums, scale)
+    };
+    problem.connected = Some(sets);
+    worst
+}
+
+fn of_sets<S: Space>(
+    problem: &mut Problem<S>,
+    sets: &Connected,
+    sums: &Sums,
+    scale: &Scale,
+) -> f64 {
+    // Nearly all contacts of a packing are of one set, whose sums are what others leave of those over all.
+    let largest = (0..sets.len()).max_by_key(|k| sets.contacts(*k));
+    let most = largest
+        .filter(|k| problem.systems.is_empty() && 2 * sets.contacts(*k) > problem.contacts());
+    let mut all = apart(problem, sets, most);
+    if let Some(most) = most {
+        let rest = |total: f64, of: fn(&(Sums, Scale)) -> f64| {
+            let others = all.iter().map(of).sum::<f64>();
+            (total - others).max(0.0)
+        };
+        let unbalanced = rest(sums.unbalanced, |s| s.0.unbalanced);
+        let work = rest(scale.work, |s| s.1.work);
+        let energy = rest(scale.energy, |s| s.1.energy);
+        let residual = rest(sums.residual, |s| s.0.residual);
+        let total = scale.work.max(scale.energy);
+        if unbalanced <= KNOWN * sums.unbalanced {
+            // Below what any tolerance asks for.
+        } else if work.max(energy) > KNOWN * total {
+            all[most].0.unbalanced = unbalanced;
+            all[most].0.residual = residual;
+            all[most].1 = Scale {
+                work,
+                energy,
+                contacts: sets.contacts(most),
+                ..*scale
+            };
+        } else {
+            all = apart(problem, sets, None);
+        }
+    }
+    let known = (0..sets.len()).filter(|k| !sets.with_systems(*k));
+    let errors = known.map(|k| {
+        let (sums, scale) = &all[k];
+        let noise = scale.noise + sums.rounding(scale.free);
+        if sums.residual <= noise {
+            0.0
+        } else {
+            sums.rocking(scale)
+        }
+    });
+    errors.fold(0.0, f64::max)
+}
+
+/// The sums of each set but one.
+fn apart<S: Space>(
+    problem: &mut Problem<S>,
+    sets: &Connected,
+    without: Option<usize>,
+) -> Vec<(Sums, Scale)> {
+    let mut out = vec![(Sums::default(), Scale::default()); sets.len()];
+    let read = |b: usize| {
+        let mut body = problem.solver_bodies[b];
+        let (v, w) = &problem.free[b];
+        (body.v, body.s) = (*v, *w * problem.lengths[b]);
+        body
+    };
+    let free = |bodies: [u32; 2]| bodies.map(|b| read(b as usize));
+    let now = |bodies: [u32; 2]| bodies.map(|b| problem.solver_bodies[b as usize]);
+    let of = |bodies: [u32; 2]| sets.of(bodies).filter(|set| Some(*set) != without);
+    add(&problem.plain, of, now, free, &mut out);
+    add(&problem.full, of, now, free, &mut out);
+    add(&problem.levers, of, now, free, &mut out);
+    add(&problem.bonded_levers, of, now, free, &mut out);
+    for row in &problem.moments {
+        if let Some(set) = of(row.bodies) {
+            let [a, b] = now(row.bodies);
+            let pn = problem.normal(row.place);
+            let residual = row.residual(pn, &a, &b, &problem.systems);
+            out[set].0.add_moment(&residual);
+        }
+    }
+    for (b, body) in problem.solver_bodies.iter().enumerate() {
+        let set = sets.of_body(b as u32).filter(|set| Some(*set) != without);
+        if let Some(set) = set {
+            let (v, w) = &problem.free[b];
+            let spin = body.s * (1.0 / problem.lengths[b]);
+            out[set].1.work += problem.masses[b].energy(&(body.v - *v), &(spin - *w));
+        }
+    }
+    out
+}
+
+/// Adds the contacts of rows to the sums of their sets.
+fn add<S: Space, R: Row<S>>(
+    rows: &Rows<R>,
+    of: impl Fn([u32; 2]) -> Option<usize>,
+    now: impl Fn([u32; 2]) -> [SolverBody<S>; 2],
+    free: impl Fn([u32; 2]) -> [SolverBody<S>; 2],
+    out: &mut [(Sums, Scale)],
+) {
+    for row in rows.all() {
+        let Some(set) = of(row.bodies()) else {
+            continue;
+        };
+        let (sums, scale) = &mut out[set];
+        let [a, b] = now(row.bodies());
+        sums.add_moment(&row.residual(&a, &b));
+        scale.work += row.yields(&a, &b);
+        let [a, b] = free(row.bodies());
+        let speed = row.speed(&a, &b);
+        let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
+        scale.free += speed;
+        scale.energy += row.rho() * speed;
+        scale.noise += noise(own, row.friction());
+        scale.contacts += 1;
+    }
+}

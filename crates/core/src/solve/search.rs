@@ -1,0 +1,80 @@
+//! When another solution of a connected set is sought, see [`super::sticking`].
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Largest number of steps that are passed over after those that had no other solution, while no loaded contact that held begins to slide; and
+/// of steps without sliding until this is forgotten.
+const PASSED: i32 = 8;
+
+/// When a second solution is sought.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Search {
+    /// By the first body of a set that slid.
+    waits: BTreeMap<u32, Wait>,
+}
+
+/// After searches without a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Wait {
+    /// Steps until the next one; negative where nothing slid since then.
+    left: i32,
+    /// Steps that are passed over.
+    passed: i32,
+}
+
+impl Search {
+    /// Begins a step.
+    pub fn begin_step(&mut self) {
+        self.waits.values_mut().for_each(|wait| wait.left -= 1);
+        self.waits.retain(|_, wait| wait.left >= -PASSED);
+    }
+
+    /// Whether a set is to be searched in this step.
+    pub fn is_due(&self, set: u32) -> bool {
+        self.waits.get(&set).is_none_or(|wait| wait.left <= 0)
+    }
+
+    /// Takes the result of a search.
+    pub fn learn(&mut self, set: u32, found: bool) {
+        if found {
+            self.waits.remove(&set);
+            return;
+        }
+        let wait = self.waits.entry(set).or_default();
+        wait.passed = (2 * wait.passed).clamp(1, PASSED);
+        wait.left = wait.passed + 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps are counted, not solves: after 1, 2, 4, 8, 8 steps without a result, whatever is solved in between.
+    #[test]
+    fn searches_are_put_off_by_steps() {
+        let mut search = Search::default();
+        let (mut last, mut passed) = (None, Vec::new());
+        for step in 0..35 {
+            search.begin_step();
+            for solve in 0..3 {
+                if search.is_due(7) {
+                    assert_eq!(solve, 0, "once a step");
+                    search.learn(7, false);
+                    passed.extend(last.map(|last| step - last - 1));
+                    last = Some(step);
+                }
+                assert!(search.is_due(8), "another set waits for nothing");
+            }
+        }
+        assert_eq!(passed, [1, 2, 4, 8, 8]);
+        search.learn(7, true);
+        assert!(search.is_due(7));
+        search.learn(7, false);
+        for _ in 0..20 {
+            search.begin_step();
+        }
+        assert_eq!(search, Search::default(), "it is forgotten");
+    }
+}
