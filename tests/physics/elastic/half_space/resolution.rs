@@ -39,11 +39,11 @@ fn loop_of_a_line(n: usize, share: f64, mu: f64) -> (f64, Resolution) {
     };
     put(&mut s, cylinder);
     go(&mut s, 120);
-    let mut seen = Resolution::new("lower", false);
+    let mut seen = Resolution::new("lower");
     let before = s.state.energy.friction;
     for _ in 0..100 {
         go(&mut s, 1);
-        seen.add(&s, 0, s.state.energy.friction - before);
+        seen.add(&s, 0, &[false; 2], s.state.energy.friction - before);
     }
     let heat = s.state.energy.friction - before;
     let per_force = 2.0 / (PI * 0.5 * RAIL.plane_strain());
@@ -88,16 +88,16 @@ fn the_heat_of_a_cycle_is_within_what_is_said() {
 fn the_heat_of_rolling_is_short_by_what_is_said() {
     let (mu, radius) = (0.3, 0.5);
     for (n, s) in [(5, 0.1), (5, 0.4), (10, 0.2), (10, 0.7), (20, 0.2)] {
-        let size = A / f64::from(n);
+        let size = A / n as f64;
         let creepage = s * mu * A / radius;
         let cells = grid([size, 1.0], [1.4 * A, 0.5]);
         let mut run = rolling::<Dim2>(cells, [radius, f64::INFINITY], LOAD, mu, creepage, size);
         go(&mut run, 16 * n as usize);
         let before = run.state.energy.friction;
-        let mut seen = Resolution::new("lower", true);
+        let mut seen = Resolution::new("lower");
         for _ in 0..10 {
             go(&mut run, 1);
-            seen.add(&run, 0, run.state.energy.friction - before);
+            seen.add(&run, 0, &[true; 2], run.state.energy.friction - before);
         }
         let q = mean(&tractions(&run, size), 0, |_| 1.0) * LOAD;
         let ratio = (run.state.energy.friction - before) / (10.0 * size * q * creepage);
