@@ -70,7 +70,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
     let mut rigid: Vec<&str> = laws.iter().map(String::as_str).collect();
     rigid.extend([
         "solver.norm=Balance",
-        "solver.tolerance=1e-3",
+        "solver.tolerance=3e-3",
         "solver.correction=0.05",
         "time.step=5e-5",
         "inertia_scaling=5.8e7",
@@ -82,7 +82,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
         sum(|r| r.parts.contact_law * r.parts.slip_energy) / sum(|r| r.parts.slip_energy)
     };
     let elastic = heat(sliding(&["inertia_scaling=5.8e7"]), Norm::Power, 0.5);
-    let rigid = heat(sliding(&rigid), Norm::Balance, 1e-3);
+    let rigid = heat(sliding(&rigid), Norm::Balance, 3e-3);
     println!("heat of residuals over that of slip: rigid {rigid:.2}, elastic {elastic:.2}");
     assert!(elastic <= 0.5 && rigid > 1.0, "{elastic} and {rigid}");
 }

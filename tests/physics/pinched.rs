@@ -337,7 +337,7 @@ fn blocks_that_slide_have_one_solution() {
             !report.solver.several && !report.solver.not_searched,
             "{step}"
         );
-        let moving = s.state.bodies.velocity.iter().skip(1);
+        let moving = s.state.bodies.velocity.iter().take(20);
         for (k, v) in moving.enumerate() {
             let wanted = (0.05 * (k + 1) as f64 - mu * G * h * f64::from(step)).max(0.0);
             assert!(

@@ -306,7 +306,8 @@ mod tests {
         };
         let load = |k: i32| (1.0 - (f64::from(k) / 20.0).powi(2)).sqrt();
         // Sticks from -9 to 9, slips in ten elements at either side.
-        let mut points: Vec<Loaded<Dim2>> = (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
+        let mut points: Vec<Loaded<Dim2>> =
+            (-19..=19).map(|k| of(k, load(k), k.abs() > 9)).collect();
         points.extend((0..traces as i32).map(|k| of(20 + k, 1e-7, k % 2 == 0)));
         // In no order.
         points.sort_by_key(|p| ((p.place[0] + p.place[1]) * 1e6) as i64 * 7919 % 1009);

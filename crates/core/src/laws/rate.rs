@@ -52,17 +52,16 @@ impl LawEvaluator {
                 network: &*step.network,
                 info: step.info,
             };
-            let depends = sample.iter().any(|at| {
-                let members = [*at; TRIED.len()];
-                self.pool.with(|batch| {
-                    batch.gather_before(&source, &members, step.before, &[law.contact()]);
-                    let [_, t1, t2] = &mut batch.columns.velocity;
-                    t1.copy_from_slice(&TRIED);
-                    t2.fill(0.0);
-                    let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
-                    let friction = &batch.columns.out.friction;
-                    asked.is_err() || friction.iter().any(|mu| *mu != friction[0])
-                })
+            let members: Vec<usize> = sample.iter().flat_map(|at| [*at; TRIED.len()]).collect();
+            let depends = self.pool.with(|batch| {
+                batch.gather_before(&source, &members, step.before, &[law.contact()]);
+                let [_, t1, t2] = &mut batch.columns.velocity;
+                let each = t1.chunks_exact_mut(TRIED.len());
+                each.for_each(|of_contact| of_contact.copy_from_slice(&TRIED));
+                t2.fill(0.0);
+                let asked = batch.run_afresh(law.contact(), step.info, 0.0, Call::Prepare);
+                let mut friction = batch.columns.out.friction.chunks(TRIED.len());
+                asked.is_err() || friction.any(|mu| mu.iter().any(|x| *x != mu[0]))
             });
             if depends {
                 found.push((index, self.members[index].all.clone()));
