@@ -129,10 +129,7 @@ fn numbers_of_laws(text: &str) -> Vec<(usize, String)> {
         let number = number.trim_end_matches('*').parse().ok()?;
         let after: Vec<String> = words[k + 1..].iter().take(2).map(|w| plain(w)).collect();
         let after: Vec<&str> = after.iter().map(String::as_str).collect();
-        let laws = match after[..] {
-            ["laws", ..] | ["shipped", "laws" | "ones"] => true,
-            _ => false,
-        };
+        let laws = matches!(after[..], ["laws", ..] | ["shipped", "laws" | "ones"]);
         laws.then(|| (number, format!("{word} {}", after.join(" "))))
     });
     found.collect()

@@ -95,7 +95,7 @@ fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>>
         // The impulse is that on the body of the points, above.
         let on = c.impulse * (-1.0 / (area * s.options.scheme.h));
         let sum = points.entry(c.bodies[0]).or_insert(S::Vector::zero());
-        *sum = *sum + on;
+        *sum += on;
     }
     points
         .into_iter()

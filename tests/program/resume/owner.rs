@@ -98,7 +98,7 @@ impl Held {
     }
 
     /// Goes on, and must find its folder gone.
-    fn is_lost(self, out: &Path) {
+    fn loses_its_folder(self, out: &Path) {
         self.signal(libc::SIGCONT);
         let output = self.0.wait_with_output().unwrap();
         let told = said(&output, 1);
@@ -121,19 +121,19 @@ fn a_folder_that_is_removed_or_moved_is_no_runs() {
     let first = Held::start(&out.0);
     std::fs::remove_dir_all(&out.0).unwrap();
     JOB.done(&out.0, &[]);
-    first.is_lost(&out.0);
+    first.loses_its_folder(&out.0);
     same(&whole.0, &out.0);
     // Removed, and taken by nobody: it does not come back.
     std::fs::remove_dir_all(&out.0).unwrap();
     let alone = Held::start(&out.0);
     std::fs::remove_dir_all(&out.0).unwrap();
-    alone.is_lost(&out.0);
+    alone.loses_its_folder(&out.0);
     assert!(!out.0.exists());
     // Moved: it can be gone on with where it is now.
     let moved = Folder::new("lost-moved");
     let third = Held::start(&out.0);
     std::fs::rename(&out.0, &moved.0).unwrap();
-    third.is_lost(&out.0);
+    third.loses_its_folder(&out.0);
     assert!(!out.0.exists());
     JOB.done(&moved.0, &["--resume"]);
     same(&whole.0, &moved.0);

@@ -356,8 +356,11 @@ fn a_state_of_no_scene_is_refused() {
     );
 }
 
+/// What is wrong with a state, and how it is made so.
+type Fault<'a> = (&'a str, fn(&mut State<Dim2>));
+
 /// States of a plane case that are no states of it any more.
-fn none_of(case: &str, changes: &[(&str, fn(&mut State<Dim2>))]) {
+fn none_of(case: &str, changes: &[Fault<'_>]) {
     let scene = || match built(case, &[]) {
         Scene::Dim2(built) => built.simulation,
         Scene::Dim3(_) => panic!("a plane case"),

@@ -43,8 +43,8 @@ impl Connected {
             }
         });
         // Parents come before their children.
-        for b in 0..parent.len() {
-            out.of_body[b] = out.of_body[parent[b] as usize];
+        for (b, parent) in parent.iter().enumerate() {
+            out.of_body[b] = out.of_body[*parent as usize];
         }
         out
     }
