@@ -213,7 +213,7 @@ def test_wrong_values_of_an_observer_are_an_error(shear, here):
     with pytest.raises(InputError, match="no observer"):
         shear.run("results/a", progress=False, observers=[3])
     Wrong.columns = ["time"]
-    with pytest.raises(RunError, match="two columns of the statistics are named `time`"):
+    with pytest.raises(RunError, match="two columns of statistics.csv are named `time`"):
         shear.run("results/a", progress=False, observers=[Wrong()])
 
 
