@@ -161,7 +161,7 @@ fn opened<S: Dimensional>(s: &Simulation<S>) -> f64 {
     s.state.bodies.position[1][S::D - 1] - RADIUS
 }
 
-/// The force at which the ball leaves, under one that grows by half a per mille of what is expected in a step, from nine tenths of it on.
+/// The force at which the ball leaves, under one that grows by half a per mille of what is expected in a step, from eight tenths of it on.
 fn pull_off<S: Dimensional>(
     contact: &str,
     attraction: &Attraction,

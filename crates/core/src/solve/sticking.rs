@@ -11,7 +11,7 @@
 //! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
 //! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
 //!
-//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is said where
+//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is counted where
 //! a loaded contact begins to slide and more contacts touch than the freedoms of their bodies determine ([`Report::not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
