@@ -245,7 +245,8 @@ impl Surface<Dim2> for Polyline {
                 // At the vertex itself, and behind one that is no valley, a direction from the vertex means nothing.
                 let of = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
-                let behind = !valley && next.is_some() && from.dot(&mean) < 0.0;
+                let ends = next.is_none() && self.deforms() && 2.0 * length < along.norm();
+                let behind = !valley && next.is_some() && from.dot(&mean) < 0.0 || ends;
                 let (normal, distance) = if behind || length <= AT_VERTEX * along.norm() {
                     (mean, from.dot(&mean))
                 } else {

@@ -102,7 +102,6 @@ impl<S: Space> Problem<S> {
             }
         };
         self.places.push(place);
-        self.connected = None;
         self.compliant |= contact.compliance != [0.0; 2];
     }
 
@@ -125,7 +124,6 @@ impl<S: Space> Problem<S> {
             (of_kind, places, compliant)
         });
         self.places.reserve_exact(contacts.len());
-        self.connected = None;
         for (lists, places, compliant) in parts {
             self.compliant |= compliant;
             let before = [0, 1, 2, 3].map(|k: usize| of_kind[k].len() as u32);

@@ -45,9 +45,16 @@ pub struct Order {
     sequence: Vec<u32>,
     places: Vec<u32>,
     schedule: Schedule,
+    /// How often it was computed.
+    changes: u64,
 }
 
 impl Order {
+    /// A number that changes with the contacts, their bodies or which of these move.
+    pub fn changes(&self) -> u64 {
+        self.changes
+    }
+
     /// Updates the order for `count` contacts, between the bodies that `of` gives.
     pub fn update(
         &mut self,
@@ -71,6 +78,7 @@ impl Order {
         if same && !changed.contains(&true) {
             return;
         }
+        self.changes += 1;
         self.movable.clear();
         self.movable.extend_from_slice(movable);
         (self.sequence, self.schedule) = order(&self.bodies, movable, parallel);

@@ -1,10 +1,10 @@
 //! Sets of contacts that are connected through bodies that can move. Within a step nothing that happens in one of them acts on another: bodies
 //! whose motion is given pass no impulse on.
 
-use super::form::Problem;
+use super::form::{Mobility, Problem};
 use super::row::Row;
 use super::rows::Rows;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 
 /// No set.
 const NONE: u32 = u32::MAX;
@@ -12,6 +12,8 @@ const NONE: u32 = u32::MAX;
 /// See the module. It is that of the contacts of a problem until these change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Connected {
+    /// The contacts that it is of: the numbers of the orders of their rows ([`Rows::changes`]).
+    of: Option<[u64; 4]>,
     /// The set of each body; none of those that do not move, or that nothing touches.
     of_body: Vec<u32>,
     /// Number of contacts of each set.
@@ -31,6 +33,7 @@ impl Connected {
             }
         });
         let mut out = Self {
+            of: None,
             of_body: vec![NONE; moves.len()],
             contacts: Vec::new(),
             with_systems: Vec::new(),
@@ -103,27 +106,64 @@ fn each<S: Space, R: Row<S>>(rows: &Rows<R>, found: &mut dyn FnMut([u32; 2])) {
 }
 
 impl<S: Space> Problem<S> {
-    /// Its connected sets, which are found once.
-    pub(super) fn connected(&mut self) -> &Connected {
-        if self.connected.is_none() {
-            let movable = self.movable(false);
-            let mut sets = Connected::new(&movable, |found| {
-                each(&self.plain, found);
-                each(&self.full, found);
-                each(&self.levers, found);
-                each(&self.bonded_levers, found);
-            });
-            for row in &self.of_systems {
-                for (body, _) in row.rigid_masses() {
-                    if let Some(set) = sets.of_body(body) {
-                        sets.with_systems[set] = true;
-                    }
+    /// Finds its connected sets, unless those that are known are of the same contacts: packings at rest keep theirs from step to step. Gives them
+    /// out of the problem, to which they are to be given back.
+    pub(super) fn take_connected(&mut self) -> Connected {
+        let of = self.contacts_of_rows();
+        let known = std::mem::take(&mut self.connected);
+        if of.is_some() && known.of == of {
+            return known;
+        }
+        let movable = self.movable(false);
+        let mut sets = Connected::new(&movable, |found| {
+            each(&self.plain, found);
+            each(&self.full, found);
+            each(&self.levers, found);
+            each(&self.bonded_levers, found);
+        });
+        for row in &self.of_systems {
+            for (body, _) in row.rigid_masses() {
+                if let Some(set) = sets.of_body(body) {
+                    sets.with_systems[set] = true;
                 }
             }
-            self.connected = Some(sets);
         }
-        self.connected.get_or_insert_default()
+        sets.of = of;
+        sets
     }
+
+    /// What tells the contacts of rigid bodies from others; nothing where they are not sorted, or systems act.
+    fn contacts_of_rows(&self) -> Option<[u64; 4]> {
+        let sorted = self.plain.sorted()
+            && self.full.sorted()
+            && self.levers.sorted()
+            && self.bonded_levers.sorted();
+        (sorted && self.systems.is_empty()).then(|| {
+            [
+                self.plain.changes(),
+                self.full.changes(),
+                self.levers.changes(),
+                self.bonded_levers.changes(),
+            ]
+        })
+    }
+
+    /// Freedoms of the bodies of each connected set.
+    pub(super) fn freedoms(&self, sets: &Connected) -> Vec<usize> {
+        let mut freedoms = vec![0; sets.len()];
+        for (set, mobility) in sets.of_body.iter().zip(&self.masses) {
+            if *set != NONE {
+                freedoms[*set as usize] += freedoms_of::<S>(mobility);
+            }
+        }
+        freedoms
+    }
+}
+
+/// Along how many axes a body moves, and about how many it turns.
+pub(super) fn freedoms_of<S: Space>(mobility: &Mobility<S>) -> usize {
+    let turns = if mobility.turns() { S::Spin::N } else { 0 };
+    (0..S::D).filter(|k| mobility.mass[*k] > 0.0).count() + turns
 }
 
 #[cfg(test)]

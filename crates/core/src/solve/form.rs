@@ -279,8 +279,8 @@ pub struct Problem<S: Space> {
     /// Moments of contacts that resist rotation; they run last, in order.
     pub(super) moments: Vec<MomentRow<S>>,
     pub(super) places: Vec<Place>,
-    /// Connected sets of the contacts, where these were asked for.
-    pub(super) connected: Option<Connected>,
+    /// Connected sets of the contacts that it had when these were asked for last.
+    pub(super) connected: Connected,
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
@@ -304,7 +304,7 @@ impl<S: Space> Default for Problem<S> {
             loaded: Vec::new(),
             moments: Vec::new(),
             places: Vec::new(),
-            connected: None,
+            connected: Connected::default(),
             compliant: false,
             of_kind: Default::default(),
         }
@@ -345,7 +345,6 @@ impl<S: Space> Problem<S> {
         self.clear_systems();
         self.moments.clear();
         self.places.clear();
-        self.connected = None;
         self.compliant = false;
     }
 

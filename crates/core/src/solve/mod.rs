@@ -42,3 +42,4 @@ pub use nodal::NodalSystem;
 pub use requirements::{Features, Operator, refusal};
 pub use row::{MomentForm, MomentSolution};
 pub use side::Side;
+pub use sticking::begins_to_slide;

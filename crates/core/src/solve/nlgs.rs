@@ -63,8 +63,8 @@ pub struct Report {
     /// Whether another solution was found, of more energy, in which a loaded contact slides that sticks in the one taken, or the reverse: the
     /// step has several.
     pub several: bool,
-    /// Whether a set of contacts was too large to seek another solution, in which a loaded contact begins to slide and more contacts carry a load
-    /// than its balance determines.
+    /// Whether a loaded contact began to slide in a set of contacts that was too large to seek another solution, see
+    /// [`Problem::is_not_searched`].
     pub not_searched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,

@@ -271,7 +271,6 @@ impl<S: Space> Problem<S> {
                 block = block + of_nodes.scaled(x.weight * y.weight);
             }
         }
-        self.connected = None;
         self.compliant |= contact.compliance != [0.0; 2];
         self.places
             .push(Place::System(self.of_systems.len() as u32));

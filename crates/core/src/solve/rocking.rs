@@ -13,16 +13,13 @@ const KNOWN: f64 = 1e-6;
 
 /// The error of the worst set, given the sums over all; 0 where all contacts are of one.
 pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Scale) -> f64 {
-    problem.connected();
-    let Some(sets) = problem.connected.take() else {
-        return 0.0;
-    };
+    let sets = problem.take_connected();
     let worst = if sets.len() < 2 {
         0.0
     } else {
         of_sets(problem, &sets, sums, scale)
     };
-    problem.connected = Some(sets);
+    problem.connected = sets;
     worst
 }
 

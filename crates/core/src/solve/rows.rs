@@ -74,6 +74,11 @@ impl<R> Rows<R> {
         self.order.places()
     }
 
+    /// See [`Order::changes`].
+    pub fn changes(&self) -> u64 {
+        self.order.changes()
+    }
+
     /// Whether the rows are in the order of the iteration.
     pub fn sorted(&self) -> bool {
         self.sorted

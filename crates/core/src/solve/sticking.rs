@@ -11,11 +11,12 @@
 //! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
 //! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
 //!
-//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is counted where
-//! a loaded contact begins to slide and more contacts touch than the freedoms of their bodies determine ([`Report::not_searched`]).
+//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is told where
+//! a loaded contact begins to slide ([`Problem::is_not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
-use super::form::{ContactForm, Place, Problem};
+use super::connected::freedoms_of;
+use super::form::{ContactForm, ContactSolution, Problem};
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
 use super::row::MomentForm;
@@ -156,14 +157,52 @@ fn outnumber<'a, S: Space>(
     for form in forms {
         unknowns += if form.friction > 0.0 { S::D } else { 1 };
         for body in form.bodies {
-            touched.entry(body).or_insert_with(|| {
-                let m = &problem.masses[body as usize];
-                let turns = if m.turns() { S::Spin::N } else { 0 };
-                (0..S::D).filter(|k| m.mass[*k] > 0.0).count() + turns
-            });
+            let mobility = &problem.masses[body as usize];
+            (touched.entry(body)).or_insert_with(|| freedoms_of::<S>(mobility));
         }
     }
     unknowns > touched.values().sum::<usize>()
+}
+
+/// Whether a contact at its friction bound begins to slide: it carries a load, carried one before by its impulse, and held.
+pub fn begins_to_slide<S: Space>(
+    form: &ContactForm<S>,
+    before: &S::Vector,
+    solution: &ContactSolution<S>,
+) -> bool {
+    let n = form.normal.dot(before);
+    let held = || S::tangential(&form.normal, before).norm() < HELD * bound(form, n);
+    form.friction > 0.0 && simple(form) && solution.unilateral_n > 0.0 && n > 0.0 && held()
+}
+
+impl<S: Space> Problem<S> {
+    /// Whether one of the contacts of these bodies, which begin to slide, is of a set that is too large to search, and in which impulses
+    /// outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine them.
+    pub fn is_not_searched(
+        &mut self,
+        forms: &[ContactForm<S>],
+        begin: impl Iterator<Item = [u32; 2]>,
+    ) -> bool {
+        let sets = self.take_connected();
+        let freedoms = self.freedoms(&sets);
+        let mut large: Vec<bool> = (0..sets.len())
+            .map(|set| {
+                let count = sets.contacts(set);
+                !sets.with_systems(set) && count > MOST && S::D * count > freedoms[set]
+            })
+            .collect();
+        if self.full.len() + self.levers.len() + self.bonded_levers.len() > 0 {
+            for form in forms.iter().filter(|form| !simple(form)) {
+                if let Some(set) = sets.of(form.bodies) {
+                    large[set] = false;
+                }
+            }
+        }
+        let mut sets_that_slide = begin.filter_map(|bodies| sets.of(bodies));
+        let told = sets_that_slide.any(|set| large[set]);
+        self.connected = sets;
+        told
+    }
 }
 
 impl<S: Space> SolveContext<'_, S> {
@@ -177,20 +216,18 @@ impl<S: Space> SolveContext<'_, S> {
         if !report.converged || self.forms.len() < 2 {
             return;
         }
-        let candidates = self.candidates(problem);
-        if candidates.is_empty() {
-            return;
-        }
-        problem.connected();
-        let (small, not_searched) = self.sets(problem, &candidates);
-        report.not_searched |= not_searched;
         let mut found = Vec::new();
-        for set in small {
+        for set in self.small_sets(problem) {
             let due = auto_state.search.is_due(set.name);
             let form = |k: &u32| &self.forms[*k as usize];
             let all = || set.contacts.iter().map(form);
             let many = || outnumber(problem, all().filter(|f| f.shift_n.is_finite()));
-            if self.is_sought(problem, &set.contacts, due) && all().all(simple) && many() {
+            let may_slide = |k: &u32| self.may_slide(problem, *k);
+            if all().all(simple)
+                && set.contacts.iter().any(may_slide)
+                && self.is_sought(problem, &set.contacts, due)
+                && many()
+            {
                 let other = self.lower(problem, &set.contacts);
                 auto_state.search.learn(set.name, other.is_some());
                 found.extend(other);
@@ -201,47 +238,33 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Contacts that may slide: told by their impulses first, which costs little, then by their velocities.
-    fn candidates(&self, problem: &Problem<S>) -> Vec<u32> {
-        let may_slide = |k: &u32| {
-            let form = &self.forms[*k as usize];
-            let system = matches!(problem.places[*k as usize], Place::System(_));
-            if system || !simple(form) || !form.shift_n.is_finite() {
-                return false;
-            }
-            if !at_bound(problem, *k, form) {
-                return false;
-            }
-            let [opens, slip] = parts(problem, form);
-            // No bound on the velocities of its set is needed to see that this one opens, or stays.
-            slip > 0.0 && opens <= slip
-        };
-        (0..self.forms.len() as u32).filter(may_slide).collect()
+    /// Whether a contact may slide: told by its impulse first, which costs little, then by its velocities.
+    fn may_slide(&self, problem: &Problem<S>, k: u32) -> bool {
+        let form = &self.forms[k as usize];
+        if !form.shift_n.is_finite() || !at_bound(problem, k, form) {
+            return false;
+        }
+        let [opens, slip] = parts(problem, form);
+        // No bound on the velocities of its set is needed to see that this one opens, or stays.
+        slip > 0.0 && opens <= slip
     }
 
-    /// The sets of these contacts that are small enough to search, and whether one that is too large should be.
-    fn sets(&self, problem: &Problem<S>, candidates: &[u32]) -> (Vec<SlidingSet>, bool) {
-        let Some(sets) = &problem.connected else {
-            return (Vec::new(), false);
+    /// The sets that are small enough to search, and of which impulses may outnumber freedoms.
+    fn small_sets(&self, problem: &mut Problem<S>) -> Vec<SlidingSet> {
+        let sets = problem.take_connected();
+        let freedoms = problem.freedoms(&sets);
+        let is_small = |set: &usize| {
+            let count = sets.contacts(*set);
+            !sets.with_systems(*set) && (2..=MOST).contains(&count) && S::D * count > freedoms[*set]
         };
         let mut place = vec![NONE; sets.len()];
-        let mut small: Vec<SlidingSet> = Vec::new();
-        let mut large: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-        for k in candidates {
-            let set = sets.of(self.forms[*k as usize].bodies);
-            let Some(set) = set.filter(|set| !sets.with_systems(*set)) else {
-                continue;
-            };
-            let count = sets.contacts(set);
-            if count > MOST {
-                large.entry(set).or_default().push(*k);
-            } else if count > 1 && place[set] == NONE {
-                place[set] = small.len() as u32;
-                small.push(SlidingSet {
-                    name: NONE,
-                    contacts: Vec::with_capacity(count),
-                });
-            }
+        let mut small = Vec::new();
+        for set in (0..sets.len()).filter(is_small) {
+            place[set] = small.len() as u32;
+            small.push(SlidingSet {
+                name: NONE,
+                contacts: Vec::with_capacity(sets.contacts(set)),
+            });
         }
         if !small.is_empty() {
             for (form, k) in self.forms.iter().zip(0..) {
@@ -255,34 +278,8 @@ impl<S: Space> SolveContext<'_, S> {
                 }
             }
         }
-        let mut large = large.iter();
-        let not_searched = large.any(|(set, of)| {
-            let begins = self.one_begins(problem, of);
-            begins && self.touch_more_than_needed(problem, |f| sets.of(f.bodies) == Some(*set))
-        });
-        (small, not_searched)
-    }
-
-    /// Whether one of these contacts carries a load and begins to slide.
-    fn one_begins(&self, problem: &Problem<S>, of: &[u32]) -> bool {
-        let form = |k: &u32| &self.forms[*k as usize];
-        let least = least_slip(problem, of.iter().map(form));
-        of.iter().any(|k| {
-            let loaded = problem.normal(problem.places[*k as usize]) > 0.0;
-            loaded && does(problem, *k, form(k), least) == Does::Begins
-        })
-    }
-
-    /// Whether the contacts of a set are rigid and without bonds, and those that carry a load outnumber the freedoms of their bodies.
-    fn touch_more_than_needed(
-        &self,
-        problem: &Problem<S>,
-        is_of_set: impl Fn(&ContactForm<S>) -> bool,
-    ) -> bool {
-        let of_set = || (self.forms.iter().zip(&problem.places)).filter(|(f, _)| is_of_set(f));
-        let carries = |(_, place): &(&ContactForm<S>, &Place)| problem.normal(**place) > 0.0;
-        of_set().all(|(form, _)| simple(form))
-            && outnumber(problem, of_set().filter(carries).map(|(form, _)| form))
+        problem.connected = sets;
+        small
     }
 
     /// Whether another solution of a set is to be sought: where a contact begins to slide, and in steps that are `due` where some slide while

@@ -9,8 +9,9 @@ use crate::contact::Contact;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, SpringStep, Velocities};
-use crate::solve::{self, MomentForm};
+use crate::solve::{self, MomentForm, begins_to_slide};
 use crate::threads::{fill, pays};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
 /// new ones for many contacts costs more than filling them.
@@ -23,6 +24,8 @@ pub(super) struct Solved<S: Space> {
     /// Those of compliant contacts; empty without a compliant law.
     pub springs: Vec<Option<SpringStep<S>>>,
     pub moment_steps: Vec<MomentStep<S>>,
+    /// Whether a contact begins to slide.
+    pub begins: bool,
     /// Whether the step was solved with predicted damage.
     pub predicted: bool,
 }
@@ -48,6 +51,7 @@ impl<S: Space> Default for Solved<S> {
             contact_steps: Vec::new(),
             springs: Vec::new(),
             moment_steps: Vec::new(),
+            begins: false,
             predicted: false,
         }
     }
@@ -177,6 +181,7 @@ impl<S: Space> Simulation<S> {
         let swerves = &self.workspace.swerves;
         let Scheme { h, theta } = self.options.scheme;
         let count = network.contacts.len();
+        let any_begins = AtomicBool::new(false);
         fill(self.divides_contacts(), &mut contact_steps, count, |k| {
             let (contact, before) = (&network.contacts[k], &before[k]);
             let (form, solution) = (&forms[k], problem.solution(k));
@@ -205,9 +210,15 @@ impl<S: Space> Simulation<S> {
             };
             // Some solvers satisfy the friction bound of a sliding contact only within their tolerance.
             let bound = form.friction * (solution.unilateral_n + form.tension) + form.cohesion;
+            let slides = solution.unilateral_t.norm() >= (1.0 - 1e-6) * bound;
+            let begins = slides && begins_to_slide(form, &contact.impulse, &solution);
+            if begins {
+                any_begins.store(true, Ordering::Relaxed);
+            }
             ContactStep {
                 before: *before,
-                slides: solution.unilateral_t.norm() >= (1.0 - 1e-6) * bound,
+                slides,
+                begins,
                 average,
                 adheres: form.tension > 0.0,
                 lost,
@@ -217,6 +228,16 @@ impl<S: Space> Simulation<S> {
         });
         self.workspace.solved.contact_steps = contact_steps;
         self.workspace.solved.after = after;
+        self.workspace.solved.begins = any_begins.into_inner();
+    }
+
+    /// Whether a contact begins to slide in a set that was too large to seek another solution.
+    pub(super) fn is_not_searched(&mut self) -> bool {
+        let workspace = &mut self.workspace;
+        let (steps, forms) = (&workspace.solved.contact_steps, &workspace.forms);
+        let begin = steps.iter().zip(forms).filter(|(step, _)| step.begins);
+        let begin = begin.map(|(_, form)| form.bodies);
+        workspace.solved.begins && workspace.problem.is_not_searched(forms, begin)
     }
 
     /// Collects the results of the contacts that resist rotation.

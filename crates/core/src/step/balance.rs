@@ -52,11 +52,16 @@ impl<S: Space> Simulation<S> {
             }
             sum
         });
+        // What is less deep than the deepest share of the smallest body is not the deepest of any, and is not looked into.
+        let smallest = bodies.length.iter().copied().fold(f64::INFINITY, f64::min);
         let divide = pays(parallel, network.contacts.len(), CONTACT);
         let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {
             let (mut sum, mut deepest) = (MomentumSum::<S>::zero(), 0.0f64);
             for contact in &network.contacts[some] {
-                deepest = deepest.max(Self::overlap(contact, (bodies, network, laws), &grain));
+                if -contact.gap > deepest * smallest {
+                    let overlap = Self::overlap(contact, (bodies, network, laws), &grain);
+                    deepest = deepest.max(overlap);
+                }
                 let sides = contact.bodies.map(|b| free[b as usize]);
                 let side = match sides {
                     [true, false] => 0,

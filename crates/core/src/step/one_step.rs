@@ -235,12 +235,11 @@ impl<S: Space> Simulation<S> {
         let parts = map_chunks(divide, contacts, CHUNK, |_, contacts| {
             let mut received = Vec::new();
             for contact in contacts {
-                let levers = contact.levers();
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     let d = place[contact.bodies[side] as usize];
                     if d != u32::MAX {
                         let impulse = contact.impulse * sign;
-                        let moment = S::moment(&levers[side], &impulse) + contact.moment * sign;
+                        let moment = S::moment(&contact.levers()[side], &impulse) + contact.moment * sign;
                         received.push((d, impulse, moment));
                     }
                 }
