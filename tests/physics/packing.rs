@@ -38,22 +38,23 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
 }
 
 /// Where sliding contacts fell behind their thresholds, stick and slip alternated in every iteration and the
-/// conjugate gradients were no faster than the plain ones. Totals over several steps: in a single one any of the methods may
+/// conjugate gradients were no faster than the plain ones. In the median over several steps: in a single one any of the methods may
 /// stagnate.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
-    for (mu, seed) in [("0", 11), ("0.1", 11), ("0.4", 3)] {
-        are_faster(mu, &[seed]);
+    for mu in ["0", "0.1", "0.4"] {
+        are_faster(mu, &[11]);
     }
 }
 
-/// With the most friction, over several samples: on a single one any of the methods may stagnate.
+/// With the most friction, over several samples.
 #[test]
 #[ignore = "nightly: six samples; one is in conjugate_gradients_are_faster_than_sweeps"]
 fn conjugate_gradients_are_faster_over_samples() {
     are_faster("0.4", &[11, 1, 2, 3, 4, 5]);
 }
 
+/// Two times fewer iterations than either of the others take, in the median of the problems.
 fn are_faster(mu: &str, seeds: &[u64]) {
     let problems: Vec<LocalProblem> = seeds.iter().flat_map(|seed| steps(mu, *seed)).collect();
     let iterations = |method: Method| {
@@ -66,10 +67,15 @@ fn are_faster(mu: &str, seeds: &[u64]) {
         let solved = problems.iter().map(|p| solve(p, method, &limits));
         let each: Vec<u32> = solved.map(|outcome| outcome.iterations).collect();
         println!("mu {mu}, {}: {each:?}", method.name());
-        each.iter().sum::<u32>()
+        each
     };
     let [nlgs, pg, cpg, pcpg] =
         [Method::Nlgs, Method::Pg, Method::Cpg, Method::Pcpg].map(iterations);
-    assert!(2 * cpg < nlgs && 2 * cpg < pg, "mu {mu}: {cpg} of {nlgs}");
-    assert!(2 * pcpg < nlgs, "mu {mu}: {pcpg} of {nlgs}");
+    for (of, over) in [(&cpg, &nlgs), (&cpg, &pg), (&pcpg, &nlgs)] {
+        let ratios = of.iter().zip(over);
+        let mut ratios: Vec<f64> = ratios.map(|(a, b)| f64::from(*a) / f64::from(*b)).collect();
+        ratios.sort_by(f64::total_cmp);
+        let median = ratios[ratios.len() / 2];
+        assert!(median < 0.5, "mu {mu}: {median} in {ratios:?}");
+    }
 }

@@ -239,7 +239,8 @@ impl<S: Space> Simulation<S> {
                     let d = place[contact.bodies[side] as usize];
                     if d != u32::MAX {
                         let impulse = contact.impulse * sign;
-                        let moment = S::moment(&contact.levers()[side], &impulse) + contact.moment * sign;
+                        let moment =
+                            S::moment(&contact.levers()[side], &impulse) + contact.moment * sign;
                         received.push((d, impulse, moment));
                     }
                 }

@@ -83,6 +83,33 @@ fn carter() {
     }
 }
 
+/// Surfaces that pass over each other by any part of a cell in a step slip everywhere, with mu P, over the width of Hertz: the strain of their
+/// friction carries the ends of one beyond those of the other, and these touch nothing there.
+#[test]
+fn full_slip_by_parts_of_a_cell() {
+    let (a, load, mu, radius) = (1e-3, 178.9e3, 0.3, 0.5);
+    let size = a / 20.0;
+    for creepage in [-0.5, -0.05, 1e-3, 0.01, 0.05, 0.2, 0.5] {
+        let cells = grid([size, 1.0], [1.3 * a, 0.5]);
+        let mut s = rolling::<Dim2>(
+            cells,
+            [radius, f64::INFINITY],
+            load,
+            mu,
+            creepage,
+            0.94 * size,
+        );
+        for _ in 0..4 {
+            go(&mut s, 30);
+            let found = tractions(&s, size);
+            let q = mean(&found, 0, |_| 1.0) / mu;
+            near(creepage.signum(), q, 2e-3);
+            let width = found.iter().map(|t| t.at.x.abs()).fold(0.0, f64::max);
+            assert!(width < 1.1 * a, "{creepage}: {width} m");
+        }
+    }
+}
+
 /// The creep curve of an elliptic contact, a/b = 0.5 with a along the rolling direction, under 106.7 kN at mu 0.33, of which CONTACT's
 /// example has 0.2588, 0.6482, 0.8816 and 0.9832 (E. A. H. Vollebregt, "User guide for CONTACT"): here with 4 and 8 cells
 /// over each half-axis (`cases/verification/elastic/creep_curve.ron` has more).

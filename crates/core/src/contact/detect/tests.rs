@@ -27,6 +27,19 @@ fn find(s: &mut Simulation<Dim2>) {
     detect(network, &s.shapes, bodies, &s.table, times, false);
 }
 
+/// Adds the contacts that bodies meet in a step with these velocities.
+fn predict(s: &mut Simulation<Dim2>, velocities: &[Vector2<f64>]) {
+    let velocities: Vec<_> = velocities.iter().map(|v| (*v, Vector1::zeros())).collect();
+    let motion = Motion {
+        velocities: &velocities,
+        time: 0.0,
+        h: H,
+        parallel: false,
+    };
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    add_predicted(network, &s.shapes, bodies, &s.table, &motion);
+}
+
 /// A pair whose bond broke is known as such in each new contact: when it has separated and meets again, and in a contact that is predicted.
 #[test]
 fn a_broken_pair_is_remembered_when_it_meets_again() {
@@ -51,18 +64,16 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     s.state.bodies.position[1].x = 1.0 + 1e-6;
     find(&mut s);
     assert_eq!(s.state.network.contacts.len(), 1);
-    let zero = Vector1::zeros();
-    let mut velocities = vec![(Vector2::zeros(), zero); 3];
-    velocities[2].0.x = -0.2 / H;
-    let motion = Motion {
-        velocities: &velocities,
-        time: 0.0,
-        h: H,
-        parallel: false,
-    };
-    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-    add_predicted(network, &s.shapes, bodies, &s.table, &motion);
-    let predicted: Vec<_> = network.contacts.iter().filter(|c| c.closing).collect();
+    let mut velocities = [Vector2::zeros(); 3];
+    velocities[2].x = -0.2 / H;
+    predict(&mut s, &velocities);
+    let predicted: Vec<_> = s
+        .state
+        .network
+        .contacts
+        .iter()
+        .filter(|c| c.closing)
+        .collect();
     assert_eq!(predicted.len(), 1);
     assert_eq!(predicted[0].bodies, [1, 2]);
     assert!(predicted[0].broken);
@@ -80,19 +91,10 @@ fn a_point_is_followed_in_parts_of_the_alert_distance() {
         let mut s = touching(s);
         find(&mut s);
         assert!(s.state.network.contacts.is_empty());
-        let zero = Vector1::zeros();
         let down = Vector2::new(0.0, -(height + depth) / H);
-        let velocities = [(down, zero), (Vector2::zeros(), zero)];
-        let motion = Motion {
-            velocities: &velocities,
-            time: 0.0,
-            h: H,
-            parallel: false,
-        };
-        let (network, bodies) = (&mut s.state.network, &s.state.bodies);
-        add_predicted(network, &s.shapes, bodies, &s.table, &motion);
-        let [contact] = &network.contacts[..] else {
-            panic!("{:?}", network.contacts)
+        predict(&mut s, &[down, Vector2::zeros()]);
+        let [contact] = &s.state.network.contacts[..] else {
+            panic!("{:?}", s.state.network.contacts)
         };
         assert_eq!(contact.key.pair(), (0, Key::SURFACE));
         assert!(contact.closing && contact.beyond);

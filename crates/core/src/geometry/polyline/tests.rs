@@ -38,6 +38,30 @@ fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
     }
 }
 
+/// The ends of a surface that deforms are where its loads end and not its solid: a point that its strain carries beyond them by less than half a
+/// segment is above the line of the last segment, or behind it. The corner of a profile has a side.
+#[test]
+fn a_surface_goes_on_beyond_its_ends() {
+    let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];
+    let profile = chain(&flat, None);
+    let mut surface = chain(&flat, None);
+    surface.move_vertices(&flat.map(Vector2::from));
+    for beyond in [1e-6, 1e-3, 0.3] {
+        for height in [0.2, 1e-4, 0.0, -1e-4, -0.1] {
+            for x in [-beyond, 2.0 + beyond] {
+                let found = touches(&surface, x, height, 0.5);
+                let [touch] = &found[..] else {
+                    panic!("{x} {height}: {found:?}")
+                };
+                assert_eq!((touch.normal, touch.distance), (Vector2::y(), height));
+            }
+            let corner = touches(&profile, 2.0 + beyond, height, 0.5);
+            let way = Vector2::new(beyond, height);
+            assert!((corner[0].normal - way.normalize()).norm() < 1e-6);
+        }
+    }
+}
+
 #[test]
 fn a_flat_seam_gives_one_contact() {
     let flat = chain(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]], None);
