@@ -324,11 +324,11 @@ const TOLERANCES: ContactTolerances = ContactTolerances {
 
 /// The gap of the lowest corner of `over`, 2.5 m above the middle of `block` and shifted along the plane of its upper face, is among those of the
 /// points on that plane, whichever of both is the candidate.
-fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core) {
+fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[S::Vector]) {
     let up = S::D - 1;
     let lowest = |heights: &mut dyn Iterator<Item = f64>| heights.fold(f64::INFINITY, f64::min);
     let face = block.normals().iter().position(|n| n[up] > 0.9).unwrap();
-    let gap = lowest(&mut over.points().iter().map(|p| p[up])) + 2.5 - 1.0 - 0.15;
+    let gap = lowest(&mut corners.iter().map(|p| p[up])) + 2.5 - 1.0 - 0.15;
     for of_candidate in [false, true] {
         let sign = if of_candidate { -1.0 } else { 1.0 };
         let (a, b) = if of_candidate {
@@ -362,12 +362,63 @@ fn the_points_on_a_plane_have_the_lowest_corner() {
     let block = Polyhedron::cuboid([2.0; 3]);
     let upright = Vector3::y() * 0.3;
     let over = block.turned(&UnitQuaternion::from_scaled_axis(upright));
-    lowest_corner_is_found::<Dim3>(&block, &over);
+    lowest_corner_is_found::<Dim3>(&block, &over, over.points());
     let square = Polygon::new(
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
             .map(|(x, y)| Vector2::new(x, y))
             .to_vec(),
     )
     .unwrap();
-    lowest_corner_is_found::<Dim2>(&square, &square.turned(&-0.3));
+    let turned = square.turned(&-0.3);
+    lowest_corner_is_found::<Dim2>(&square, &turned, turned.points());
+}
+
+/// The plane that takes the place of the nearest points of a ball and a core that turns leaves more room at the end of the step, over all
+/// corners of the core.
+#[test]
+fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
+    let mut rng = Pcg64::seed_from_u64(31);
+    let core = Polygon::regular(4, 1.0);
+    let (radius, mut taken) = (0.5, 0);
+    for _ in 0..20_000 {
+        let angle = rng.random_range(0.0..std::f64::consts::TAU);
+        let apart = Vector2::new(angle.cos(), angle.sin()) * rng.random_range(1.1..1.6);
+        let before = core.contact_point_with_ball(&apart, radius, 0.0);
+        if before.gap < 0.0 {
+            continue;
+        }
+        let motion = PairMotion::<Dim2> {
+            shift: Vector2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.3..0.3)),
+            turns: [0.0, rng.random_range(-0.3..0.3)].map(Vector1::new),
+        };
+        let mut point = before;
+        keep_ball_apart::<Dim2>(
+            &core,
+            &apart,
+            [radius, 0.0],
+            &TOLERANCES,
+            &motion,
+            &mut point,
+        );
+        if point == before {
+            continue;
+        }
+        taken += 1;
+        let n = point.normal;
+        let end = |q: &Vector2<f64>| n.dot(&(q + Vector2::new(-q.y, q.x) * motion.turns[1].x));
+        let top = core
+            .points()
+            .iter()
+            .map(end)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let left = n.dot(&(apart + motion.shift)) - top - radius;
+        let moved = motion.shift
+            - Vector2::new(-before.on_antagonist.y, before.on_antagonist.x) * motion.turns[1].x;
+        let least = before.gap + before.normal.dot(&moved);
+        assert!(left > least, "{left} {least}");
+        // What acts there turns the pair by nothing.
+        let way = point.on_candidate - point.on_antagonist;
+        assert!((way - n * point.gap).norm() < 1e-12, "{point:?}");
+    }
+    assert!(taken > 100, "{taken}");
 }

@@ -483,8 +483,8 @@ fn several_solutions(summary: &Summary) -> Option<String> {
     );
     let left = (not_searched > 0).then(|| {
         format!(
-            "in {not_searched} steps a loaded contact began to slide among more than 64 connected contacts that carry a load which its balance does not \
-             determine; no other solution was sought there"
+            "in {not_searched} steps a loaded contact began to slide among more than 64 connected contacts, whose impulses may outnumber the freedoms of \
+             their bodies; no other solution was sought there"
         )
     });
     let told: Vec<String> = std::iter::once(found).chain(left).collect();

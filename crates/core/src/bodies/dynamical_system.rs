@@ -148,6 +148,12 @@ pub trait DynamicalSystem<S: Space>: Debug + Send + Sync {
     /// Takes generalised velocities, as many as [`Self::freedoms`].
     fn set_velocity(&mut self, velocity: &[f64]);
 
+    /// Velocity of the material that passes through its surface, which stays in place (m/s): it moves along the surface, so that no gap closes by it.
+    /// Here none.
+    fn passing(&self) -> S::Vector {
+        S::Vector::zero()
+    }
+
     /// Begins a step at the current state, which it remembers as its start. A linear system forms A here where h or theta have
     /// changed.
     fn begin_step(&mut self, step: &SystemStep<S>);

@@ -5,9 +5,12 @@
 //! what overlaps, these sum up. The contact is therefore asked for the velocity that leaves no gap closed at the end of the step,
 //! h u_n + g >= s. A body that follows the surface then turns round from u_n = -s/h to +s/h at each step, and keeps its energy.
 //! Surfaces that bend away need nothing: their gap opens, and closes in the next step.
+//!
+//! Where material passes through a surface that stays in place ([`crate::bodies::DynamicalSystem::passing`]) it moves along the surface, and the
+//! velocity along the normal that it seems to have on a slope closes no gap either.
 
 use super::Simulation;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, DynamicalSystem};
 use crate::contact::{Contact, Key, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
@@ -19,7 +22,7 @@ type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
 impl<S: Space> Simulation<S> {
     /// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the velocities without contacts; leaves the
-    /// list empty where nothing is hollow and no driven body turns.
+    /// list empty where nothing is hollow, no driven body turns and no material passes.
     pub(super) fn find_swerves(&mut self, free: &[Motion<S>], h: f64) {
         let mut swerves = std::mem::take(&mut self.workspace.swerves);
         swerves.clear();
@@ -27,7 +30,11 @@ impl<S: Space> Simulation<S> {
         let driven = self.state.bodies.driven.iter().map(|d| d.body as usize);
         let mut turning: Vec<usize> = driven.filter(|b| free[*b].1 != S::Spin::zero()).collect();
         turning.sort_unstable();
-        if hollow || !turning.is_empty() {
+        let systems = &self.state.systems;
+        let all = (0..systems.len()).filter_map(|k| systems.get(k));
+        let passing: Vec<S::Vector> = all.map(DynamicalSystem::passing).collect();
+        let passes = passing.iter().any(|v| *v != S::Vector::zero());
+        if hollow || passes || !turning.is_empty() {
             let turns = |b: u32| turning.binary_search(&(b as usize)).is_ok();
             let contacts = &self.state.network.contacts;
             let scene = Scene {
@@ -39,11 +46,19 @@ impl<S: Space> Simulation<S> {
             fill(self.divides_contacts(), &mut swerves, contacts.len(), |k| {
                 let c = &contacts[k];
                 let bends = hollow && scene.is_on_hollow(c);
-                if bends || c.bodies.into_iter().any(turns) {
+                let bent = if bends || c.bodies.into_iter().any(turns) {
                     scene.swerve(c, free, h)
                 } else {
                     0.0
+                };
+                if !passes {
+                    return bent;
                 }
+                let [one, other] = c.bodies.map(|b| {
+                    let carrier = scene.bodies.carrier(b as usize);
+                    carrier.map_or(S::Vector::zero(), |c| passing[c.system as usize])
+                });
+                bent + h * c.normal.dot(&(one - other))
             });
         }
         self.workspace.swerves = swerves;

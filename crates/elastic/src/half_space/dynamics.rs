@@ -34,6 +34,15 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         self.velocity.copy_from_slice(velocity);
     }
 
+    fn passing(&self) -> S::Vector {
+        let rolls = self.fixed.rolling.is_some();
+        S::Vector::from_slice(&[if rolls {
+            self.velocity[self.rolled()]
+        } else {
+            0.0
+        }])
+    }
+
     fn begin_step(&mut self, step: &SystemStep<S>) {
         self.stored = self.stored_energy();
         self.jump = 0.0;

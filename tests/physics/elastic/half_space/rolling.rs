@@ -105,6 +105,7 @@ fn full_slip_by_parts_of_a_cell() {
             let q = mean(&found, 0, |_| 1.0) / mu;
             near(creepage.signum(), q, 2e-3);
             let width = found.iter().map(|t| t.at.x.abs()).fold(0.0, f64::max);
+            println!("{creepage}: Q/(mu P) {q}, {width} m");
             assert!(width < 1.1 * a, "{creepage}: {width} m");
         }
     }
