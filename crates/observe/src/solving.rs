@@ -40,7 +40,7 @@ pub struct LawsOfRun {
     pub solves_mean: f64,
     /// Mean over the steps of the share of the friction by which it differs from that of the laws at the velocities reached.
     pub friction_mean: f64,
-    /// Largest share of an attraction by which it differs from that over the gaps passed in a step.
+    /// Largest share of a step's attractions and loads by which attractions differ from those over the gaps passed.
     pub attraction_max: f64,
     /// Steps.
     pub steps: u64,

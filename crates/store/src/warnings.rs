@@ -222,7 +222,7 @@ fn unmet(summary: &Summary) -> Option<String> {
     }
     if attraction > UNMET_ATTRACTION {
         parts.push(format!(
-            "an attraction differs from that of its law over the gaps of a step by up to {:.1} %; take a smaller time.step or solver.tolerance",
+            "attractions differ from those of their laws over the gaps of a step by up to {:.1} % of the load; take a smaller time.step or solver.tolerance",
             1e2 * attraction
         ));
     }

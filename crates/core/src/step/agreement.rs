@@ -9,7 +9,7 @@ use crate::laws::evaluator::LawEvaluator;
 use crate::solve;
 use std::time::Instant;
 
-/// Relative difference between the attraction used and that over the gaps passed that is let stand.
+/// Difference between the attraction used and that over the gaps passed, over the load of the contact, that is let stand.
 const TOLERANCE: f64 = 1e-4;
 /// Solves of a step, at most, and those in which attractions follow: one contact takes up to eight, and among many some may jump between
 /// gaps that hold and gaps that do not.
@@ -26,7 +26,7 @@ pub struct Agreement {
     /// Sum over contacts of the difference between the friction used and that of the laws at the velocity of sliding reached, over
     /// the sum of the friction.
     pub friction: f64,
-    /// Largest difference between the attraction used and that over the gaps passed, over the load of the contact.
+    /// Sum over contacts of the difference between the attraction used and that over the gaps passed, over the sum of their loads.
     pub attraction: f64,
 }
 
@@ -71,9 +71,9 @@ impl<S: Space> Simulation<S> {
             };
             let attraction = self.compare_attractions(&mut attractions, tolerance, info);
             let attraction = attraction.map_err(|e| self.law_error(e))?;
-            (agreement.friction, agreement.attraction) = (friction.share, attraction);
+            (agreement.friction, agreement.attraction) = (friction.share, attraction.share());
             report.timing.laws += clock.elapsed();
-            if attraction <= tolerance && (friction.agrees || !again) {
+            if attraction.worst <= tolerance && (friction.agrees || !again) {
                 if solved {
                     break;
                 }

@@ -23,6 +23,8 @@ const PARTS: usize = 8;
 const BELOW: usize = 4;
 /// Difference of attractions over the load of a contact that is none.
 const NO_DIFFERENCE: f64 = 1e-4;
+/// Largest slope of an attraction that is linearised, over that of the inertia of its contact: none is followed any closer.
+const STEEPEST: f64 = 1e3;
 /// Share of the load of all contacts below which an attraction is left as it is at detection.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -76,6 +78,25 @@ struct Group {
     interface: usize,
     members: Vec<usize>,
     pulls: Vec<Pull>,
+}
+
+/// How attractions differ from those over the gaps that a solve led to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Differences {
+    /// The largest difference, over the load of its contact, to which a hundredth of all load is added.
+    pub worst: f64,
+    /// Sums of the differences, and of the loads (N).
+    sums: [f64; 2],
+}
+
+impl Differences {
+    /// The sum of the differences over that of the loads.
+    pub fn share(&self) -> f64 {
+        match self.sums {
+            [differences, loads] if loads > 0.0 => differences / loads,
+            _ => 0.0,
+        }
+    }
 }
 
 /// The iteration of a step.
@@ -260,20 +281,19 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Compares the attraction of a solve with that over the gaps which it led to: the largest difference over the load of a contact, to which
-    /// a hundredth of all load is added. If it is above the tolerance, attractions are linearised anew.
+    /// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by more than the tolerance, attractions are
+    /// linearised anew.
     pub(super) fn compare_attractions(
         &mut self,
         attractions: &mut Attractions,
         tolerance: f64,
         info: &StepInfo,
-    ) -> Result<f64, LawError> {
-        let mut worst = 0.0f64;
+    ) -> Result<Differences, LawError> {
+        let mut differences = Differences::default();
         for group in &mut attractions.groups {
-            let differs = self.compare_attraction(group, tolerance, info)?;
-            worst = worst.max(differs);
+            self.compare_attraction(group, tolerance, &mut differences, info)?;
         }
-        Ok(worst)
+        Ok(differences)
     }
 
     /// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
@@ -311,8 +331,9 @@ impl<S: Space> Simulation<S> {
         &mut self,
         group: &mut Group,
         tolerance: f64,
+        differences: &mut Differences,
         info: &StepInfo,
-    ) -> Result<f64, LawError> {
+    ) -> Result<(), LawError> {
         let h = info.h;
         let (mut moved, whole) = self.moved(group, info);
         // Those that are not linearised yet, and pass one attraction only, are left as they are.
@@ -366,18 +387,25 @@ impl<S: Space> Simulation<S> {
             let inertia = self.inertia_of(m.at) / (h * h);
             let needed = |here: f64| used + (x - here) * inertia;
             let load = own + 0.01 * whole / h;
-            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
+            let (mut linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
+            if inertia > 0.0 {
+                linear.slope = linear.slope.min(STEEPEST * inertia);
+            }
             pull.linear = linear;
             next.push(pull);
             if load > 0.0 {
-                differs = differs.max((given - used).abs() / load);
+                let difference = (given - used).abs();
+                differs = differs.max(difference / load);
+                differences.sums[0] += difference;
                 if early && tolerance < 1.0 {
                     differs = differs.max(2.0 * tolerance);
                 }
             }
         }
+        differences.sums[1] += whole / h;
+        differences.worst = differences.worst.max(differs);
         if differs <= tolerance {
-            return Ok(differs);
+            return Ok(());
         }
         for pull in next {
             pull.apply(&mut self.workspace.forms[pull.at], h);
@@ -386,7 +414,7 @@ impl<S: Space> Simulation<S> {
                 Err(k) => group.pulls.insert(k, pull),
             }
         }
-        Ok(differs)
+        Ok(())
     }
 
     fn attraction_at(
