@@ -39,6 +39,8 @@ pub struct Sketch {
     pub detection: [f64; 2],
     /// Densities (kg/m^3) of the materials `m0`, `m1`, …
     pub densities: Vec<f64>,
+    /// Young's modulus (Pa) of all of them, with a Poisson's ratio of 0.3, where something deforms.
+    pub young: Option<f64>,
     /// First bodies, as in a case.
     pub bodies: String,
     /// Grains, as in a case.
@@ -62,6 +64,7 @@ impl Default for Sketch {
             solver: "tolerance: 1e-10, max_iterations: 100000,".to_owned(),
             detection: [1e-3, 1e-2],
             densities: vec![1000.0],
+            young: None,
             bodies: String::new(),
             grains: String::new(),
             more: String::new(),
@@ -168,9 +171,15 @@ impl Sketch {
         let shelf = folder.join("materials");
         let io = |e: std::io::Error| e.to_string();
         std::fs::create_dir_all(&shelf).map_err(io)?;
+        let elastic = self.young.map_or(String::new(), |young| {
+            format!(
+                ", properties: {{\"young\": (value: {young:?}, unit: \"Pa\", source: \"chosen\"), \
+                 \"poisson\": (value: 0.3, unit: \"1\", source: \"chosen\")}}"
+            )
+        });
         for (k, density) in self.densities.iter().enumerate() {
             let text = format!(
-                "(doc: \"of an extreme\", density: (value: {density:?}, unit: \"kg/m^3\", source: \"chosen\"))"
+                "(doc: \"of an extreme\", density: (value: {density:?}, unit: \"kg/m^3\", source: \"chosen\"){elastic})"
             );
             std::fs::write(shelf.join(format!("m{k}.ron")), text).map_err(io)?;
         }

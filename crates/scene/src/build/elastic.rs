@@ -9,6 +9,7 @@ use crate::material::Sourced;
 use crate::names::word_fault;
 use crate::source::InputError;
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
+use fretwork_core::geometry::convex::Core;
 use fretwork_core::geometry::space::VectorLike;
 use fretwork_elastic::mesh::MeshError;
 use fretwork_elastic::{BodyError, BodySpec, Elasticity, Mesh, Support, Touching};
@@ -127,20 +128,41 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// Grains that fit between the points of a body would fall into it.
+    /// Radius of the smallest of the balls about the centres of the balls and convex parts of grains that they hold (m); infinite
+    /// without grains.
+    fn thinnest_grain(&self) -> f64 {
+        let grain = self.bodies.grain_flags();
+        let balls = self.shapes.balls.iter().map(|b| (b.body, b.radius));
+        let pieces = self.shapes.pieces.iter().map(|p| {
+            let (distance, _) = p.core.outward(&S::Vector::zero());
+            (p.body, (-distance).max(0.0) + p.rounding)
+        });
+        let of_grains = balls.chain(pieces).filter(|(b, _)| grain[*b as usize]);
+        of_grains
+            .map(|(_, radius)| radius)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Grains that fit between the points of a body would fall into it. Every cut through the centre of one holds a disk of the radius
+    /// of the ball in it: where that is larger than the gaps between points, one of them stops it.
     pub(super) fn check_elastic_points(
         &self,
         systems: &[Box<dyn DynamicalSystem<S>>],
     ) -> Result<(), InputError> {
-        let smallest = self.radii().fold(f64::INFINITY, f64::min);
+        let thinnest = self.thinnest_grain();
+        // The size of a point is half of the distance to the next, in space the radius of the disk of its area a: a disk of the radius
+        // sqrt(a/2) fits between four.
+        let wide = match S::D {
+            2 => 1.0,
+            _ => std::f64::consts::FRAC_PI_2.sqrt(),
+        };
         for system in systems {
             let points = system.contactors().into_iter();
             let points = points.filter(|c| c.shape == ContactorShape::Point);
-            let widest = points.fold(0.0, |most: f64, c| most.max(c.radius));
-            // The size of a point is half of the distance to the next.
-            if widest > 0.0 && smallest < widest && !self.case.grains.is_empty() {
+            let widest = wide * points.fold(0.0, |most: f64, c| most.max(c.radius));
+            if thinnest < widest {
                 let message = format!(
-                    "grains down to a radius of {smallest:.3e} m fit between the points of `{}`, {:.3e} m apart; let it touch as `Surface`, or make its elements or cells smaller",
+                    "grains that hold balls of no more than a radius of {thinnest:.3e} m fit between the points of `{}`, up to {:.3e} m apart; let it touch as `Surface`, or make its elements or cells smaller",
                     system.name(),
                     2.0 * widest
                 );
