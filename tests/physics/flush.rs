@@ -1,6 +1,6 @@
 //! Convex shapes side by side are one surface, and what passes another body closer than it moves in a step passes it untouched.
 
-use crate::extremes::bench::{G, Sketch};
+use crate::extremes::bench::{G, Sketch, floor};
 use fretwork::geometry::convex::passing::{PairMotion, keep_ball_apart};
 use fretwork::geometry::convex::polygon::Polygon;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
@@ -421,4 +421,45 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
         assert!((way - n * point.gap).norm() < 1e-12, "{point:?}");
     }
     assert!(taken > 100, "{taken}");
+}
+
+/// Bricks that lie free on a floor, flush, and sink by the tolerance of the solver under a box that slides over them without friction: it keeps its
+/// velocity, though they drift apart, and its leading edge is below the top of the next one by what they sank.
+#[test]
+fn free_bricks_are_one_floor() {
+    let square = |half: [f64; 2], at: [f64; 2], more: &str| {
+        let [a, b] = half;
+        format!(
+            "(at: {at:?}, points: [(-{a:?}, -{b:?}), ({a:?}, -{b:?}), ({a:?}, {b:?}), (-{a:?}, {b:?})]{more})"
+        )
+    };
+    for (speed, step) in [(0.2, 1e-3), (0.5, 1e-3), (0.7, 1e-3), (0.5, 2e-4)] {
+        for width in [0.2, 0.5] {
+            let count = (2.0f64 / width).round() as usize;
+            let middle = |k: usize| [width * (k as f64 + 0.5), 0.1];
+            let mut bodies: Vec<String> = (0..count)
+                .map(|k| square([0.5 * width, 0.1], middle(k), ""))
+                .collect();
+            let moves = format!(", velocity: [{speed:?}, 0.0]");
+            bodies.push(square([0.05; 2], [0.2, 0.25], &moves));
+            let mut s = build::<Dim2>(&Sketch {
+                step,
+                mu: 0.0,
+                solver: String::new(),
+                detection: [3.5e-3, 1e-2],
+                bodies: floor::<Dim2>(),
+                grains: format!(
+                    r#"Polygons(material: "m0", grains: [{}])"#,
+                    bodies.join(", ")
+                ),
+                ..Sketch::default()
+            });
+            let time = 1.5 / speed;
+            go(&mut s, (time / step).round() as usize);
+            let velocity = s.state.bodies.velocity[count];
+            let what = format!("{speed} m/s, steps of {step} s, bricks of {width} m: {velocity:?}");
+            println!("{what}");
+            assert!((velocity[0] / speed - 1.0).abs() < 1e-3, "{what}");
+        }
+    }
 }

@@ -190,3 +190,36 @@ fn light_blocks_carry_heavy_ones() {
         assert!(energy < 0.1, "{name}: {energy:e} of a step of free fall");
     }
 }
+
+/// A ball that attraction holds to a plate in steady motion carries nothing, and costs no sweeps: what rounding and the tolerance leave of its
+/// impulses, beside a ball that is pressed on a floor, is no error of the step. With friction, which the plate's motion along itself needs once.
+#[test]
+fn a_grain_that_sticks_to_a_moving_plate_is_no_error() {
+    let text = r#"(
+    name: "stuck", dimension: 2, time: (step: 2e-4, end: 1.0),
+    solver: (tolerance: 1e-3, max_iterations: 500),
+    materials: {"grain": "verification_grain"},
+    interfaces: [(name: "all", between: ("grain", "grain"), contact: "coulomb", cohesion: "constant-attraction",
+        parameters: (contact: {"mu": 0.4}, cohesion: {"stress": 0.0, "force": 16.0, "range": 1e-4}))],
+    bodies: [
+        (name: "floor", material: "grain", shapes: [HalfSpace(normal: [0.0, 1.0])]),
+        (name: "pressed", material: "grain", mass: 0.05, inertia: 1e-6, position: [0.0, 0.004], shapes: [Balls([([0.0, 0.0], 0.004)])],
+            dofs: (x: Free, y: Force(-1000.0), rz: Free)),
+        (name: "plate", material: "grain", position: [0.0, 0.1], shapes: [Balls([([0.03, 0.0], 0.004), ([0.038, 0.0], 0.004), ([0.046, 0.0], 0.004)])],
+            dofs: (x: Velocity(Constant(0.7)))),
+    ],
+    grains: [List(material: "grain", grains: [(at: [0.034, 0.09307], radius: 0.004, velocity: [0.7, 0.0]), (at: [0.042, 0.09307], radius: 0.0039)])],
+    output: (frames: 0, views: 0, figures: false),
+)"#;
+    let loaded = load_text("stuck.ron", text, Path::new("."), &[]);
+    let built = loaded.and_then(|l| l.build_in::<Dim2>(&search_path()));
+    let mut s = built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation;
+    let mut sweeps = 0;
+    for k in 1..=2000 {
+        let solver = s.step().unwrap_or_else(|e| panic!("{e}")).solver;
+        assert!(solver.converged, "step {k}: {solver:?}");
+        sweeps += solver.iterations;
+    }
+    println!("{} sweeps a step", f64::from(sweeps) / 2000.0);
+    assert!(sweeps < 2000 * 30);
+}

@@ -93,7 +93,11 @@ fn laws_that_steps_did_not_meet_are_a_reason() {
     assert_eq!(of(1e-3, 1e-2), []);
     for (friction, attraction, cure) in [
         (0.03, 0.0, "3.00 % on average"),
-        (0.0, 0.2, "up to 20.0 % of the load; take a smaller time.step"),
+        (
+            0.0,
+            0.2,
+            "up to 20.0 % of the load; take a smaller time.step",
+        ),
     ] {
         let list = of(friction, attraction);
         assert!(list.len() == 1 && list[0].serious && list[0].of == "LAWS NOT MET");

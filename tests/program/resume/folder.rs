@@ -155,6 +155,30 @@ fn a_run_goes_on_beyond_its_end() {
     }
 }
 
+/// A run that was over before a state was due has nothing to go on from, and stays.
+#[test]
+fn a_short_run_is_not_replaced_by_a_longer_one() {
+    const SHORT: [&str; 3] = [
+        "time.end=0.004",
+        "output.checkpoint=Never",
+        "output.figures=false",
+    ];
+    const LONG: [&str; 3] = [
+        "time.end=0.006",
+        "output.checkpoint=Never",
+        "output.figures=false",
+    ];
+    let (out, before) = (Folder::new("short"), Folder::new("short-before"));
+    job(&SHORT).done(&out.0, &[]);
+    job(&SHORT).done(&before.0, &[]);
+    let told = said(&job(&LONG).run(&out.0, &["--resume"]), 1);
+    assert!(
+        told.contains("no state of `output.checkpoint` was due"),
+        "{told}"
+    );
+    same(&before.0, &out.0);
+}
+
 #[test]
 fn states_keep_their_spacing_beyond_the_end() {
     const SHORT: [&str; 4] = [

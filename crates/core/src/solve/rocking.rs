@@ -8,7 +8,8 @@ use super::row::{Row, SolverBody, noise};
 use super::rows::Rows;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding.
+/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding; and of their work, which
+/// that of a set is taken to be at least: a grain that sticks to a wall carries nothing, and what is left of its residuals is no error.
 const KNOWN: f64 = 1e-6;
 
 /// The error of the worst set, given the sums over all; 0 where all contacts are of one.
@@ -59,15 +60,18 @@ fn of_sets<S: Space>(
             all = apart(problem, sets, None);
         }
     }
+    let least = KNOWN * scale.work.max(scale.energy);
     let known = (0..sets.len()).filter(|k| !sets.with_systems(*k));
     let errors = known.map(|k| {
         let (sums, scale) = &all[k];
         let noise = scale.noise + sums.rounding(scale.free);
         if sums.residual <= noise {
-            0.0
-        } else {
-            sums.rocking(scale)
+            return 0.0;
         }
+        sums.rocking(&Scale {
+            work: scale.work.max(least),
+            ..*scale
+        })
     });
     errors.fold(0.0, f64::max)
 }

@@ -11,7 +11,8 @@
 //! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
 //! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
 //!
-//! A set of more than [`MOST`] contacts is not solved again, nor one with bonds, compliances or dynamical systems; of the former it is told where
+//! A set of more than [`SMALL`] contacts is solved again after steps without a result ([`super::search`]) only, one of more than [`MOST`] is not,
+//! nor one with bonds, compliances or dynamical systems; of the former it is told where
 //! a loaded contact begins to slide ([`Problem::is_not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
@@ -23,8 +24,10 @@ use super::row::MomentForm;
 use crate::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 
-/// Contacts of a set above which no second solution is sought: the order of a sweep has less to say in a large set, and a second solve costs more.
-const MOST: usize = 64;
+/// Contacts of a set up to which a second solution is sought in each step in which a contact begins to slide, and up to which in some of these
+/// steps: a second solve costs more, and in a large set that flows some contacts begin to slide in every step.
+const SMALL: usize = 64;
+const MOST: usize = 256;
 /// Iterations of the gradient method, and sweeps from its end.
 const ITERATIONS: u32 = 300;
 /// Tolerance of the solution of a set over that of the step, so that all sets together are within that.
@@ -35,12 +38,17 @@ const SLIDES: f64 = 1e-3;
 const AT_BOUND: f64 = 1.0 - 1e-6;
 /// Share of the friction bound up to which a contact held at the start of the step.
 const HELD: f64 = 1.0 - 1e-3;
+/// Share of the freedoms of bodies from which impulses of their contacts are taken to be undetermined: friction may be so beside freedoms that no
+/// contact holds.
+const DETERMINED: f64 = 0.75;
 /// Share of the largest normal impulse of a set from which a contact is loaded.
 const LOADED: f64 = 1e-3;
 /// Difference of the energies of two solutions, over the work of the step, from which the lower one is taken, and which their errors do
 /// not make.
 const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
+/// The same where a loaded contact slides in one of both that holds in the other: one grain of many that slips has little energy.
+const LOWER_HOLDS: f64 = 1e-9;
 /// No place in a list.
 const NONE: u32 = u32::MAX;
 
@@ -147,7 +155,11 @@ fn least_slip<'a, S: Space>(
     SLIDES * free.fold(0.0, f64::max).sqrt()
 }
 
-/// Whether impulses of contacts, D of each with friction and one of each without, outnumber the freedoms of their bodies.
+fn is_undetermined(unknowns: usize, freedoms: usize) -> bool {
+    unknowns as f64 >= DETERMINED * freedoms as f64
+}
+
+/// Whether impulses of contacts, D of each with friction and one of each without, may be more than the freedoms of their bodies determine.
 fn outnumber<'a, S: Space>(
     problem: &Problem<S>,
     forms: impl Iterator<Item = &'a ContactForm<S>>,
@@ -161,7 +173,7 @@ fn outnumber<'a, S: Space>(
             (touched.entry(body)).or_insert_with(|| freedoms_of::<S>(mobility));
         }
     }
-    unknowns > touched.values().sum::<usize>()
+    is_undetermined(unknowns, touched.values().sum())
 }
 
 /// Whether a contact at its friction bound begins to slide: it carries a load, carried one before by its impulse, and held.
@@ -176,19 +188,21 @@ pub fn begins_to_slide<S: Space>(
 }
 
 impl<S: Space> Problem<S> {
-    /// Whether one of the contacts of these bodies, which begin to slide, is of a set that is too large to search, and in which impulses
-    /// outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine them.
+    /// Whether one of these contacts, at their friction bound since this step, slides and is of a set that is too large to search in any step, and in which
+    /// impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine them.
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
-        begin: impl Iterator<Item = [u32; 2]>,
+        begin: impl Iterator<Item = usize> + Clone,
     ) -> bool {
         let sets = self.take_connected();
         let freedoms = self.freedoms(&sets);
         let mut large: Vec<bool> = (0..sets.len())
             .map(|set| {
                 let count = sets.contacts(set);
-                !sets.with_systems(set) && count > MOST && S::D * count > freedoms[set]
+                !sets.with_systems(set)
+                    && count > SMALL
+                    && is_undetermined(S::D * count, freedoms[set])
             })
             .collect();
         if self.full.len() + self.levers.len() + self.bonded_levers.len() > 0 {
@@ -198,8 +212,10 @@ impl<S: Space> Problem<S> {
                 }
             }
         }
-        let mut sets_that_slide = begin.filter_map(|bodies| sets.of(bodies));
-        let told = sets_that_slide.any(|set| large[set]);
+        let mut of_large =
+            begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
+        let least = least_slip(self, of_large.clone().map(|k| &forms[k]));
+        let told = of_large.any(|k| parts(self, &forms[k])[1] > least);
         self.connected = sets;
         told
     }
@@ -228,6 +244,7 @@ impl<S: Space> SolveContext<'_, S> {
                 && self.is_sought(problem, &set.contacts, due)
                 && many()
             {
+                report.searched |= set.contacts.len() > SMALL;
                 let other = self.lower(problem, &set.contacts);
                 auto_state.search.learn(set.name, other.is_some());
                 found.extend(other);
@@ -255,7 +272,9 @@ impl<S: Space> SolveContext<'_, S> {
         let freedoms = problem.freedoms(&sets);
         let is_small = |set: &usize| {
             let count = sets.contacts(*set);
-            !sets.with_systems(*set) && (2..=MOST).contains(&count) && S::D * count > freedoms[*set]
+            !sets.with_systems(*set)
+                && (2..=MOST).contains(&count)
+                && is_undetermined(S::D * count, freedoms[*set])
         };
         let mut place = vec![NONE; sets.len()];
         let mut small = Vec::new();
@@ -292,7 +311,8 @@ impl<S: Space> SolveContext<'_, S> {
             .map(|k| does(problem, *k, form(k), least))
             .collect();
         let some = |what: Does| all.contains(&what);
-        some(Does::Begins) || due && (some(Does::New) || some(Does::GoesOn) && some(Does::Holds))
+        let begins = some(Does::Begins) && (due || of.len() <= SMALL);
+        begins || due && (some(Does::New) || some(Does::GoesOn) && some(Does::Holds))
     }
 
     /// Another solution of a set, of less energy than the present one.
@@ -373,14 +393,15 @@ impl<S: Space> SolveContext<'_, S> {
         if !other.converged && is_lower(alone, LOWER) {
             other.add(&self.sweep(alone, true, ITERATIONS));
         }
-        if !(other.converged && is_lower(alone, LOWER)) {
-            return None;
-        }
         let does = self.all_do(alone, least);
         let differs = |(a, b): (&Does, &Does)| {
             a.slides() && *b == Does::Holds || b.slides() && *a == Does::Holds
         };
         let one_differs = did.iter().zip(&does).any(differs);
+        let by = if one_differs { LOWER_HOLDS } else { LOWER };
+        if !(other.converged && is_lower(alone, by)) {
+            return None;
+        }
         Some((other, one_differs && is_lower(alone, DIFFERS)))
     }
 

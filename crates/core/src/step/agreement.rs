@@ -87,7 +87,8 @@ impl<S: Space> Simulation<S> {
                 .zip(&self.workspace.solved.contact_steps);
             both.for_each(|(form, step)| form.impulse = step.solution.impulse);
         }
-        report.solver.not_searched = report.solver.converged && self.is_not_searched();
+        let solver = &mut report.solver;
+        solver.not_searched = solver.converged && !solver.searched && self.is_not_searched();
         self.settle_sliding(sliding);
         self.settle_attractions(attractions, info.h);
         self.collect_spring_steps();

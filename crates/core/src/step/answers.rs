@@ -235,9 +235,11 @@ impl<S: Space> Simulation<S> {
     pub(super) fn is_not_searched(&mut self) -> bool {
         let workspace = &mut self.workspace;
         let (steps, forms) = (&workspace.solved.contact_steps, &workspace.forms);
-        let begin = steps.iter().zip(forms).filter(|(step, _)| step.begins);
-        let begin = begin.map(|(_, form)| form.bodies);
-        workspace.solved.begins && workspace.problem.is_not_searched(forms, begin)
+        if !workspace.solved.begins {
+            return false;
+        }
+        let begin = (0..steps.len()).filter(|k| steps[*k].begins);
+        workspace.problem.is_not_searched(forms, begin)
     }
 
     /// Collects the results of the contacts that resist rotation.

@@ -23,8 +23,6 @@ const PARTS: usize = 8;
 const BELOW: usize = 4;
 /// Difference of attractions over the load of a contact that is none.
 const NO_DIFFERENCE: f64 = 1e-4;
-/// Largest slope of an attraction that is linearised, over that of the inertia of its contact: none is followed any closer.
-const STEEPEST: f64 = 1e3;
 /// Share of the load of all contacts below which an attraction is left as it is at detection.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -387,10 +385,7 @@ impl<S: Space> Simulation<S> {
             let inertia = self.inertia_of(m.at) / (h * h);
             let needed = |here: f64| used + (x - here) * inertia;
             let load = own + 0.01 * whole / h;
-            let (mut linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
-            if inertia > 0.0 {
-                linear.slope = linear.slope.min(STEEPEST * inertia);
-            }
+            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
             pull.linear = linear;
             next.push(pull);
             if load > 0.0 {

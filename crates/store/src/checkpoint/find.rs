@@ -138,13 +138,19 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     let later = theirs.ends_later(identity);
     let name = frame.identity.clone();
     // The results file is marked complete, and the summary of the same run shows that all others are.
-    if !later && frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity)) {
+    let is_finished =
+        frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
+    if !later && is_finished {
         return Ok(Seen::Finished);
     }
     let mut states = frames.into_iter().filter(|f| f.kind == Kind::State);
     match states.next_back() {
         // To start over would replace what the run recorded.
         None if damaged => Err(ResumeError::Damaged { path }),
+        None if is_finished => Err(ResumeError::NoState {
+            path,
+            why: "it is finished, and no state of `output.checkpoint` was due before".to_owned(),
+        }),
         None => match ended(folder, &Identity::name(&name)).filter(|_| results.has_rows()) {
             Some(why) => Err(ResumeError::NoState { path, why }),
             None => Ok(Seen::Nothing),
