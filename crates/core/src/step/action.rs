@@ -58,3 +58,34 @@ impl<S: Space> Simulation<S> {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::detect::LawTable;
+    use crate::geometry::space::Dim2;
+    use crate::laws::sample_laws::{interface, sticky};
+
+    /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond it; friction acts on the surfaces, also where
+    /// another interface attracts.
+    #[test]
+    fn attraction_acts_across_the_gap() {
+        for (law, acts) in [
+            (0, [Acts::Middle, Acts::Surfaces]),
+            (1, [Acts::Surfaces; 2]),
+        ] {
+            let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
+            let mut table = LawTable::new(1);
+            table.set(0, 0, law);
+            let laws = vec![interface([sticky()]), interface([])];
+            let mut s = Simulation::new(s.state.bodies, s.shapes, laws, table, 1e-3, 1e-3);
+            s.step().unwrap();
+            let placed = [false, true].map(|beyond| {
+                s.state.network.contacts[0].beyond = beyond;
+                s.place_actions();
+                s.state.network.contacts[0].acts
+            });
+            assert_eq!(placed, acts);
+        }
+    }
+}
