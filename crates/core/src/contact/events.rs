@@ -102,3 +102,22 @@ pub struct Loss {
     /// Volume (m^3; m^3/m in 2D).
     pub volume: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Powers of two, so that each part is seen in the sum; the correction is no dissipation.
+    #[test]
+    fn a_contact_dissipates_the_sum_of_its_parts() {
+        let all = ContactDissipation {
+            friction: 1.0,
+            impact: 2.0,
+            adhesion: 4.0,
+            fracture: 8.0,
+            viscous: 16.0,
+            correction: -32.0,
+        };
+        assert_eq!(all.total(), 31.0);
+    }
+}

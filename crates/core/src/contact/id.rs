@@ -153,6 +153,7 @@ mod tests {
     use super::*;
     use crate::geometry::polyline::Polyline;
     use crate::geometry::space::Dim2;
+    use crate::laws::sample_laws::interface;
     use crate::step::Simulation;
     use nalgebra::Vector2;
 
@@ -191,5 +192,37 @@ mod tests {
         for missing in [3, Key::PIECE, Key::SURFACE | 1] {
             assert_eq!(names.id::<Dim2>(&key(0, missing)), None);
         }
+    }
+
+    /// Three disks in a row in the order 0, 1, 2, and in another scene in the order 2, 1, 0 of the same bodies: both contacts have partners; in
+    /// a scene without the last disk one has.
+    #[test]
+    fn contacts_of_one_name_are_matched() {
+        let scene = |order: &[u32]| {
+            let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5), ([2.0, 0.0], 0.5)];
+            let mut s = Simulation::<Dim2>::of_disks(&disks);
+            let balls = &s.shapes.balls;
+            s.shapes.balls = order.iter().map(|k| balls[*k as usize].clone()).collect();
+            let names = ContactNames::of(&s.shapes, &s.state.bodies);
+            let mut s = s.with_law(interface([]));
+            s.step().unwrap();
+            (names, s)
+        };
+        let (names, s) = scene(&[0, 1, 2]);
+        let pairs = |other: &(ContactNames, Simulation<Dim2>)| -> Vec<[[u32; 2]; 2]> {
+            let network = &other.1.state.network;
+            let matched = names.matched(&s.state.network, &other.0, network);
+            let bodies = |c: &Contact<Dim2>| {
+                let [a, b] = c.bodies;
+                [a.min(b), a.max(b)]
+            };
+            matched
+                .iter()
+                .map(|(a, b)| [bodies(a), bodies(b)])
+                .collect()
+        };
+        let [one, two] = [[0, 1], [1, 2]];
+        assert_eq!(pairs(&scene(&[2, 1, 0])), [[one, one], [two, two]]);
+        assert_eq!(pairs(&scene(&[1, 0])), [[one, one]]);
     }
 }

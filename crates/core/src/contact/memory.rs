@@ -212,3 +212,46 @@ impl<S: Space> Memory<S> {
             .sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps of 1, 2 and 6 m that release 3, 0 and 1 J: 3 m on average, and (3 + 6)/4 m by energy.
+    #[test]
+    fn slides_have_a_mean_by_steps_and_one_by_energy() {
+        let mut slides = Slides::default();
+        slides.add(2.0, 0.0);
+        assert_eq!(
+            (slides.mean(), slides.mean_by_released()),
+            (Some(2.0), None)
+        );
+        slides.add(1.0, 3.0);
+        slides.add(6.0, 1.0);
+        assert_eq!(
+            (slides.mean(), slides.mean_by_released()),
+            (Some(3.0), Some(2.25))
+        );
+        assert_eq!((slides.steps, slides.largest), (3, 6.0));
+        assert_eq!(Slides::default().mean(), None);
+    }
+
+    /// A slot that is not in use is the next one that is given, with a new bond.
+    #[test]
+    fn slots_are_used_again() {
+        let mut network =
+            crate::contact::Network::<crate::geometry::space::Dim2>::new(1.0, 1.0, &[0]);
+        let memory = &mut network.memory[0];
+        let [first, second] = [1.0, 2.0].map(|area| memory.allocate(true, 0.0, area, &[]));
+        assert_ne!(first, second);
+        memory.bonds[first as usize].damage = 0.5;
+        memory.release(first);
+        assert!(!memory.bonds[first as usize].intact() && memory.bonds[second as usize].intact());
+        assert_eq!(memory.intact_damage(), 0.0);
+        assert_eq!(memory.free_slots(), [first]);
+        assert_eq!(memory.allocate(true, 0.0, 3.0, &[]), first);
+        let again = &memory.bonds[first as usize];
+        assert!(again.intact() && again.damage == 0.0 && again.area == 3.0);
+        assert!(memory.free_slots().is_empty());
+    }
+}

@@ -33,3 +33,19 @@ impl<S: Space> Spring<S> {
         self.energy[0] + self.energy[1]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+
+    #[test]
+    fn it_stores_the_sum_of_both_energies() {
+        let spring = Spring::<Dim2> {
+            energy: [2.0, 3.0],
+            ..Spring::relaxed()
+        };
+        assert_eq!(spring.stored(), 5.0);
+        assert_eq!(Spring::<Dim2>::relaxed().stored(), 0.0);
+    }
+}

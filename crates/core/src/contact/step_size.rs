@@ -371,4 +371,26 @@ mod tests {
             );
         }
     }
+
+    /// A step that is examined twice counts once, and there is a warning of what happened only.
+    #[test]
+    fn steps_that_are_not_watched_are_counted_and_told() {
+        let mut bodies = Bodies::<Dim2>::default();
+        bodies.add_ball(Vector2::zeros(), 0.5, 1e3);
+        let mut found = StepSizeDiagnostics::default();
+        assert_eq!(found.warning(), None);
+        for time in [0.0, 0.0, 1.0, 2.0, 2.0] {
+            found.record_unwatched(time, &bodies, 0);
+        }
+        assert_eq!(found.unwatched_steps, 3);
+        let warning = found.warning().unwrap();
+        assert!(
+            warning.starts_with("in 3 steps a body moved farther"),
+            "{warning}"
+        );
+        assert!(warning.ends_with("take a smaller time.step"), "{warning}");
+        for untold in ["restitution", "penetrated", "overlapping"] {
+            assert!(!warning.contains(untold), "{warning}");
+        }
+    }
 }

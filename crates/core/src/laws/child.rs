@@ -385,3 +385,19 @@ pub fn try_libraries() -> Result<(), String> {
 /// Message for a library that changed after it was first read.
 pub(super) const CHANGED: &str =
     "the file changed while it was being opened; wait until it is written and try again";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All of it where it is short, the last 4096 bytes where it is long.
+    #[test]
+    fn the_end_of_an_error_is_read() {
+        assert_eq!(read_error_output(&b" it failed\n"[..]), "it failed");
+        let long: String = (0..3000).map(|k| format!("{k:04}")).collect();
+        assert_eq!(
+            read_error_output(long.as_bytes()),
+            long[long.len() - 4096..]
+        );
+    }
+}

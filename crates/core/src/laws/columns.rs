@@ -453,3 +453,37 @@ impl Columns {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A call finds its outputs at zero, whatever was there before; those of other calls are left.
+    #[test]
+    fn what_a_call_writes_is_cleared() {
+        for kind in Kind::BUILT_IN {
+            for call in [Call::Prepare, Call::Commit, Call::Energy] {
+                let mut columns = Columns::default();
+                (columns.n, columns.overlap, columns.temperature[0]) =
+                    (2, vec![0.0; 2], vec![0.0; 2]);
+                columns.size_outputs();
+                let (all, springs, transport) = columns.out.groups();
+                let each = all.into_iter().chain(springs).chain(transport);
+                each.for_each(|column| column.fill(7.0));
+                let sum = |columns: &mut Columns| -> f64 {
+                    let (all, springs, transport) = columns.out.groups();
+                    let each = all.into_iter().chain(springs).chain(transport);
+                    each.flat_map(|column| column.iter()).sum()
+                };
+                let before = sum(&mut columns);
+                columns.clear_outputs(kind, call);
+                let written: Vec<f64> = (kind.spec().outputs)(&mut columns.out, call)
+                    .iter()
+                    .flat_map(|output| output.values.to_vec())
+                    .collect();
+                assert!(written.iter().all(|x| *x == 0.0), "{kind} {call:?}");
+                assert_eq!(sum(&mut columns), before - 7.0 * written.len() as f64);
+            }
+        }
+    }
+}

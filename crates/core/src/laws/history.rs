@@ -80,6 +80,10 @@ impl DeferredWork {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::Key;
+    use crate::contact::network::ContactGeometry;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
 
     #[test]
     fn negative_work_of_a_pair_is_taken_from_its_next_work() {
@@ -106,5 +110,36 @@ mod tests {
             [0.0, 1.0]
         );
         assert_eq!(deferred.0, [((0, 9), -1.0), ((4, 1), -0.5)]);
+    }
+
+    /// Of pairs (0, 1) to (0, 6) only (0, 2) touches: six are more than twice one, two are not.
+    #[test]
+    fn work_of_separated_pairs_is_dropped_once_they_are_many() {
+        let key = Key {
+            candidate: 0,
+            antagonist: 2,
+            feature: 0,
+        };
+        let geometry = ContactGeometry {
+            gap: 0.0,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::zeros(); 2],
+            radius: 1.0,
+        };
+        let contact = Contact::<Dim2>::new(key, [0, 2], 0, geometry, 0.0);
+        for (pairs, left) in [(6, vec![2]), (2, vec![1, 2])] {
+            let mut history = LawHistory {
+                negative_friction_work: DeferredWork((1..=pairs).map(|b| ((0, b), -1.0)).collect()),
+                ..LawHistory::default()
+            };
+            history.forget_separated(std::slice::from_ref(&contact));
+            let kept: Vec<u32> = history
+                .negative_friction_work
+                .0
+                .iter()
+                .map(|(pair, _)| pair.1)
+                .collect();
+            assert_eq!(kept, left);
+        }
     }
 }

@@ -342,3 +342,23 @@ impl Interface {
         self.contact().has(FLAG_CONSTANT)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::sample_laws::{bond, growing, interface, sticky};
+
+    /// Laws of 0, 1 and 1 variables, given in another order: the columns of each begin where those of the law before it end.
+    #[test]
+    fn variables_of_laws_follow_each_other() {
+        let law = interface([growing(), sticky()]);
+        let kinds: Vec<Kind> = law.loaded().map(|l| l.plugin.kind).collect();
+        assert_eq!(kinds, [Kind::CONTACT, Kind::COHESION, Kind::TRANSPORT]);
+        let first: Vec<usize> = law.loaded().map(|l| l.first_variable).collect();
+        assert_eq!((first, law.variables()), (vec![0, 0, 1], 2));
+        assert_eq!(law.initial(), [7.0, 0.0]);
+        let law = law.with(bond()).unwrap();
+        let first: Vec<usize> = law.loaded().map(|l| l.first_variable).collect();
+        assert_eq!((first, law.variables()), (vec![0, 0, 0], 1));
+    }
+}

@@ -333,3 +333,15 @@ unsafe fn open_local(path: &Path) -> Result<libloading::Library, libloading::Err
     // SAFETY: see the caller.
     unsafe { libloading::Library::new(path) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_have_the_names_of_their_functions() {
+        let calls = [Call::Initialise, Call::Prepare, Call::Commit, Call::Energy];
+        let names = calls.map(Call::name);
+        assert_eq!(names, ["initialise", "prepare", "commit", "energy"]);
+    }
+}

@@ -3,8 +3,8 @@
 use super::interface::{Interface, Loaded};
 use super::library::Plugin;
 use fretwork_law::{
-    CohesionLaw, Conductance, ContactLaw, Friction, Law, Site, Traction, TransportLaw, Variable,
-    abi, parameters,
+    CohesionLaw, Conductance, ContactLaw, Friction, Law, Site, Spring, Traction, TransportLaw,
+    Variable, abi, parameters,
 };
 use std::path::Path;
 
@@ -19,6 +19,30 @@ impl Law for Coulomb {
     const NAME: &'static str = "coulomb";
     const DOC: &'static str = "friction";
     const REFERENCE: &'static str = "a test";
+}
+
+parameters! {
+    /// A linear spring without friction.
+    pub struct Elastic {
+        k: "N/m" = 8.0, 0.0, 1e30, "stiffness";
+    }
+}
+
+impl Law for Elastic {
+    const NAME: &'static str = "elastic";
+    const DOC: &'static str = "a linear spring";
+    const REFERENCE: &'static str = "a test";
+    const FLAGS: u64 = abi::FLAG_COMPLIANT;
+}
+
+impl ContactLaw for Elastic {
+    fn friction(&self, _: &Site, _: &[f64]) -> Friction {
+        Friction::default()
+    }
+
+    fn spring(&self, site: &Site, _: &[f64], _: f64) -> Spring {
+        Spring::linear(site, self.k, 0.0, 0.0)
+    }
 }
 
 impl ContactLaw for Coulomb {
@@ -62,6 +86,41 @@ impl CohesionLaw for Bond {
         let [_, t1, t2] = site.opening;
         let squares = [tension, t1, t2].into_iter().chain(site.rotation);
         0.5 * self.k * squares.map(|x| x * x).sum::<f64>()
+    }
+}
+
+parameters! {
+    /// Sticks without a bond: a shear cohesion, and no attraction. It has a variable, which it leaves as it is.
+    pub struct Sticky {
+        strength: "Pa" = 3.0, 0.0, 1e30, "shear cohesion";
+    }
+}
+
+impl Law for Sticky {
+    const NAME: &'static str = "sticky";
+    const DOC: &'static str = "a shear cohesion";
+    const REFERENCE: &'static str = "a test";
+    const VARIABLES: &'static [Variable] = &[Variable {
+        name: c"nothing",
+        unit: c"",
+        doc: c"kept, and not used",
+        initial: 7.0,
+        output: false,
+    }];
+}
+
+impl CohesionLaw for Sticky {
+    const DEGRADATION: f64 = 0.0;
+
+    fn traction(&self, _: &Site, _: &[f64]) -> Traction {
+        Traction {
+            shear_cohesion: self.strength,
+            ..Traction::default()
+        }
+    }
+
+    fn energy(&self, _: &Site, _: &[f64]) -> f64 {
+        0.0
     }
 }
 
@@ -151,8 +210,18 @@ pub(crate) fn coulomb() -> Loaded {
 }
 
 /// See [`coulomb`].
+pub(crate) fn elastic() -> Loaded {
+    law!(contact Elastic)
+}
+
+/// See [`coulomb`].
 pub(crate) fn bond() -> Loaded {
     law!(cohesion Bond)
+}
+
+/// See [`coulomb`].
+pub(crate) fn sticky() -> Loaded {
+    law!(cohesion Sticky)
 }
 
 /// See [`coulomb`].

@@ -231,3 +231,120 @@ impl<S: Space> SpringForm<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use nalgebra::{Vector1, Vector2};
+
+    /// A spring that has 4 N of normal force at an overlap of 0.2 m, with a slope of 20 N/m, and 3 N along.
+    fn form() -> SpringForm<Dim2> {
+        SpringForm {
+            gap: -0.2,
+            overlap: 0.2,
+            force_n: 4.0,
+            stiffness_n: 20.0,
+            damping_n: 0.0,
+            force_t: Vector1::new(3.0),
+            stiffness_t: 2.0,
+            unloading_t: 0.0,
+            energy_t: 0.0,
+            damping_t: 0.0,
+        }
+    }
+
+    /// F d/(1 + k d/F) of a linear spring is F d/2; of Hertz' spring, F of d^1.5, it is F d/2.5. Beyond the overlap at which the law was asked
+    /// the force is that of its slope.
+    #[test]
+    fn a_spring_that_is_found_compressed_has_energy() {
+        assert!((form().initial_energy() - 0.4).abs() < 1e-15);
+        let hertz = SpringForm {
+            stiffness_n: 1.5 * 4.0 / 0.2,
+            ..form()
+        };
+        assert!((hertz.initial_energy() - 0.32).abs() < 1e-15);
+        let deeper = SpringForm {
+            gap: -0.3,
+            ..form()
+        };
+        assert!((deeper.initial_energy() - 0.9).abs() < 1e-15);
+        let apart = SpringForm { gap: 0.1, ..form() };
+        assert_eq!(apart.initial_energy(), 0.0);
+    }
+
+    /// 3 N at 2 N/m hold 9/4 J, at the 9 N/m of unloading 1/2 J, and at no stiffness nothing.
+    #[test]
+    fn a_tangential_force_holds_its_square_over_twice_the_slope() {
+        let held = |stiffness_t, unloading_t| {
+            let form = SpringForm {
+                stiffness_t,
+                unloading_t,
+                ..form()
+            };
+            form.tangential_energy(&form.force_t)
+        };
+        assert_eq!(
+            (held(2.0, 0.0), held(2.0, 9.0), held(0.0, 0.0)),
+            (2.25, 0.5, 0.0)
+        );
+    }
+
+    /// A quarter of the energy is that of half the force. What rounding may add is left as it is.
+    #[test]
+    fn a_force_that_holds_too_much_is_reduced() {
+        for energy_t in [0.0, 8.0] {
+            let mut form = SpringForm { energy_t, ..form() };
+            let held = form.held();
+            assert_eq!(held, if energy_t > 0.0 { 8.0 } else { 2.25 });
+            form.limit_to(held * (1.0 - 5e-10));
+            assert_eq!((form.force_t.x, form.energy_t), (3.0, energy_t));
+            form.limit_to(0.25 * held);
+            assert_eq!((form.force_t.x, form.energy_t), (1.5, 0.25 * energy_t));
+        }
+    }
+
+    /// A gap of 0.1 m that closes by 0.15 m in a step of 0.5 s: the damper of 3 N s/m sees the overlap of 0.05 m alone, for h d (0.05/h)^2. A spring
+    /// that was there sees the whole velocity. The energy is that of the overlap.
+    #[test]
+    fn a_damper_acts_on_the_overlap() {
+        let h = 0.5;
+        for (gap, overlap) in [(0.1, 0.05), (-0.1, 0.25)] {
+            let spring = SpringForm {
+                gap,
+                overlap: 0.0,
+                force_n: 0.0,
+                damping_n: 3.0,
+                ..form()
+            };
+            let form = ContactForm {
+                bodies: [0, 1],
+                normal: Vector2::new(0.0, 1.0),
+                arms: [Vector2::zeros(); 2],
+                central: true,
+                apart: false,
+                shift_n: 0.0,
+                shift_t: Vector1::new(0.0),
+                friction: 0.0,
+                tension: 0.0,
+                cohesion: 0.0,
+                elastic: None,
+                compliance: [1.0, 0.0],
+                impulse: Vector2::zeros(),
+            };
+            let solution = ContactSolution {
+                impulse: Vector2::new(0.0, 1.0),
+                unilateral_n: 1.0,
+                unilateral_t: Vector1::new(0.0),
+            };
+            let velocity = Vector2::new(0.0, -0.15 / h);
+            let before = Spring::relaxed();
+            let step = spring.complete(&form, &solution, [&velocity; 2], &before, h);
+            let damped = if gap > 0.0 { overlap / h } else { 0.15 / h };
+            assert!((step.spring.overlap - overlap).abs() < 1e-15);
+            assert!((step.viscous - h * 3.0 * damped * damped).abs() < 1e-15);
+            assert!((step.spring.force_n - 20.0 * overlap).abs() < 1e-14);
+            assert!((step.spring.energy[0] - 10.0 * overlap * overlap).abs() < 1e-14);
+        }
+    }
+}

@@ -77,3 +77,55 @@ impl BodyAnderson {
         self.sequence = None;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use crate::solve::form::ContactForm;
+    use nalgebra::{Matrix1, Vector1, Vector2};
+
+    /// It begins with the second call, is patient for ten tests without progress, and then rests for six.
+    #[test]
+    fn it_rests_where_it_does_not_help() {
+        let mut problem = Problem::<Dim2>::default();
+        for _ in 0..2 {
+            let mobility = (Vector2::repeat(1.0), Matrix1::new(1.0));
+            problem.push_body(
+                Vector2::zeros(),
+                Vector1::new(0.0),
+                mobility.0,
+                mobility.1,
+                1.0,
+            );
+        }
+        let normal = Vector2::new(0.0, 1.0);
+        problem.push(&ContactForm {
+            bodies: [0, 1],
+            normal,
+            arms: [-normal, normal],
+            central: true,
+            apart: false,
+            shift_n: 0.0,
+            shift_t: Vector1::new(0.0),
+            friction: 0.5,
+            tension: 0.0,
+            cohesion: 0.0,
+            elastic: None,
+            compliance: [0.0; 2],
+            impulse: normal,
+        });
+        crate::solve::nlgs::prepare(&mut problem);
+        let mut anderson = BodyAnderson::default();
+        let changed: Vec<bool> = (0..20)
+            .map(|_| anderson.extrapolate(&mut problem, 1.0))
+            .collect();
+        // The least residual is that of the first call.
+        let mut wanted = vec![true; 20];
+        wanted[0] = false;
+        wanted[11..18].fill(false);
+        // The sequence begins anew.
+        wanted[18] = false;
+        assert_eq!(changed, wanted);
+    }
+}

@@ -240,6 +240,7 @@ impl<S: Space> Problem<S> {
 mod tests {
     use super::*;
     use crate::geometry::space::Dim2;
+    use crate::solve::form::Elastic;
     use crate::solve::measure;
     use nalgebra::{Matrix1, Vector1, Vector2};
 
@@ -292,5 +293,34 @@ mod tests {
                 assert!(!problem.compliant);
             }
         }
+    }
+
+    /// A bond whose impulse is given takes its part of the impulse; what is left presses on the compliance.
+    #[test]
+    fn a_bond_beside_a_compliance_takes_its_part() {
+        let mut problem = Problem::<Dim2>::default();
+        for inverse_mass in [2.0, 0.0] {
+            let (v, w) = (Vector2::new(0.0, -1.0), Vector1::new(0.0));
+            problem.push_body(v, w, Vector2::repeat(inverse_mass), Matrix1::new(0.0), 0.01);
+        }
+        let (normal, impulse) = (contact([0.0; 2]).normal, contact([0.0; 2]).impulse);
+        let tangential = Dim2::tangential(&normal, &impulse);
+        let bond = Elastic {
+            a_n: 0.25,
+            a_t: Vector1::new(0.5),
+            ..Elastic::none()
+        };
+        problem.push(&ContactForm {
+            elastic: Some(bond),
+            ..contact([3.0, 5.0])
+        });
+        crate::solve::nlgs::prepare(&mut problem);
+        let free = measure::free_velocity(&mut problem, false);
+        problem.reload(false);
+        let sums = measure::measure(&mut problem, false);
+        let work = measure::scale(&mut problem, free, &sums, false).work;
+        let [n, t] = [normal.dot(&impulse) + 0.25, tangential.x + 0.5];
+        let wanted = 2.0 * impulse.norm_squared() + 3.0 * n * n + 5.0 * t * t;
+        assert!((work - wanted).abs() < 1e-12, "{work} J, not {wanted}");
     }
 }

@@ -419,4 +419,24 @@ mod tests {
         assert_eq!(schedule.groups(0).len(), 100);
         check(&[], 0, 1);
     }
+
+    /// The bodies 0 and 3 are hubs, of which 3 does not move.
+    #[test]
+    fn a_contact_touches_the_hubs_that_it_moves() {
+        let movable = [true, true, true, false];
+        let mut hubs = Hubs {
+            is_hub: vec![true, false, false, true],
+            any: true,
+        };
+        for (pair, touches) in [
+            ([0, 1], true),
+            ([2, 0], true),
+            ([1, 2], false),
+            ([1, 3], false),
+        ] {
+            assert_eq!(hubs.touch(&pair, &movable), touches, "{pair:?}");
+        }
+        hubs.any = false;
+        assert!(!hubs.touch(&[1, 2], &movable));
+    }
 }

@@ -336,3 +336,60 @@ impl Sums {
 fn over(x: f64, scale: f64) -> f64 {
     if scale > 0.0 { x / scale } else { x }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The error of unbalanced work is its share of the work, squared, of which more contacts than [`FEW`] are allowed more in proportion.
+    #[test]
+    fn more_contacts_may_rock_more() {
+        let sums = Sums {
+            unbalanced: 6.0,
+            ..Sums::default()
+        };
+        for (times, error) in [(0.5, 4.0), (1.0, 4.0), (2.0, 1.0), (3.0, 4.0 / 9.0)] {
+            let scale = Scale {
+                work: 3.0,
+                energy: 2.0,
+                contacts: (times * FEW) as usize,
+                ..Scale::default()
+            };
+            assert!((sums.rocking(&scale) - error).abs() < 1e-15, "{times}");
+        }
+    }
+
+    /// The power of residuals is compared with that of slip. Where nothing slips, a share of 1e-3 of the work, squared, counts as much as 0.5 of
+    /// that of slip.
+    #[test]
+    fn the_power_of_residuals_is_compared_with_slip() {
+        let scale = Scale {
+            work: 1.0,
+            contacts: 1,
+            ..Scale::default()
+        };
+        for (slip, error) in [(2.0, 5e-4), (0.0, 0.5), (1e-3, 0.5)] {
+            let sums = Sums {
+                power: 1e-3,
+                unbalanced: 1e-3,
+                slip,
+                ..Sums::default()
+            };
+            let found = sums.error_of_all(Norm::Power, &scale);
+            assert!((found - error).abs() < 1e-15, "{slip}: {found}");
+        }
+    }
+
+    /// Velocities that are less than sixteen roundings of impulses which have grown to 1e20 m/s are lost; those of sound impulses are not.
+    #[test]
+    fn velocities_drown_in_the_rounding_of_their_impulses() {
+        let sums = |impulse: f64| Sums {
+            impulse: impulse * impulse,
+            velocity: 1.0,
+            ..Sums::default()
+        };
+        assert!(sums(1e20).drowned(1.0, true));
+        assert!(!sums(1.0).drowned(1.0, true));
+        assert!(!sums(0.0).drowned(0.0, false));
+    }
+}

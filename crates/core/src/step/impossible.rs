@@ -263,3 +263,23 @@ impl<S: Space> Simulation<S> {
         (-closing * scheme.h > GRAZING * travelled && told).then_some(depth)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::Dof;
+    use crate::geometry::space::Dim2;
+    use nalgebra::{Vector1, Vector2};
+
+    /// A body that is driven along x and turned, and free along y: only the imposed motions do work on others, against what they receive.
+    #[test]
+    fn imposed_motions_push() {
+        let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5)]);
+        s.drive(0, [Dof::Fixed, Dof::Free, Dof::Fixed]);
+        s.state.bodies.velocity[0] = Vector2::new(2.0, 3.0);
+        s.state.bodies.spin[0].x = 5.0;
+        let pushes = s.pushes(&[(Vector2::new(-7.0, 11.0), Vector1::new(-13.0))]);
+        let pushes: Vec<(u32, f64)> = pushes.iter().map(|p| (p.body, p.work)).collect();
+        assert_eq!(pushes, [(0, 7.0 * 2.0 + 13.0 * 5.0)]);
+    }
+}

@@ -128,6 +128,7 @@ mod tests {
     use super::*;
     use crate::geometry::polyline::Polyline;
     use crate::geometry::space::Dim2;
+    use crate::laws::sample_laws::interface;
     use crate::wear::Scar;
     use nalgebra::Vector2;
 
@@ -160,5 +161,28 @@ mod tests {
         assert_eq!(failed.unwrap(), Err("no"));
         assert_eq!(outline(&s), before);
         assert!((s.state.scars[0].volume() - 0.1).abs() < 1e-15);
+    }
+
+    /// A step that spans four of the case: contacts have the impulses of the same forces.
+    #[test]
+    fn forces_stay_where_steps_grow() {
+        let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)];
+        let mut s = Simulation::<Dim2>::of_disks(&disks).with_law(interface([]));
+        s.options.scheme.h = 0.25;
+        s.step().unwrap();
+        let impulse = |s: &Simulation<Dim2>| s.state.network.contacts[0].impulse.x;
+        s.state.network.contacts[0].impulse.x = 2.0;
+        s.span_steps(0.25, 4);
+        assert_eq!(
+            (s.options.scheme.h, s.options.grown, impulse(&s)),
+            (1.0, 3, 8.0)
+        );
+        s.span_steps(0.25, 0);
+        assert_eq!(
+            (s.options.scheme.h, s.options.grown, impulse(&s)),
+            (0.25, 0, 2.0)
+        );
+        s.span_steps(0.25, 1);
+        assert_eq!(impulse(&s), 2.0);
     }
 }

@@ -8,7 +8,8 @@ use crate::geometry::space::Dim2;
 use crate::heat::{
     BodyNodes, Heat, HeatState, Imposed, Node, Partition, Shares, Store, ThermalMaterial,
 };
-use crate::laws::sample_laws::{bond, constant, interface};
+use crate::laws::Interface;
+use crate::laws::sample_laws::{bond, constant, interface, sticky};
 use nalgebra::Vector2;
 
 const H: f64 = 1.0 / 64.0;
@@ -20,12 +21,16 @@ fn same(a: f64, b: f64) -> bool {
 
 /// A disk that does not turn lies on a chain of 20 m, and slides at 3 m/s; index 0, and 1 of the body of the chain.
 fn slider() -> Simulation<Dim2> {
+    slider_of(interface([]))
+}
+
+fn slider_of(law: Interface) -> Simulation<Dim2> {
     let mut s = Simulation::of_disks(&[([0.0, 0.5], 0.5)]);
     s.drive(0, [Dof::Free, Dof::Free, Dof::Fixed]);
     let chain = [-10.0, 10.0].map(|x| Vector2::new(x, 0.0)).to_vec();
     s.add_surface(Polyline::new(chain, None).unwrap());
     s.state.bodies.velocity[0].x = 3.0;
-    let mut s = s.with_law(interface([]));
+    let mut s = s.with_law(law);
     s.state.gravity = Vector2::new(0.0, -10.0);
     s.options.scheme = Scheme { h: H, theta: 0.5 };
     s
@@ -65,6 +70,29 @@ fn a_disk_slides_and_stops() {
     assert!(s.state.bodies.velocity[0].norm() < 1e-12);
     let energy = s.state.energy;
     assert!(same(energy.friction, before) && energy.impact.abs() < 1e-12);
+}
+
+/// A shear cohesion of 3 Pa over the area of the contact stops it earlier: v = 3 - (5 + 3 A/m) t, and friction takes that energy too.
+#[test]
+fn shear_cohesion_acts_beside_friction() {
+    let law = interface([sticky()]);
+    let area = law.area.area(2, 0.5);
+    let mut s = slider_of(law);
+    let m = s.state.bodies.mass[0];
+    let slows = 5.0 + 3.0 * area / m;
+    // Until it stops.
+    for k in 1..=(3.0 / slows / H) as u32 {
+        s.step().unwrap();
+        let v = s.state.bodies.velocity[0];
+        assert!(
+            same(v.x, 3.0 - slows * f64::from(k) * H) && same(v.y, 0.0),
+            "{v}"
+        );
+        assert!(same(s.state.energy.friction, 0.5 * m * (9.0 - v.x * v.x)));
+        assert!(s.state.energy.residual.abs() < 1e-12);
+    }
+    s.step().unwrap();
+    assert!(s.state.bodies.velocity[0].norm() < 1e-12);
 }
 
 /// A disk that falls is exact at any theta in its velocity, and at theta = 1/2 in its place; the scheme takes (theta - 1/2) m (g h)^2 in each
@@ -329,4 +357,59 @@ fn a_sliding_contact_flashes() {
             );
         }
     }
+}
+
+/// A disk of mass m and inertia m r^2/2 at 2 m/s and 3 rad/s: an impulse p along its way and L about it do the work p v + p^2/(2 m) and
+/// L w + L^2/(m r^2).
+#[test]
+fn the_work_of_an_impulse_is_that_of_the_mean_velocity() {
+    let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5)]);
+    let m = s.state.bodies.mass[0];
+    s.state.bodies.velocity[0].x = 2.0;
+    s.state.bodies.spin[0].x = 3.0;
+    let (p, l) = (0.5, 0.25);
+    s.apply_impulse(0, &Vector2::new(p, 0.0), &nalgebra::Vector1::new(l));
+    let work = p * 2.0 + p * p / (2.0 * m) + l * 3.0 + l * l / (m * 0.25);
+    assert!(same(s.state.energy.external_work, work));
+    assert!(same(s.state.bodies.velocity[0].x, 2.0 + p / m));
+}
+
+/// Spots get no warmer without a force, without sliding, or without heat.
+#[test]
+fn spots_rise_where_a_sliding_contact_is_heated() {
+    let heat = Heat {
+        flash: Some(1e9),
+        ..heat()
+    };
+    let rise = |force, v, power| heat.flash_rise::<Dim2>([0, 1], force, v, power);
+    assert!(rise(1e3, 1.0, 500.0) > 0.0);
+    for [force, v, power] in [[0.0, 1.0, 500.0], [1e3, 0.0, 500.0], [1e3, 1.0, 0.0]] {
+        assert_eq!(rise(force, v, power), 0.0);
+    }
+    assert_eq!(
+        super::tests::heat().flash_rise::<Dim2>([0, 1], 1e3, 1.0, 500.0),
+        0.0
+    );
+}
+
+/// A disk grows by 5 mm in each step, far more than the skin of the neighbour list, until it is half the alert distance from one that was not in
+/// its reach: their contact is there.
+#[test]
+fn a_disk_that_grows_meets_its_neighbour() {
+    let disks = [([0.0, 0.0], 0.5), ([1.1, 0.0], 0.5)];
+    let mut s = Simulation::of_disks(&disks).with_law(interface([]));
+    s.options.scheme = Scheme { h: H, theta: 0.5 };
+    s.set_heat(heat(), nodes([(300.0, 1.0), (300.0, 2.0)]));
+    s.set_expansion(vec![1e-3, 0.0], Vec::new());
+    for k in 0..=20 {
+        // 0.5 m times 1e-3/K, to 0.5995 m.
+        s.state.heat.as_mut().unwrap().nodes[0].temperature = 300.0 + 9.95 * f64::from(k);
+        s.step().unwrap();
+        let radius = 0.5 + 0.004975 * f64::from(k);
+        assert!(same(s.shapes.balls[0].radius, radius), "{k}");
+        assert!(s.state.network.contacts.is_empty());
+    }
+    s.step().unwrap();
+    assert_eq!(s.state.network.contacts.len(), 1);
+    assert!(same(s.state.network.contacts[0].gap, 0.0005));
 }

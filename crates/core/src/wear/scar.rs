@@ -369,4 +369,54 @@ mod tests {
         scar.show_again(&mut shapes);
         assert!((under(&shapes) - before - 0.1).abs() < 1e-15);
     }
+
+    /// A chain of 1 m pieces: a vertex at an end has half a piece of its own, and one on which a volume of 0.09 m^2 is put is as many m deep.
+    #[test]
+    fn depths_along_the_chain_are_those_of_its_vertices() {
+        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
+        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
+        scar.put(&shapes, &Vector2::new(1.0, 0.0), 0.09).unwrap();
+        assert_eq!(
+            scar.along(),
+            [[0.0, 0.5, 0.0], [1.0, 1.0, 0.09], [2.0, 0.5, 0.0]]
+        );
+    }
+
+    /// A flank: vertices of one place along the sliding direction have the mean of their depths, by their lengths.
+    #[test]
+    fn depths_of_one_place_are_averaged() {
+        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0)], None);
+        let mut scar = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
+        scar.share([(1, 1.0)], 0.125).unwrap();
+        let along = scar.along();
+        let places: Vec<f64> = along.iter().map(|row| row[0]).collect();
+        assert_eq!(places, [0.0, 1.0, 2.0]);
+        let both: f64 = scar
+            .vertices()
+            .skip(1)
+            .take(2)
+            .map(|(v, _)| v.tributary)
+            .sum();
+        assert!((along[1][1] - both).abs() < 1e-15);
+        assert!((along[1][2] * both - 0.125).abs() < 1e-15);
+    }
+
+    /// A state that was read is refused where it names vertices that the scar has not.
+    #[test]
+    fn a_state_with_other_vertices_does_not_fit() {
+        let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
+        let first = Scar::new("rail".into(), 0, &shapes.surfaces[0], 1.0, 1).unwrap();
+        assert!(first.fits(&first));
+        for (deepest, pending, fits) in
+            [(2, vec![2], true), (3, vec![], false), (0, vec![3], false)]
+        {
+            let mut later = first.clone();
+            later.deepest = deepest;
+            later.pending.extend(pending);
+            assert_eq!(later.fits(&first), fits);
+        }
+        let mut later = first.clone();
+        later.depth[1] = f64::NAN;
+        assert!(!later.fits(&first));
+    }
 }

@@ -77,6 +77,8 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     assert_eq!(predicted.len(), 1);
     assert_eq!(predicted[0].bodies, [1, 2]);
     assert!(predicted[0].broken);
+    // Of two disks of 0.5 m, as of any contact of theirs.
+    assert_eq!(predicted[0].radius, 0.25);
 }
 
 /// A point of a body of 1 m goes fast towards a chain, which it sees from behind within the alert distance of 1 mm only: it is followed in parts

@@ -174,3 +174,25 @@ pub fn attraction_reach(bench: &mut Bench, speed: f64) -> Result<Option<f64>, La
     }
     Ok(None)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A path ends in failure with full damage, or with less than a hundredth of what it carried.
+    #[test]
+    fn a_path_is_broken_where_it_ends_in_failure() {
+        let carries = (1.0, 100.0, 0.0);
+        for (last, end) in [
+            ((2.0, 50.0, 0.5), None),
+            ((2.0, 50.0, 1.0), Some(2.0)),
+            ((3.0, 0.5, 0.5), Some(3.0)),
+        ] {
+            assert_eq!(broken(&[(0.0, 0.0, 0.0), carries, last]), end);
+            assert_eq!(peak(&[(0.0, 0.0, 0.0), carries, last]), Some(carries));
+        }
+        // What never carried cannot fail.
+        assert_eq!(broken(&[(1.0, 0.0, 1.0)]), None);
+        assert_eq!(broken(&[]), None);
+    }
+}

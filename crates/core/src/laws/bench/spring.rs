@@ -72,3 +72,24 @@ impl Bench {
         Ok(Some((0.5 * (low + high)).exp()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::laws::interface::Interface;
+    use crate::laws::sample_laws::{elastic, interface};
+
+    /// A spring of 8 N/m has an overlap of F/8, whatever its radius; a rigid contact has none.
+    #[test]
+    fn a_force_has_its_overlap() {
+        for radius in [0.01, 1.0] {
+            let mut bench = Bench::new(Interface::new("test", [elastic()]).unwrap(), 3, radius);
+            for force in [1e-6, 0.02, 0.08] {
+                let overlap = bench.overlap_under(force).unwrap().unwrap();
+                assert!((overlap / (force / 8.0) - 1.0).abs() < 1e-8, "{overlap}");
+            }
+        }
+        let mut rigid = Bench::new(interface([]), 3, 1.0);
+        assert_eq!(rigid.overlap_under(1.0).unwrap(), None);
+    }
+}

@@ -105,3 +105,61 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     assert_eq!(network.dissipation.as_ref().unwrap()[0].friction, rubbed);
     assert_eq!(network.contacts[0].moment.x, elastic[2] + rolling);
 }
+
+/// A step that stands for a number of cycles adds that number times the damage of one, up to all of it.
+#[test]
+fn damage_of_a_step_counts_for_all_its_cycles() {
+    for (cycles, damage, broken) in [(1.0, 0.25, 0), (2.0, 0.375, 0), (10.0, 1.0, 1)] {
+        let law = interface([bond()]);
+        let mut network = Network::<Dim2>::new(1.0, 1.0, &[0]);
+        network.cycle_multiplier = cycles;
+        let key = Key {
+            candidate: 0,
+            antagonist: 1,
+            feature: 0,
+        };
+        let geometry = ContactGeometry {
+            gap: 0.0,
+            normal: Vector2::new(0.0, 1.0),
+            arms: [Vector2::zeros(); 2],
+            radius: 1.0,
+        };
+        let slot = network.memory[0].allocate(true, 0.0, 1.0, &[]);
+        let contact = Contact::new(key, [0, 1], 0, geometry, 0.0);
+        network.contacts.push(Contact { slot, ..contact });
+        // From 1/8 to 1/4 in a cycle.
+        let memory = &mut network.memory[0];
+        memory.rotates = false;
+        (memory.bonds[0].damage, memory.bonds[0].step_damage) = (0.125, 0.125);
+        let end = BondEnd {
+            opening: (0.0, Vector1::new(0.0)),
+            rotation: Vector1::new(0.0),
+            work: [0.0; 3],
+            given: 0.0,
+            lost: None,
+            friction: [0.0; 2],
+            slide: 0.0,
+            intact: 0.0,
+            damage: 0.25,
+        };
+        let mut totals = Totals::default();
+        store_bonds(0, &law, &mut network, &[0], vec![end], false, &mut totals);
+        let bond = &network.memory[0].bonds[0];
+        assert_eq!((bond.damage, totals.broken), (damage, broken));
+    }
+}
+
+#[test]
+fn damage_grows_to_one_at_most() {
+    let mut damage = [0.25, 0.5, 0.5, 0.75];
+    raise(&mut damage, &[0.5, 0.25, f64::NAN, 2.0]);
+    assert_eq!(damage, [0.5, 0.5, 0.5, 1.0]);
+}
+
+/// (1 - D)^m at D = 0.75, also where the power is a root.
+#[test]
+fn what_damage_leaves_is_a_power() {
+    for (m, left) in [(1.0, 0.25), (2.0, 0.0625), (3.0, 0.015625), (0.5, 0.5)] {
+        assert_eq!(degradation_factor(0.75, m), left);
+    }
+}

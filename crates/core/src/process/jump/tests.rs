@@ -107,6 +107,30 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
     }
 }
 
+/// After three cycles a fourth stands for three: half of it is 1.5 cycles, of which one is jumped over. At its end all six are done, of which
+/// two were.
+#[test]
+fn cycles_are_counted_within_one_that_stands_for_several() {
+    let mut test = Test::new(JumpSpec {
+        after: 3,
+        control: 2,
+        ..JumpSpec::default()
+    });
+    let at = |test: &Test, cycles: f64| {
+        let time = cycles * f64::from(STEPS) * H;
+        (test.jumps.cycles_at(time), test.jumps.jumped_at(time))
+    };
+    for _ in 0..3 {
+        test.cycle(|_| 1.0, 1.0);
+    }
+    assert_eq!(test.s.state.network.cycle_multiplier, 3.0);
+    assert_eq!(at(&test, 3.0), (3.0, 0.0));
+    assert_eq!(at(&test, 3.5), (4.5, 1.0));
+    test.cycle(|_| 1.0, 1.0);
+    assert_eq!(at(&test, 4.0), (6.0, 2.0));
+    assert_eq!(at(&test, 4.25), (6.25, 2.0));
+}
+
 /// The work of the cycles after a jump is compared with that of the one before it: 3 J/m, then twice 4 and 5, twice again.
 #[test]
 fn the_change_of_work_is_that_of_the_mean_control_cycle() {

@@ -372,4 +372,19 @@ mod tests {
     fn answers_in_space() {
         random::<3>();
     }
+
+    /// A contact that sticks by its cohesion alone, of a block whose directions have other compliances: iterations go on until u = 0.
+    #[test]
+    fn rare_laws_are_iterated_to_the_end() {
+        let w = [[1.0, 0.0], [0.0, 0.5]];
+        let law = Law::Cohesive {
+            mu: 0.0,
+            cohesion: 1.0,
+        };
+        let p = Local::new(&w, 0.0).solve_rare(&[-1.0, 0.25], &law, &[0.0; 2], &[]);
+        assert!(
+            (p[0] - 1.0).abs() < 1e-15 && (p[1] + 0.5).abs() < 1e-6,
+            "{p:?}"
+        );
+    }
 }

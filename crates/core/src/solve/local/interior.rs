@@ -469,3 +469,25 @@ impl<const D: usize> Solver<D> for Interior {
         best.restore(form, state);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// With bonds the share of the slope shrinks to 0.3 after a short step, and about doubles after a long one; without them it is all or nothing.
+    #[test]
+    fn the_slope_follows_the_length_of_steps() {
+        let shares = |gradual| {
+            let mut slope = Slope::new(gradual);
+            [0.05, 0.05, 0.3, 0.8, 0.8, 0.8, 0.8].map(|t| {
+                slope.follow(t);
+                slope.share
+            })
+        };
+        let wanted = [0.3, 0.09, 0.09, 0.23, 0.51, 1.0, 1.0];
+        let found = shares(true);
+        let near = found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-15);
+        assert!(near, "{found:?}");
+        assert_eq!(shares(false), [1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    }
+}

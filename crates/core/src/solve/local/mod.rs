@@ -81,3 +81,40 @@ impl LocalProblem {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two contacts in 2D, and what is wrong with each change of them.
+    #[test]
+    fn problems_are_checked() {
+        let sound = || LocalProblem {
+            dimension: 2,
+            w: Csr::from_triplets(4, 4, &[(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0), (3, 3, 1.0)]),
+            q: vec![0.0; 4],
+            mu: vec![0.0, 0.5],
+        };
+        assert_eq!(sound().check(), Ok(()));
+        let said = |change: &dyn Fn(&mut LocalProblem)| {
+            let mut problem = sound();
+            change(&mut problem);
+            problem.check().unwrap_err()
+        };
+        assert!(said(&|p| p.dimension = 4).contains("not 4"));
+        let sizes = "2 contacts of 2 components ask for W of 4 x 4 and q of 4, not ";
+        for (rows, columns) in [(3, 4), (4, 3)] {
+            let told = said(&|p| p.w = Csr::from_triplets(rows, columns, &[]));
+            assert_eq!(told, format!("{sizes}{rows} x {columns} and 4"));
+        }
+        assert_eq!(said(&|p| p.q.push(0.0)), format!("{sizes}4 x 4 and 5"));
+        assert!(said(&|p| p.mu.push(0.0)).starts_with("3 contacts of 2"));
+        assert_eq!(said(&|p| p.w.values[1] = f64::NAN), "entry 1 of W is NaN");
+        assert_eq!(said(&|p| p.q[3] = f64::INFINITY), "entry 3 of q is inf");
+        assert_eq!(said(&|p| p.mu[0] = f64::NAN), "entry 0 of mu is NaN");
+        assert_eq!(
+            said(&|p| p.mu[1] = -0.5),
+            "mu of contact 1 is below 0: -0.5"
+        );
+    }
+}

@@ -404,4 +404,46 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn methods_have_names_of_their_own() {
+        for method in Method::ALL.iter().copied() {
+            assert_eq!(method.name().parse(), Ok(method));
+        }
+        let error = "gauss".parse::<Method>().unwrap_err();
+        assert!(error.starts_with("there is no solver `gauss`; there are "));
+    }
+
+    /// Two coupled contacts, solved to a tenth by the first measure and to 1e-10 by the second: it goes on until both are met, and says so.
+    #[test]
+    fn both_tolerances_are_met() {
+        let (a, b) = (1.0, 0.3);
+        let rows = [
+            (0, 0, a),
+            (0, 2, b),
+            (1, 1, a),
+            (1, 3, b),
+            (2, 0, b),
+            (2, 2, a),
+            (3, 1, b),
+            (3, 3, a),
+        ];
+        let problem = LocalProblem {
+            dimension: 2,
+            w: Csr::from_triplets(4, 4, &rows),
+            q: vec![-1.0, 0.4, -0.5, -0.3],
+            mu: vec![0.5, 0.2],
+        };
+        let limits = |scale_free| Limits {
+            tolerance: 0.1,
+            scale_free,
+            max_iterations: 10_000,
+            seconds: 10.0,
+        };
+        let loose = solve(&problem, Method::Nlgs, &limits(None));
+        assert!(loose.converged && loose.scale_free_error > 1e-6);
+        let tight = solve(&problem, Method::Nlgs, &limits(Some(1e-10)));
+        assert!(tight.converged && tight.scale_free_error <= 1e-10);
+        assert!(tight.iterations > loose.iterations);
+    }
 }

@@ -277,3 +277,23 @@ impl Visit for Free {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of all lanes; the worst contact is counted from the first one.
+    #[test]
+    fn sums_of_lanes_are_merged() {
+        let measure = Measure {
+            residual: [1.0, 2.0, 4.0, 8.0],
+            slip: [16.0, 32.0, 64.0, 128.0],
+            worst: [0.5, 0.75, 3.0, 1.0],
+            worst_at: [0.0, 1.0, 6.0, 3.0],
+            ..Measure::default()
+        };
+        let sums = measure.sums(10);
+        assert_eq!((sums.residual, sums.slip), (15.0, 240.0));
+        assert_eq!((sums.worst, sums.worst_at), (3.0, 16));
+    }
+}

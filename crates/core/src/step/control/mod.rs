@@ -245,3 +245,52 @@ fn set_parameter(laws: &mut [Interface], law: usize, at: usize, value: f64) {
         parameters[at] = value;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::TimeFunction;
+    use crate::geometry::space::Dim2;
+    use crate::laws::sample_laws::interface;
+
+    /// A state that was read is refused where it names a phase, a body, an axis or a parameter that the case has not. The case has no phases,
+    /// a body that is driven along x and y, and a law with one parameter.
+    #[test]
+    fn a_schedule_of_another_case_does_not_fit() {
+        let mut s = Simulation::<Dim2>::of_disks(&[]);
+        s.shapes.periodic.period = [Some(1.0), Some(1.0), None];
+        let pressure = Dof::Pressure {
+            value: TimeFunction::Constant(1.0),
+            between: Vec::new(),
+            area: 0.0,
+        };
+        let servo = |place, dof| {
+            let pushed = Pushed::Body(place, dof);
+            let servos = Servo::of(&s.state.bodies, &s.shapes, &pushed, &pressure);
+            servos.unwrap().remove(0)
+        };
+        let body = |dofs| Driven {
+            name: "lid".into(),
+            body: 0,
+            dofs: vec![Dof::Fixed; dofs],
+        };
+        let laws = [interface([])];
+        let fits = |dofs, change: &dyn Fn(&mut Control<Dim2>)| {
+            let mut control = Control::default();
+            change(&mut control);
+            control.fits(&[], &laws, &[body(dofs)])
+        };
+        assert!(fits(2, &|_| {}));
+        assert!(fits(2, &|c| c.servos.push(servo(0, 0))));
+        assert!(fits(2, &|c| c.servos.push(servo(0, 1))));
+        assert!(!fits(1, &|c| c.servos.push(servo(0, 1))));
+        assert!(!fits(2, &|c| c.servos.push(servo(1, 0))));
+        assert!(fits(2, &|c| c.gates.push((0, 1.0))));
+        assert!(!fits(2, &|c| c.gates.push((1, 1.0))));
+        for (place, known) in [((0, 0), true), ((0, 1), false), ((1, 0), false)] {
+            let set = |c: &mut Control<Dim2>| c.contact_parameters.extend([(place, 0.5)]);
+            assert_eq!(fits(2, &set), known);
+        }
+        assert!(!fits(2, &|c| c.clock.open("a phase", 0.0, 0)));
+    }
+}

@@ -192,3 +192,91 @@ impl Clock {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEVER: f64 = f64::INFINITY;
+
+    fn begun(start: f64) -> Clock {
+        let mut clock = Clock::default();
+        clock.open("a phase", start, 7);
+        clock
+    }
+
+    /// A phase that began at 3 s; one of rest has been so since 10 s.
+    #[test]
+    fn steps_end_with_phases() {
+        let clock = begun(3.0);
+        let rest = |at_most| Until::AtRest {
+            share: None,
+            energy: Some(1.0),
+            held: 0.5,
+            at_most,
+        };
+        for (until, bounds) in [
+            (Until::Time(5.0), [5.0, NEVER]),
+            (Until::After(5.0), [8.0, NEVER]),
+            (Until::Steps(5), [NEVER, 0.0]),
+            (rest(None), [NEVER, 0.5]),
+            (rest(Some(20.0)), [23.0, 0.5]),
+        ] {
+            assert_eq!(clock.bounds(&until), bounds, "{until:?}");
+        }
+        assert_eq!(Clock::default().bounds(&Until::Time(5.0)), [NEVER; 2]);
+        let still = Clock {
+            still_since: Some(10.0),
+            ..clock
+        };
+        assert_eq!(still.bounds(&rest(None)), [10.5, 0.5]);
+        assert_eq!(still.bounds(&rest(Some(20.0))), [10.5, 0.5]);
+        assert_eq!(still.bounds(&rest(Some(5.0))), [8.0, 0.5]);
+    }
+
+    /// Times are reached within half a step of 1 s; rest has to last for 2 s, and a motion in between begins it anew.
+    #[test]
+    fn phases_end_when_their_conditions_say() {
+        let now = |time: f64| Moment {
+            time,
+            step: 10,
+            h: 1.0,
+        };
+        let motion = |kinetic| Motion {
+            kinetic,
+            scale: 4.0,
+        };
+        for (until, time, end) in [
+            (Until::Time(5.0), 4.4, None),
+            (Until::Time(5.0), 4.6, Some("time")),
+            (Until::After(5.0), 7.4, None),
+            (Until::After(5.0), 7.6, Some("duration")),
+            (Until::Steps(4), 0.0, None),
+            (Until::Steps(3), 0.0, Some("steps")),
+        ] {
+            assert_eq!(begun(3.0).ends(&until, &now(time), || motion(0.0)), end);
+        }
+        let until = Until::AtRest {
+            share: Some(0.5),
+            energy: Some(3.0),
+            held: 2.0,
+            at_most: Some(8.0),
+        };
+        let mut clock = begun(0.0);
+        // Below 0.5 times 4 J, and below 3 J.
+        for (time, kinetic, end) in [
+            (1.0, 1.5, None),
+            (2.0, 2.5, None),
+            (3.0, 1.5, None),
+            (4.0, 1.5, None),
+            (5.0, 1.5, Some("rest")),
+            (8.0, 2.5, Some("at_most")),
+        ] {
+            assert_eq!(
+                clock.ends(&until, &now(time), || motion(kinetic)),
+                end,
+                "{time}"
+            );
+        }
+    }
+}

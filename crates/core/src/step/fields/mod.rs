@@ -189,3 +189,30 @@ impl<S: Space> Default for Fields<S> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::Dim2;
+    use nalgebra::Vector2;
+
+    /// A number, a whole number and a vector of a thing that is a number itself.
+    #[test]
+    fn a_field_gives_numbers() {
+        let s = Simulation::<Dim2>::of_disks(&[]);
+        let half = Field::<Dim2, f64>::number("half", "m", "half of it", |_, x| 0.5 * x);
+        let whole = Field::<Dim2, f64>::whole("whole", "its floor", |_, x| *x as i64);
+        let vector = |_: &Simulation<Dim2>, x: &f64| Vector2::new(3.0 * x, 4.0 * x);
+        let vector = Field::<Dim2, f64>::vector("vector", "m", "five of it", vector);
+        let of = |field: &Field<Dim2, f64>| (field.width(), field.is_whole(), field.get(&s, &2.5));
+        assert_eq!(of(&half), (1, false, 1.25));
+        assert_eq!(of(&whole), (1, true, 2.0));
+        assert_eq!(of(&vector), (3, false, 12.5));
+        // Of two fields of one name the later one.
+        let other = Field::<Dim2, f64>::number("half", "m", "a third", |_, x| x / 3.0);
+        let list = FieldList::new([half, vector, other]);
+        assert_eq!(list.iter().count(), 2);
+        assert_eq!(list.get("half").unwrap().get(&s, &3.0), 1.0);
+        assert!(list.get("none").is_none());
+    }
+}
