@@ -417,6 +417,15 @@ mod linux {
     mod tests {
         use super::*;
 
+        /// The libraries of the program are among those of the process, and the C library is one of them where it is no part of the program.
+        #[test]
+        fn libraries_of_the_program_are_known() {
+            let now = names(&loaded());
+            assert!(program().is_subset(&now));
+            let mut of_c = now.iter().filter(|name| name.starts_with(b"libc."));
+            assert!(of_c.all(|name| program().contains(name)));
+        }
+
         #[test]
         fn folders_of_the_linker_are_those_of_the_list() {
             let here = Path::new("/laws");

@@ -145,3 +145,28 @@ mod elf {
         0
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+    use crate::laws::sample_laws::bond;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    static KEPT: AtomicU64 = AtomicU64::new(0);
+
+    /// What a law's library keeps in a static variable is seen: here the library is the program of the tests.
+    #[test]
+    fn what_is_stored_in_a_static_variable_is_seen() {
+        let mut plugin = (*bond().plugin).clone();
+        assert_eq!(StaticMemory::of(&plugin).err(), Some(Unseen::BuiltIn));
+        plugin.built_in = false;
+        let memory = StaticMemory::of(&plugin).unwrap();
+        let holds = |value: u64| {
+            // Nothing else reads it, so that the compiler might leave it out.
+            std::hint::black_box(&KEPT).store(value, Ordering::Relaxed);
+            let bytes = memory.read().unwrap();
+            bytes.windows(8).any(|word| *word == value.to_ne_bytes())
+        };
+        assert!(holds(0x1234_5678_9abc_def1) && holds(0x0fed_cba9_8765_4321));
+    }
+}

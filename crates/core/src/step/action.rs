@@ -64,7 +64,7 @@ mod tests {
     use super::*;
     use crate::contact::detect::LawTable;
     use crate::geometry::space::Dim2;
-    use crate::laws::sample_laws::{interface, sticky};
+    use crate::laws::sample_laws::{bond, interface, sticky};
 
     /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond it; friction acts on the surfaces, also where
     /// another interface attracts.
@@ -87,5 +87,20 @@ mod tests {
             });
             assert_eq!(placed, acts);
         }
+    }
+
+    /// A bond acts across its gap, a contact of the same interface without one on the surfaces.
+    #[test]
+    fn a_bond_acts_across_its_gap() {
+        let s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
+        let mut s = s.with_law(interface([bond()]));
+        s.step().unwrap();
+        let slot = s.state.network.memory[0].allocate(true, 0.0, 1.0, &[]);
+        let placed = [slot, Contact::<Dim2>::NO_MEMORY].map(|slot| {
+            s.state.network.contacts[0].slot = slot;
+            s.place_actions();
+            s.state.network.contacts[0].acts
+        });
+        assert_eq!(placed, [Acts::Middle, Acts::Surfaces]);
     }
 }

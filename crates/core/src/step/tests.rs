@@ -391,3 +391,25 @@ fn spots_rise_where_a_sliding_contact_is_heated() {
         0.0
     );
 }
+
+/// A disk grows by 5 mm in each step, far more than the skin of the neighbour list, until it is half the alert distance from one that was not in
+/// its reach: their contact is there.
+#[test]
+fn a_disk_that_grows_meets_its_neighbour() {
+    let disks = [([0.0, 0.0], 0.5), ([1.1, 0.0], 0.5)];
+    let mut s = Simulation::of_disks(&disks).with_law(interface([]));
+    s.options.scheme = Scheme { h: H, theta: 0.5 };
+    s.set_heat(heat(), nodes([(300.0, 1.0), (300.0, 2.0)]));
+    s.set_expansion(vec![1e-3, 0.0], Vec::new());
+    for k in 0..=20 {
+        // 0.5 m times 1e-3/K, to 0.5995 m.
+        s.state.heat.as_mut().unwrap().nodes[0].temperature = 300.0 + 9.95 * f64::from(k);
+        s.step().unwrap();
+        let radius = 0.5 + 0.004975 * f64::from(k);
+        assert!(same(s.shapes.balls[0].radius, radius), "{k}");
+        assert!(s.state.network.contacts.is_empty());
+    }
+    s.step().unwrap();
+    assert_eq!(s.state.network.contacts.len(), 1);
+    assert!(same(s.state.network.contacts[0].gap, 0.0005));
+}
