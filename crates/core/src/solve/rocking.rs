@@ -8,9 +8,11 @@ use super::row::{Row, SolverBody, noise};
 use super::rows::Rows;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding; and of their work, which
-/// that of a set is taken to be at least: a grain that sticks to a wall carries nothing, and what is left of its residuals is no error.
+/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding.
 const KNOWN: f64 = 1e-6;
+/// Share of the work of all contacts that the work of a set is taken to be at least: a grain that sticks to a wall carries nothing, and what is left
+/// of its residuals is no error.
+const LEAST: f64 = 1e-4;
 
 /// The error of the worst set, given the sums over all; 0 where all contacts are of one.
 pub(super) fn worst<S: Space>(problem: &mut Problem<S>, sums: &Sums, scale: &Scale) -> f64 {
@@ -60,7 +62,7 @@ fn of_sets<S: Space>(
             all = apart(problem, sets, None);
         }
     }
-    let least = KNOWN * scale.work.max(scale.energy);
+    let least = LEAST * scale.work.max(scale.energy);
     let known = (0..sets.len()).filter(|k| !sets.with_systems(*k));
     let errors = known.map(|k| {
         let (sums, scale) = &all[k];
