@@ -62,7 +62,7 @@ fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
 }
 
 /// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case, with velocities that are wrong: the heat of the
-/// residuals says so. With springs and the norm `Power` it stays below the bound.
+/// residuals says so: it is above the half of that of slip which the norm `Power` permits, and below which it stays with springs.
 #[test]
 fn the_parts_of_the_error_tell_loose_velocities() {
     let law = |interface: &str| format!("interfaces.{interface}.contact=coulomb");
@@ -70,7 +70,7 @@ fn the_parts_of_the_error_tell_loose_velocities() {
     let mut rigid: Vec<&str> = laws.iter().map(String::as_str).collect();
     rigid.extend([
         "solver.norm=Balance",
-        "solver.tolerance=3e-3",
+        "solver.tolerance=1e-3",
         "solver.correction=0.05",
         "time.step=5e-5",
         "inertia_scaling=5.8e7",
@@ -82,9 +82,9 @@ fn the_parts_of_the_error_tell_loose_velocities() {
         sum(|r| r.parts.contact_law * r.parts.slip_energy) / sum(|r| r.parts.slip_energy)
     };
     let elastic = heat(sliding(&["inertia_scaling=5.8e7"]), Norm::Power, 0.5);
-    let rigid = heat(sliding(&rigid), Norm::Balance, 3e-3);
+    let rigid = heat(sliding(&rigid), Norm::Balance, 1e-3);
     println!("heat of residuals over that of slip: rigid {rigid:.2}, elastic {elastic:.2}");
-    assert!(elastic <= 0.5 && rigid > 1.0, "{elastic} and {rigid}");
+    assert!(elastic <= 0.5 && rigid > 0.5, "{elastic} and {rigid}");
 }
 
 /// Contact points of polygons, and pairs that meet within a step, are found by several threads: more than 256 pairs, with bonds, under a wheel that falls

@@ -390,7 +390,7 @@ fn fallen<S: Dimensional>(mut s: Simulation<S>) -> f64 {
 /// than those that are searched in every step: a sweep would load the first of them alone.
 #[test]
 fn what_many_contacts_pinch_hangs() {
-    for (dimension, count) in [(3, 40), (3, 100), (2, 34), (2, 60), (2, 100)] {
+    for (dimension, count) in [(3, 40), (3, 100), (2, 34)] {
         let (radius, mu, capacity) = (4e-3, 0.7, 1.3);
         let volume = match dimension {
             2 => PI * radius * radius,

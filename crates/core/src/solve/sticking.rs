@@ -28,8 +28,9 @@ use std::collections::BTreeMap;
 /// steps: a second solve costs more, and in a large set that flows some contacts begin to slide in every step.
 const SMALL: usize = 64;
 const MOST: usize = 256;
-/// Iterations of the gradient method, and sweeps from its end.
+/// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of the set.
 const ITERATIONS: u32 = 300;
+const OF_CONTACT: u32 = 10;
 /// Tolerance of the solution of a set over that of the step, so that all sets together are within that.
 const FINER: f64 = 0.5;
 /// Relative velocity of a contact that slides, over the largest of its set without contacts; slower ones are the error of a solution.
@@ -385,13 +386,14 @@ impl<S: Space> SolveContext<'_, S> {
         let did = self.all_do(alone, least);
         self.start_anew(alone);
         let tolerance = 0.3 * self.options.tolerance;
-        let mut other = self.improve(alone, Method::Pcpg, tolerance, ITERATIONS);
+        let most = ITERATIONS.max(OF_CONTACT * self.forms.len() as u32);
+        let mut other = self.improve(alone, Method::Pcpg, tolerance, most);
         let is_lower = |problem: &Problem<S>, by: f64| {
             let [energy, work] = self.energy(problem);
             before - energy > by * work.abs()
         };
         if !other.converged && is_lower(alone, LOWER) {
-            other.add(&self.sweep(alone, true, ITERATIONS));
+            other.add(&self.sweep(alone, true, most));
         }
         let does = self.all_do(alone, least);
         let differs = |(a, b): (&Does, &Does)| {
