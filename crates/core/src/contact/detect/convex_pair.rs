@@ -55,8 +55,10 @@ impl<S: Space> Narrow<'_, S> {
     /// Relative motion of a pair with these centres (m) in a step, at the velocities at its start.
     fn motion(&self, bodies: [u32; 2], centres: [S::Vector; 2]) -> PairMotion<S> {
         let of = |side: usize| {
-            let v = self.velocity_at(bodies[side], &centres[side]);
-            (v * self.h, self.bodies.spin[bodies[side] as usize] * self.h)
+            let b = bodies[side] as usize;
+            let arm = centres[side] - self.bodies.position[b];
+            let (v, w) = (self.bodies.velocity[b], self.bodies.spin[b]);
+            ((v + S::spin_velocity(&w, &arm)) * self.h, w * self.h)
         };
         let ((shift, turn), (shift_other, turn_other)) = (of(0), of(1));
         PairMotion {
@@ -65,8 +67,7 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece. What is near both is beside the one with which
-    /// it moves: a surface is of pieces that stay together, and a box that slides off one brick onto the next is on both.
+    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece.
     fn beside(&self, pair: [u32; 2]) -> Vec<Beside<'_, S>> {
         let balls = self.shapes.balls.len();
         let origin = self.centres[balls + (pair[1] & !Key::PIECE) as usize];
@@ -78,13 +79,6 @@ impl<S: Space> Narrow<'_, S> {
             for other in others.iter().filter(|other| **other != pair[1 - side]) {
                 let k = (*other & !Key::PIECE) as usize;
                 let centre = self.centres[balls + k];
-                let [from_near, from_beside] = [side, 1 - side].map(|one| {
-                    let of = |body: u32| self.velocity_at(body, &centre);
-                    (of(self.shapes.pieces[k].body) - of(self.body_of(pair[one]))).norm()
-                });
-                if from_beside > from_near {
-                    continue;
-                }
                 out.push(Beside {
                     core: &self.cores[k],
                     at: self.shapes.periodic.shortest(centre - origin),
@@ -96,25 +90,6 @@ impl<S: Space> Narrow<'_, S> {
             }
         }
         out
-    }
-
-    /// The body of a ball or a piece.
-    fn body_of(&self, name: u32) -> u32 {
-        let k = (name & !Key::PIECE) as usize;
-        match name & Key::PIECE {
-            0 => self.shapes.balls[k].body,
-            _ => self.shapes.pieces[k].body,
-        }
-    }
-
-    /// Velocity of a body at a place (m/s).
-    fn velocity_at(&self, body: u32, place: &S::Vector) -> S::Vector {
-        let b = body as usize;
-        let arm = self
-            .shapes
-            .periodic
-            .shortest(*place - self.bodies.position[b]);
-        self.bodies.velocity[b] + S::spin_velocity(&self.bodies.spin[b], &arm)
     }
 
     /// Returns whether the bounding balls of a pair without bonds are too far from each other for contacts.
@@ -247,19 +222,18 @@ impl<S: Space> Narrow<'_, S> {
             bodies = [piece.body, other.body];
             if !(out.is_empty() || tolerances.held) {
                 let motion = self.motion(bodies, [own_centre, centre]);
-                if !keep_apart::<S>(cores, &apart, roundings, tolerances, &motion, out) {
-                    let deepest = DEEPEST * piece.size.min(other.size);
-                    leave_seam::<S>(
-                        cores,
-                        &apart,
-                        roundings,
-                        tolerances,
-                        &motion,
-                        deepest,
-                        || self.beside([a, b]),
-                        out,
-                    );
-                }
+                keep_apart::<S>(cores, &apart, roundings, tolerances, &motion, out);
+                let deepest = DEEPEST * piece.size.min(other.size);
+                leave_seam::<S>(
+                    cores,
+                    &apart,
+                    roundings,
+                    tolerances,
+                    &motion,
+                    deepest,
+                    || self.beside([a, b]),
+                    out,
+                );
             }
             law = self.laws.get(piece.material, other.material)?;
             radius = piece.size * other.size / (piece.size + other.size);

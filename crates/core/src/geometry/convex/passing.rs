@@ -142,7 +142,7 @@ pub(super) fn faces<S: Space>(cores: [&S::Core; 2]) -> impl Iterator<Item = (S::
 }
 
 /// Puts points on a plane that keeps a pair apart in place of those that close in the step although the pair passes; `apart` and
-/// `roundings` as in [`Core::contact_points`]. Whether there is one, which the pair crosses by no more than the slack by the end of the step.
+/// `roundings` as in [`Core::contact_points`].
 pub fn keep_apart<S: Space>(
     cores: [&S::Core; 2],
     apart: &S::Vector,
@@ -150,13 +150,13 @@ pub fn keep_apart<S: Space>(
     tolerances: &ContactTolerances,
     motion: &PairMotion<S>,
     out: &mut Vec<ContactPoint<S::Vector>>,
-) -> bool {
+) {
     let closing = out.iter().filter_map(|m| {
         let left = motion.closing(m, apart, tolerances.slack)?;
         Some((left, *m))
     });
     let Some((least, nearest)) = closing.min_by(|a, b| a.0.total_cmp(&b.0)) else {
-        return false;
+        return;
     };
     let pair = Pair::<S> {
         corners: cores.map(Core::corners),
@@ -184,13 +184,12 @@ pub fn keep_apart<S: Space>(
         }
     }
     let Some(plane) = best else {
-        return false;
+        return;
     };
     out.clear();
-    let keeps = room >= -tolerances.slack;
     if let Some(face) = plane.face {
         cores[0].points_on_face(cores[1], apart, roundings, tolerances, face, out);
-        return keeps;
+        return;
     }
     let n = plane.normal;
     out.push(ContactPoint {
@@ -202,7 +201,6 @@ pub fn keep_apart<S: Space>(
         facing: false,
         ..nearest
     });
-    keeps
 }
 
 /// The direction across the motion of the nearest points on which the candidate passes.
