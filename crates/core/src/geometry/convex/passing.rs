@@ -117,6 +117,17 @@ impl<S: Space> Pair<'_, S> {
         Some((gap, lowest))
     }
 
+    /// How low the candidate and how high the antagonist reach along a direction now, with these roundings (m).
+    pub(super) fn ends(&self, normal: &S::Vector, roundings: [f64; 2]) -> [f64; 2] {
+        let [a, b] = self.corners;
+        let low = a.iter().map(|p| normal.dot(&(*p + self.apart)));
+        let top = b.iter().map(|q| normal.dot(q));
+        [
+            low.fold(f64::INFINITY, f64::min) - roundings[0],
+            top.fold(f64::NEG_INFINITY, f64::max) + roundings[1],
+        ]
+    }
+
     /// The gap that is left along a direction at the end of the step (m).
     pub(super) fn left(&self, normal: &S::Vector) -> f64 {
         let ([a, b], [turn, other]) = (self.corners, &self.motion.turns);

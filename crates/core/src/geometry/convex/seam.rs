@@ -2,8 +2,9 @@
 //!
 //! What lies on them a little too deep, as springs and the drift of rigid contacts have it, overlaps the piece that it has just reached less
 //! across the seam than from above: the pair alone is that of a body and the side of a step. A place of the pair that a third piece covers is
-//! on the surface of none. Where all places of a pair are covered, only faces that do not lead into what covers them keep the two apart
-//! (the seam of a step is open above the piece beside it), and a ball touches the nearer of two pieces alone.
+//! on the surface of none. Where all places of a pair are covered, only faces keep the two apart that have an edge at one of them and do not
+//! lead into what covers it (the seam of a step is open above the piece beside it); which of three pieces lies beside which need not be known.
+//! A ball touches the nearer of two pieces alone.
 
 use super::passing::{ALIKE, Pair, PairMotion, faces};
 use super::{ContactPoint, ContactTolerances, Core};
@@ -101,15 +102,26 @@ pub fn leave_seam<'a, S: Space + 'a>(
         return;
     }
     let beside = beside();
-    let covers = |m: &ContactPoint<S::Vector>| beside.iter().find(|b| b.covers(m, slack));
-    if beside.is_empty() || out.iter().any(|m| covers(m).is_none()) {
+    let covered = |m: &ContactPoint<S::Vector>| beside.iter().any(|b| b.covers(m, slack));
+    if !out.iter().all(covered) {
         return;
     }
-    // Of the places on the side of the piece, the upper ones are at its edge.
+    // Of the places on the side of a piece, the upper ones are at its edge, where the piece beside it goes on.
     let open = |n: &S::Vector| {
-        let blocked =
-            |m: &ContactPoint<S::Vector>| covers(m).is_some_and(|b| b.blocks(m, n, slack));
-        !out.iter().all(blocked)
+        let [low, top] = pair.ends(n, roundings);
+        let at_edge = |b: &Beside<S>, m: &ContactPoint<S::Vector>| {
+            let height = n.dot(&b.place(m));
+            let below = if b.of_candidate {
+                height - low
+            } else {
+                top - height
+            };
+            below <= OPEN * slack
+        };
+        let goes_on = |b: &Beside<S>, m: &ContactPoint<S::Vector>| {
+            b.covers(m, slack) && at_edge(b, m) && !b.blocks(m, n, slack)
+        };
+        out.iter().any(|m| beside.iter().any(|b| goes_on(b, m)))
     };
     let open_faces = faces::<S>(cores).filter(|(n, _)| pair.gap(n, -deepest).is_some() && open(n));
     let of = open_faces.map(|(n, face)| (pair.left(&n), n, face));
