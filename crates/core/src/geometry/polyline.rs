@@ -8,6 +8,10 @@ use nalgebra::Vector2;
 
 /// Distance from a vertex, relative to its segment, up to which it is one of rounding.
 const AT_VERTEX: f64 = 1e-9;
+
+/// How far below the line of the last segment of a surface that deforms a point beyond its end may be and still lie in it, as a fraction of the
+/// segment: more than loads press it in. What is lower is beside the surface.
+const BELOW: f64 = 0.05;
 /// Points of a closed chain are one if they are closer than this share of the search distance.
 const SEAM: f64 = 1e-9;
 
@@ -245,7 +249,8 @@ impl Surface<Dim2> for Polyline {
                 // At the vertex itself, and behind one that is no valley, a direction from the vertex means nothing.
                 let of = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
-                let ends = next.is_none() && self.deforms() && 2.0 * length < along.norm();
+                let level = from.dot(&mean) >= -BELOW * along.norm();
+                let ends = next.is_none() && self.deforms() && level && 2.0 * length < along.norm();
                 let behind = !valley && next.is_some() && from.dot(&mean) < 0.0 || ends;
                 let (normal, distance) = if behind || length <= AT_VERTEX * along.norm() {
                     (mean, from.dot(&mean))
