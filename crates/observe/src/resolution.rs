@@ -23,6 +23,8 @@ const FEWEST: usize = 4;
 const TRACE: f64 = 1e-3;
 /// Share of the load of a body that a counterpart carries where the two are a contact of surfaces.
 const MOST: f64 = 0.5;
+/// Elements across a contact below which the error is told as a lower bound: the strips that slip are not seen as they are.
+const FEW: f64 = 8.0;
 /// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
 const LIMITS: [f64; 2] = [0.05, 0.2];
 
@@ -116,9 +118,14 @@ impl Resolution {
     /// The counts and what they do to the heat, for the summary.
     pub fn line(&self) -> String {
         let error = 100.0 * self.heat_error;
+        let about = if self.across < FEW {
+            "more than"
+        } else {
+            "about"
+        };
         match (self.stick, self.slip) {
             (Some(stick), Some(slip)) => format!(
-                "{:.0}, {stick:.0} over what sticks and {slip:.1} over a strip that slips where these are fewest; error of the heat of friction about {error:.1} %",
+                "{:.0}, {stick:.0} over what sticks and {slip:.1} over a strip that slips where these are fewest; error of the heat of friction {about} {error:.1} %",
                 self.across
             ),
             _ => format!(
@@ -138,10 +145,11 @@ impl Resolution {
                 }
                 _ => String::new(),
             };
-            let way = if self.rolls {
-                "is too low by about"
-            } else {
-                "may be off by"
+            let way = match (self.rolls, self.across < FEW) {
+                (true, true) => "is too low by more than",
+                (true, false) => "is too low by about",
+                (false, true) => "may be off by more than",
+                (false, false) => "may be off by",
             };
             let text = format!(
                 "{:.0} elements of `{}` lie across the contact{strips} where these are fewest: the heat of friction {way} {:.0} %; take \

@@ -62,6 +62,15 @@ fn a_folder_is_one_runs() {
             assert_eq!(unsafe { libc::kill(child.id() as libc::pid_t, number) }, 0);
         };
         stop(libc::SIGSTOP);
+        // It may go on for a moment, and end a file.
+        let mut status = 0;
+        // SAFETY: as above, and the status is written to a place of its own.
+        let of =
+            unsafe { libc::waitpid(child.id() as libc::pid_t, &raw mut status, libc::WUNTRACED) };
+        assert!(
+            of == child.id() as libc::pid_t && libc::WIFSTOPPED(status),
+            "{status}"
+        );
         all_refused(&out.0);
         stop(libc::SIGCONT);
         child.kill().unwrap();

@@ -76,13 +76,6 @@ pub struct Report {
     pub chosen: SolvePath,
 }
 
-/// Contacts of a problem up to which its start is judged before the first iteration, which costs about one more.
-const JUDGED_FIRST: usize = 256;
-
-/// Share of the tolerance up to which a start is left as it is. Iterations in one order may not contract: what is left of rounding in a body that
-/// rests would grow from step to step, up to the tolerance.
-const AT_REST: f64 = 1e-3;
-
 /// Sorts the rows, computes velocities from the current impulses, and evaluates the error.
 pub(super) fn arrange<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
     if problem.contacts() == 0 {
@@ -121,12 +114,6 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
             converged: true,
             ..Report::default()
         };
-    }
-    if problem.contacts() <= JUDGED_FIRST {
-        let report = arrange(problem, options);
-        if report.error <= AT_REST * options.tolerance {
-            return report;
-        }
     }
     sort(problem);
     let free = free_velocity(problem, options.parallel);

@@ -83,16 +83,18 @@ struct Group {
 pub(super) struct Differences {
     /// The largest difference, over the load of its contact, to which a hundredth of all load is added.
     pub worst: f64,
-    /// Sums of the differences, and of the loads (N).
-    sums: [f64; 2],
+    /// Sum of the differences, and of the loads of all contacts of the scene (N).
+    all: f64,
+    loads: f64,
 }
 
 impl Differences {
-    /// The sum of the differences over that of the loads.
+    /// The sum of the differences over that of the loads of all contacts.
     pub fn share(&self) -> f64 {
-        match self.sums {
-            [differences, loads] if loads > 0.0 => differences / loads,
-            _ => 0.0,
+        if self.loads > 0.0 {
+            self.all / self.loads
+        } else {
+            0.0
         }
     }
 }
@@ -291,7 +293,20 @@ impl<S: Space> Simulation<S> {
         for group in &mut attractions.groups {
             self.compare_attraction(group, tolerance, &mut differences, info)?;
         }
+        if !attractions.groups.is_empty() {
+            let contacts = 0..self.workspace.solved.contact_steps.len();
+            let loads = contacts.map(|at| self.load(at) / info.h);
+            differences.loads = loads.sum();
+        }
         Ok(differences)
+    }
+
+    /// What a contact carries in a step, or its attraction, if that is more (N s).
+    fn load(&self, at: usize) -> f64 {
+        let carried = self.workspace.solved.contact_steps[at]
+            .solution
+            .unilateral_n;
+        self.workspace.forms[at].tension.max(carried.abs())
     }
 
     /// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
@@ -301,7 +316,7 @@ impl<S: Space> Simulation<S> {
         let mut whole = 0.0;
         let mut pulls = group.pulls.iter().peekable();
         for at in &group.members {
-            let (contact, form) = (&contacts[*at], &workspace.forms[*at]);
+            let contact = &contacts[*at];
             let pull = pulls.next_if(|p| p.at == *at).copied();
             let solved = &workspace.solved;
             let (gap, n) = (contact.gap, &contact.normal);
@@ -311,8 +326,7 @@ impl<S: Space> Simulation<S> {
                 x: info.h * n.dot(&solved.after[*at]),
                 theta: info.theta,
             };
-            let carried = solved.contact_steps[*at].solution.unilateral_n;
-            whole += form.tension.max(carried.abs());
+            whole += self.load(*at);
             let [low, high] = path.bounds();
             if pull.is_some() || (high > low && high > 0.0) {
                 moved.push(Moved {
@@ -391,13 +405,12 @@ impl<S: Space> Simulation<S> {
             if load > 0.0 {
                 let difference = (given - used).abs();
                 differs = differs.max(difference / load);
-                differences.sums[0] += difference;
+                differences.all += difference;
                 if early && tolerance < 1.0 {
                     differs = differs.max(2.0 * tolerance);
                 }
             }
         }
-        differences.sums[1] += whole / h;
         differences.worst = differences.worst.max(differs);
         if differs <= tolerance {
             return Ok(());
