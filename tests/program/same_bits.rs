@@ -209,6 +209,7 @@ fn all_shapes_on_every_surface_on_any_number_of_threads() {
 }
 
 /// What the contacts do together.
+#[derive(Default)]
 struct Sums {
     /// Sum of normal impulses over contacts and steps (N s).
     pressed: f64,
@@ -216,6 +217,15 @@ struct Sums {
     lost: f64,
     contacts: usize,
     broken: u64,
+}
+
+impl Sums {
+    fn add(&mut self, other: &Self) {
+        self.pressed += other.pressed;
+        self.lost += other.lost;
+        self.contacts += other.contacts;
+        self.broken += other.broken;
+    }
 }
 
 /// The state after some steps with the grains' balls in their order, or the other way round: names, order and
@@ -248,19 +258,26 @@ fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums
 
 #[test]
 fn contacts_in_another_order_give_the_same_sums() {
-    for (case, steps) in [
-        ("biaxial", 600),
-        ("plane_shear", 600),
-        ("wheel_rail_rigid", 300),
-        ("shear_cell_3d", 300),
-        ("collapse", 1200),
+    // Columns that collapse are others after each impact: what they have in common is the mean of some.
+    for (case, steps, samples) in [
+        ("biaxial", 600, 1),
+        ("plane_shear", 600, 1),
+        ("wheel_rail_rigid", 300, 1),
+        ("shear_cell_3d", 300, 1),
+        ("collapse", 1200, 8),
     ] {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-        let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
-        let [a, b] = [false, true].map(|turned| match built(&loaded) {
-            Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
-            Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
-        });
+        let [mut a, mut b] = [Sums::default(), Sums::default()];
+        for seed in 1..=samples {
+            let set = (samples > 1).then(|| format!("seed={seed}"));
+            let loaded = load(path.as_ref(), set.as_slice()).unwrap_or_else(|e| panic!("{e}"));
+            for (all, turned) in [(&mut a, false), (&mut b, true)] {
+                all.add(&match built(&loaded) {
+                    Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
+                    Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
+                });
+            }
+        }
         let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
         let (pressed, lost) = (far(a.pressed, b.pressed), far(a.lost, b.lost));
         println!(
@@ -268,8 +285,6 @@ fn contacts_in_another_order_give_the_same_sums() {
              bonds {} and {}",
             a.contacts, b.contacts, a.broken, b.broken
         );
-        // A column that collapses is another one after each impact.
-        let bound = if case == "collapse" { 0.1 } else { 0.05 };
-        assert!(pressed < bound && lost < 0.05, "{case}");
+        assert!(pressed < 0.05 && lost < 0.05, "{case}");
     }
 }
