@@ -153,6 +153,13 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {
         "step {}: the ledger is off by {closes:e}",
         s.state.steps
     );
+    // From 2 % on a run says LAWS NOT MET.
+    let differs = report.agreement.attraction;
+    assert!(
+        differs < 0.02,
+        "step {}: attraction is off by {differs:e} of the load",
+        s.state.steps
+    );
     report
 }
 

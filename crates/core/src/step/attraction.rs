@@ -290,13 +290,14 @@ impl<S: Space> Simulation<S> {
         info: &StepInfo,
     ) -> Result<Differences, LawError> {
         let mut differences = Differences::default();
-        for group in &mut attractions.groups {
-            self.compare_attraction(group, tolerance, &mut differences, info)?;
-        }
         if !attractions.groups.is_empty() {
+            // Those of this solve: the forms change below.
             let contacts = 0..self.workspace.solved.contact_steps.len();
             let loads = contacts.map(|at| self.load(at) / info.h);
             differences.loads = loads.sum();
+        }
+        for group in &mut attractions.groups {
+            self.compare_attraction(group, tolerance, &mut differences, info)?;
         }
         Ok(differences)
     }
@@ -398,6 +399,8 @@ impl<S: Space> Simulation<S> {
             let own = used.abs().max(pull.start).max(given);
             let inertia = self.inertia_of(m.at) / (h * h);
             let needed = |here: f64| used + (x - here) * inertia;
+            // What is linearised is no tension of the form.
+            differences.loads += (own - self.load(m.at) / h).max(0.0);
             let load = own + 0.01 * whole / h;
             let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
             pull.linear = linear;
