@@ -423,9 +423,22 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
     assert!(taken > 100, "{taken}");
 }
 
-/// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed (m, m/s); `last` tells whether the box is the last
+/// Width and height of free bricks, and the side of a box that slides over them (m), at the alert distance that a case has without one: a twentieth
+/// of the radius of the smallest grain.
+const BRICKS: [([f64; 2], f64, f64); 3] = [
+    ([0.2, 0.2], 0.1, 3.5e-3),
+    ([0.5, 0.2], 0.1, 3.5e-3),
+    ([0.15, 0.06], 0.25, 4e-3),
+];
+
+/// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed (m/s); `last` tells whether the box is the last
 /// grain or the first.
-fn on_bricks<S: Dimensional>(width: f64, speed: f64, last: bool) -> (String, usize) {
+fn on_bricks<S: Dimensional>(
+    [width, height]: [f64; 2],
+    side: f64,
+    speed: f64,
+    last: bool,
+) -> (String, usize) {
     let grain = |size: [f64; 3], [x, y, z]: [f64; 3], velocity: f64| {
         let [a, b, c] = size.map(|d| 0.5 * d);
         match S::D {
@@ -440,43 +453,49 @@ fn on_bricks<S: Dimensional>(width: f64, speed: f64, last: bool) -> (String, usi
             ),
         }
     };
-    let count = (2.0 / width).round() as usize;
-    let middle = |k: usize| [width * (k as f64 + 0.5), 0.0, 0.1];
+    let count = (2.2 / width).round() as usize;
+    let middle = |k: usize| [width * (k as f64 + 0.5), 0.0, 0.5 * height];
     let mut all: Vec<String> = (0..count)
-        .map(|k| grain([width, 0.3, 0.2], middle(k), 0.0))
+        .map(|k| grain([width, 0.3, height], middle(k), 0.0))
         .collect();
-    let box_at = if last { count } else { 0 };
-    all.insert(box_at, grain([0.1; 3], [0.2, 0.02, 0.25], speed));
+    let slider = if last { count } else { 0 };
+    let at = [0.1 + 0.5 * side, 0.02, height + 0.5 * side];
+    all.insert(slider, grain([side; 3], at, speed));
     let kind = ["Polygons", "Polyhedra"][S::D - 2];
     let grains = format!("{kind}(material: \"m0\", grains: [{}])", all.join(", "));
-    (grains, box_at)
+    (grains, slider)
 }
 
 /// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart: the leading edge of the box is below the top of the
 /// next one by what they sank. Without friction it keeps its velocity.
 fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
-    for (speed, step) in [(0.2, 1e-3), (0.5, 1e-3), (0.7, 1e-3), (0.5, 2e-4)] {
-        for width in [0.2, 0.5] {
-            let (grains, slider) = on_bricks::<S>(width, speed, last);
+    for (speed, step) in [
+        (0.2, 1e-3),
+        (0.5, 1e-3),
+        (0.7, 1e-3),
+        (1.305, 1e-3),
+        (0.5, 2e-4),
+    ] {
+        for (brick, side, alert) in BRICKS {
+            let (grains, slider) = on_bricks::<S>(brick, side, speed, last);
             let mut s = build::<S>(&Sketch {
                 step,
                 mu: 0.0,
                 solver: String::new(),
-                detection: [3.5e-3, 1e-2],
+                detection: [alert, 1e-2],
                 bodies: floor::<S>(),
                 grains,
                 ..Sketch::default()
             });
-            let fixed = s.state.bodies.grains().next().expect("grains");
-            let time = 1.5 / speed;
-            go(&mut s, (time / step).round() as usize);
-            let velocity = s.state.bodies.velocity[fixed + slider];
+            let first = s.state.bodies.grains().next().expect("grains");
+            go(&mut s, (1.5 / (speed * step)).round() as usize);
+            let velocity = s.state.bodies.velocity[first + slider];
             let what = format!(
-                "{}D, {speed} m/s, steps of {step} s, bricks of {width} m, last {last}: {velocity:?}",
+                "{}D, {speed} m/s, steps of {step} s, bricks of {brick:?} m, last {last}: {velocity:?}",
                 S::D
             );
             println!("{what}");
-            assert!((velocity[0] / speed - 1.0).abs() < 1e-3, "{what}");
+            assert!((velocity[0] / speed - 1.0).abs() < 5e-3, "{what}");
         }
     }
 }

@@ -258,6 +258,7 @@ fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums
 
 #[test]
 fn contacts_in_another_order_give_the_same_sums() {
+    let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
     // Columns that collapse are others after each impact: what they have in common is the mean of some.
     for (case, steps, samples) in [
         ("biaxial", 600, 1),
@@ -271,14 +272,16 @@ fn contacts_in_another_order_give_the_same_sums() {
         for seed in 1..=samples {
             let set = (samples > 1).then(|| format!("seed={seed}"));
             let loaded = load(path.as_ref(), set.as_slice()).unwrap_or_else(|e| panic!("{e}"));
-            for (all, turned) in [(&mut a, false), (&mut b, true)] {
-                all.add(&match built(&loaded) {
-                    Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
-                    Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
-                });
-            }
+            let [one, other] = [false, true].map(|turned| match built(&loaded) {
+                Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
+                Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
+            });
+            // A heap at rest may carry its load in ways that differ by this much.
+            let apart = far(one.pressed, other.pressed);
+            assert!(apart < 0.15, "{case}, sample {seed}: {apart:.1e}");
+            a.add(&one);
+            b.add(&other);
         }
-        let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
         let (pressed, lost) = (far(a.pressed, b.pressed), far(a.lost, b.lost));
         println!(
             "{case}, {steps} steps: normal impulses {pressed:.1e} apart, lost energy {lost:.1e}, contacts {} and {}, broken \

@@ -23,7 +23,7 @@ const FEWEST: usize = 4;
 const TRACE: f64 = 1e-3;
 /// Share of the load of a body that a counterpart carries where the two are a contact of surfaces.
 const MOST: f64 = 0.5;
-/// Elements across a contact below which the error is told as a lower bound: the strips that slip are not seen as they are.
+/// Elements across a contact below which the error of cycles is a lower bound: 29 % are told of 63 % with four.
 const FEW: f64 = 8.0;
 /// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
 const LIMITS: [f64; 2] = [0.05, 0.2];
@@ -115,6 +115,11 @@ impl Resolution {
         self.heat_error = share(self.sums);
     }
 
+    /// Whether the error is a lower bound: in cycles, where few elements do not show the strips as they are.
+    fn is_least(&self) -> bool {
+        !self.rolls && self.across < FEW && self.heat_error > 0.0 && self.heat_error < 1.0
+    }
+
     /// The counts and what they do to the heat, for the summary.
     pub fn line(&self) -> String {
         let error = 100.0 * self.heat_error;
@@ -145,9 +150,8 @@ impl Resolution {
                 }
                 _ => String::new(),
             };
-            let way = match (self.rolls, self.across < FEW) {
-                (true, true) => "is too low by more than",
-                (true, false) => "is too low by about",
+            let way = match (self.rolls, self.is_least()) {
+                (true, _) => "is too low by about",
                 (false, true) => "may be off by more than",
                 (false, false) => "may be off by",
             };

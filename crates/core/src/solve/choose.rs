@@ -288,7 +288,11 @@ impl<S: Space> SolveContext<'_, S> {
         if JUDGED_FIRST.contains(&problem.contacts()) {
             let report = nlgs::arrange(problem, options);
             if report.error <= AT_REST * options.tolerance {
-                return report;
+                // Sweeps, of which none was needed.
+                return Report {
+                    used: Method::Anderson,
+                    ..report
+                };
             }
         }
         let sweeps = self.sweeps_before_newton(problem, auto_state);

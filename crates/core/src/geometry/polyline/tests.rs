@@ -47,7 +47,7 @@ fn a_surface_goes_on_beyond_its_ends() {
     let mut surface = chain(&flat, None);
     surface.move_vertices(&flat.map(Vector2::from));
     for beyond in [1e-6, 1e-3, 0.3] {
-        for height in [0.2, 1e-4, 0.0, -1e-4, -0.04] {
+        for height in [0.2, 1e-4, 0.0, -1e-4, -0.1] {
             for x in [-beyond, 2.0 + beyond] {
                 let found = touches(&surface, x, height, 0.5);
                 let [touch] = &found[..] else {
@@ -61,7 +61,7 @@ fn a_surface_goes_on_beyond_its_ends() {
         }
         // What is lower is beside its end.
         for x in [-beyond, 2.0 + beyond] {
-            for touch in touches(&surface, x, -0.2, 0.5) {
+            for touch in touches(&surface, x, -0.3, 0.5) {
                 assert!(touch.normal.y < 0.0 && touch.distance > 0.0, "{touch:?}");
             }
         }
