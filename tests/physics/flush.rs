@@ -424,11 +424,12 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
 }
 
 /// Width and height of free bricks, and the side of a box that slides over them (m), at the alert distance that a case has without one: a twentieth
-/// of the radius of the smallest grain.
-const BRICKS: [([f64; 2], f64, f64); 3] = [
-    ([0.2, 0.2], 0.1, 3.5e-3),
-    ([0.5, 0.2], 0.1, 3.5e-3),
-    ([0.15, 0.06], 0.25, 4e-3),
+/// of the radius of the smallest grain; and how far its velocity may be off by the default tolerance: a box seven times as heavy as a brick moves
+/// it more.
+const BRICKS: [([f64; 2], f64, f64, f64); 3] = [
+    ([0.2, 0.2], 0.1, 3.5e-3, 1e-3),
+    ([0.5, 0.2], 0.1, 3.5e-3, 1e-3),
+    ([0.15, 0.06], 0.25, 4e-3, 2e-2),
 ];
 
 /// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed (m/s); `last` tells whether the box is the last
@@ -476,7 +477,7 @@ fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
         (1.305, 1e-3),
         (0.5, 2e-4),
     ] {
-        for (brick, side, alert) in BRICKS {
+        for (brick, side, alert, allowed) in BRICKS {
             let (grains, slider) = on_bricks::<S>(brick, side, speed, last);
             let mut s = build::<S>(&Sketch {
                 step,
@@ -495,7 +496,7 @@ fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
                 S::D
             );
             println!("{what}");
-            assert!((velocity[0] / speed - 1.0).abs() < 5e-3, "{what}");
+            assert!((velocity[0] / speed - 1.0).abs() < allowed, "{what}");
         }
     }
 }
