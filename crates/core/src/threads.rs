@@ -108,11 +108,51 @@ pub fn fill<T: Send>(
     of: impl Fn(usize) -> T + Sync + Send,
 ) {
     empty(list, count);
-    if divide {
-        let items = (0..count).into_par_iter().with_min_len(LEAST_ITEMS);
-        items.map(of).collect_into_vec(list);
+    let out = Spread(list.as_mut_ptr());
+    let tasks = if divide {
+        count.div_ceil(LEAST_ITEMS).max(1)
     } else {
-        list.extend((0..count).map(of));
+        1
+    };
+    let task = |task: usize| {
+        let each = count.div_ceil(tasks);
+        let indices = (task * each).min(count)..((task + 1) * each).min(count);
+        // SAFETY: places are below the capacity, and each is written once.
+        unsafe { out.fill(indices, &of) }
+    };
+    if tasks > 1 {
+        (0..tasks).into_par_iter().for_each(task);
+    } else {
+        task(0);
+    }
+    // SAFETY: all are written.
+    unsafe { list.set_len(count) };
+}
+
+/// The memory of a list, of which each place is written by one thread.
+struct Spread<T>(*mut T);
+// SAFETY: as above.
+unsafe impl<T: Send> Sync for Spread<T> {}
+
+impl<T> Spread<T> {
+    /// # Safety
+    /// The place is in the allocation, and nobody else uses it.
+    unsafe fn put(&self, place: u32, item: T) {
+        // SAFETY: as above.
+        unsafe { self.0.add(place as usize).write(item) }
+    }
+
+    /// Writes what `of` gives for each index to its place. A function of its own, so that `of` is called from one place, where it is inlined and makes
+    /// its items in the list: large ones would be copied.
+    ///
+    /// # Safety
+    /// The places are in the allocation, and nobody else uses them.
+    #[inline(never)]
+    unsafe fn fill(&self, indices: Range<usize>, of: &impl Fn(usize) -> T) {
+        for k in indices {
+            // SAFETY: as above.
+            unsafe { self.0.add(k).write(of(k)) }
+        }
     }
 }
 
@@ -139,17 +179,6 @@ pub unsafe fn fill_places<T: Send>(
     places: &[u32],
     of: impl Fn(usize) -> T + Sync + Send,
 ) {
-    struct Spread<T>(*mut T);
-    // SAFETY: each place is written by one thread.
-    unsafe impl<T: Send> Sync for Spread<T> {}
-    impl<T> Spread<T> {
-        /// # Safety
-        /// The place is in the allocation, and nobody else uses it.
-        unsafe fn put(&self, place: u32, item: T) {
-            // SAFETY: as above.
-            unsafe { self.0.add(place as usize).write(item) }
-        }
-    }
     let count = places.len();
     empty(list, count);
     let spread = Spread(list.as_mut_ptr());
