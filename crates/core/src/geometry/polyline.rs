@@ -12,6 +12,7 @@ const AT_VERTEX: f64 = 1e-9;
 /// How far below the line of the last segment of a surface that deforms a point beyond its end may be and still lie in it, as a fraction of the
 /// segment: more than loads press it in. What is lower is beside the surface.
 const BELOW: f64 = 0.25;
+
 /// Points of a closed chain are one if they are closer than this share of the search distance.
 const SEAM: f64 = 1e-9;
 

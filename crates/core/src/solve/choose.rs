@@ -17,13 +17,14 @@ use super::requirements::{Features, Operator, refusal};
 use super::row::MomentForm;
 use super::search::Search;
 use super::standard::{self, Standard};
+use super::sticking;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Contacts of a problem whose start is judged before the first iteration, which costs about one more: of fewer, what is undetermined is sought
 /// in every step ([`super::sticking`]), and an iteration is often exact.
-const JUDGED_FIRST: RangeInclusive<usize> = 65..=256;
+const JUDGED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
 
 /// Share of the tolerance up to which a start is left as it is. Iterations in one order may not contract: what is left of rounding in a body that
 /// rests would grow from step to step, up to the tolerance.

@@ -26,8 +26,8 @@ use std::collections::BTreeMap;
 
 /// Contacts of a set up to which a second solution is sought in each step in which a contact begins to slide, and up to which in some of these
 /// steps: a second solve costs more, and in a large set that flows some contacts begin to slide in every step.
-const SMALL: usize = 64;
-const MOST: usize = 256;
+pub(super) const SMALL: usize = 64;
+pub(super) const MOST: usize = 256;
 /// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of the set.
 const ITERATIONS: u32 = 300;
 const OF_CONTACT: u32 = 10;
