@@ -41,8 +41,16 @@ pub(super) const SOLID: [(&str, Grain); 6] = [
     }),
 ];
 
+/// A folder of the files of one test: tests of one process run side by side.
+fn new_folder(test: &str) -> std::path::PathBuf {
+    let name = format!("fretwork-pairs-{}-{test}", std::process::id());
+    let folder = std::env::temp_dir().join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
 /// Triangles of a sheet of squares with these heights, and of a closed plate of this thickness (m), as text of an STL file.
-fn stl(name: &str, triangles: &[[[f64; 3]; 3]]) -> std::path::PathBuf {
+fn stl(folder: &std::path::Path, name: &str, triangles: &[[[f64; 3]; 3]]) -> std::path::PathBuf {
     use std::fmt::Write as _;
     let mut text = String::from("solid s\n");
     for t in triangles {
@@ -53,8 +61,7 @@ fn stl(name: &str, triangles: &[[[f64; 3]; 3]]) -> std::path::PathBuf {
         text.push_str("endloop\nendfacet\n");
     }
     text.push_str("endsolid s\n");
-    let path =
-        std::env::temp_dir().join(format!("fretwork-pairs-{}-{name}.stl", std::process::id()));
+    let path = folder.join(format!("{name}.stl"));
     std::fs::write(&path, text).expect("a file");
     path
 }
@@ -72,7 +79,8 @@ fn sheet(height: impl Fn(i32, i32) -> f64, half: i32, side: f64) -> Vec<[[f64; 3
     out
 }
 
-fn solid_walls(files: &mut Vec<std::path::PathBuf>) -> Vec<Wall> {
+/// The files of meshes are written into this folder.
+fn solid_walls(folder: &std::path::Path) -> Vec<Wall> {
     let mut rng = Pcg64::seed_from_u64(8);
     let heights: Vec<f64> = (0..41 * 41).map(|_| bumps(&mut rng)).collect();
     let texts: Vec<String> = heights.iter().map(|h| format!("{h:?}")).collect();
@@ -105,11 +113,9 @@ fn solid_walls(files: &mut Vec<std::path::PathBuf>) -> Vec<Wall> {
         let [[a, b], [c, d]] = [p, q].map(|[x, y]| [[x, y, 0.0], [x, y, depth]]);
         plate.extend([[a, b, c], [b, d, c]]);
     }
-    let mut mesh = |name: &'static str, triangles: &[[[f64; 3]; 3]]| {
-        let path = stl(name, triangles);
-        let wall = Wall::new(name, format!("Mesh(file: \"{}\")", path.display()));
-        files.push(path);
-        wall
+    let mesh = |name: &'static str, triangles: &[[[f64; 3]; 3]]| {
+        let path = stl(folder, name, triangles);
+        Wall::new(name, format!("Mesh(file: \"{}\")", path.display()))
     };
     let row: Vec<String> = (-9..=9)
         .flat_map(|i| {
@@ -148,12 +154,10 @@ fn solid_walls(files: &mut Vec<std::path::PathBuf>) -> Vec<Wall> {
 
 #[test]
 fn grains_stay_in_front_of_every_wall_in_space() {
-    let mut files = Vec::new();
-    let walls = solid_walls(&mut files);
+    let folder = new_folder("rigid");
+    let walls = solid_walls(&folder);
     throw_all::<Dim3>(&SOLID, None, &walls, &SPEEDS, 3);
-    for file in files {
-        let _ = std::fs::remove_file(file);
-    }
+    let _ = std::fs::remove_dir_all(folder);
 }
 
 /// As [`flat_soft_walls`].
@@ -204,10 +208,8 @@ fn grains_stay_in_front_of_what_deforms_and_wears_in_space() {
 
 #[test]
 fn grains_that_deform_stay_in_front_of_every_wall_in_space() {
-    let mut files = Vec::new();
-    let walls = solid_walls(&mut files);
+    let folder = new_folder("deform");
+    let walls = solid_walls(&folder);
     throw_all::<Dim3>(&SOLID[..2], Some(1e9), &walls[..8], &SOFT_SPEEDS, 1);
-    for file in files {
-        let _ = std::fs::remove_file(file);
-    }
+    let _ = std::fs::remove_dir_all(folder);
 }
