@@ -156,6 +156,7 @@ impl<S: Space> Observer<S> for RunState {
         solver.choice.add(&report.solver);
         solver.several_steps += u64::from(report.solver.several);
         solver.not_searched_steps += u64::from(report.solver.not_searched);
+        solver.pinched_steps += u64::from(report.solver.pinched);
         self.impossible.add(s, report);
         self.couplings += u64::from(report.coupling.iterations);
         solver.uncoupled_steps += u64::from(report.coupling.missed);

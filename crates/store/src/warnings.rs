@@ -468,26 +468,36 @@ fn notes(summary: &Summary) -> Vec<Warning> {
     notes
 }
 
-/// Steps of which another solution was found, with those in which it was not sought: alone these say nothing, as all dense flows have them.
+/// Steps of which another solution was found, with those in which it was not sought: alone these say nothing, as all dense flows have them, but
+/// where first bodies alone may hold a grain.
 fn several_solutions(summary: &Summary) -> Option<String> {
-    let [several, not_searched] = [
-        summary.solver.several_steps,
-        summary.solver.not_searched_steps,
+    let solver = &summary.solver;
+    let [several, not_searched, pinched] = [
+        solver.several_steps,
+        solver.not_searched_steps,
+        solver.pinched_steps,
     ];
-    if several == 0 {
-        return None;
-    }
-    let found = format!(
-        "in {several} steps another solution was found, in which loaded contacts slide that hold in the other, since more contacts carry a load than \
-             its balance determines; the one of less energy was kept, others may exist"
-    );
-    let left = (not_searched > 0).then(|| {
+    let found = (several > 0).then(|| {
         format!(
-            "in {not_searched} steps a loaded contact began to slide among more than 64 connected contacts, whose impulses may outnumber the freedoms of \
-             their bodies; no other solution was sought there"
+            "in {several} steps another solution was found, in which loaded contacts slide that hold in the other, since more contacts carry a load than \
+             its balance determines; the one of less energy was kept, others may exist"
         )
     });
-    let told: Vec<String> = std::iter::once(found).chain(left).collect();
+    let left = (several > 0 && not_searched > 0 || pinched > 0).then(|| {
+        let of_grains = if pinched > 0 {
+            format!(", in {pinched} of them one of a grain between first bodies, which might hold it")
+        } else {
+            String::new()
+        };
+        format!(
+            "in {not_searched} steps a loaded contact began to slide among more than 64 connected contacts, whose impulses may outnumber the freedoms of \
+             their bodies{of_grains}; no other solution was sought there"
+        )
+    });
+    let told: Vec<String> = found.into_iter().chain(left).collect();
+    if told.is_empty() {
+        return None;
+    }
     Some(format!(
         "{}; compliant contacts (docs/compliant.md) have one (docs/solvers.md, several solutions)",
         told.join("; ")

@@ -189,3 +189,24 @@ fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
     let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
     assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
 }
+
+/// Steps in which no other solution was sought say nothing alone, as dense flows have them, but where grains between first bodies let go.
+#[test]
+fn several_solutions_are_a_note_and_grains_between_first_bodies_that_let_go() {
+    let told = |several: u64, pinched: u64| {
+        let list = of_run(|s| {
+            s.solver.not_searched_steps = 5;
+            (s.solver.several_steps, s.solver.pinched_steps) = (several, pinched);
+        });
+        assert!(list.iter().all(|w| w.of == "NOT UNIQUE" && !w.serious));
+        let text: Vec<String> = list.into_iter().map(|w| w.text).collect();
+        text.join("; ")
+    };
+    assert_eq!(told(0, 0), "");
+    let (found, alone, both) = (told(2, 0), told(0, 3), told(2, 3));
+    assert!(found.contains("in 2 steps another solution") && found.contains("in 5 steps a loaded"));
+    assert!(!found.contains("between first bodies"));
+    assert!(alone.contains("in 3 of them one of a grain between first bodies"));
+    assert!(!alone.contains("another solution was found"));
+    assert!(both.contains("in 2 steps another solution") && both.contains("in 3 of them"));
+}

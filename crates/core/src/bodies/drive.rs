@@ -289,6 +289,15 @@ pub struct Driven {
     pub dofs: Vec<Dof>,
 }
 
+impl Driven {
+    /// Whether contacts and gravity alone move it along all axes, as a grain.
+    pub fn is_free(&self) -> bool {
+        let dimension = if self.dofs.len() == 3 { 2 } else { 3 };
+        let translations = self.dofs.iter().take(dimension);
+        translations.into_iter().all(|dof| matches!(dof, Dof::Free))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

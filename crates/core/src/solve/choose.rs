@@ -76,6 +76,11 @@ impl Default for AutoState {
 }
 
 impl AutoState {
+    /// When another solution is sought.
+    pub fn search(&self) -> &Search {
+        &self.search
+    }
+
     /// Begins a step, whose problem may be solved several times.
     pub fn begin_step(&mut self) {
         self.search.begin_step();

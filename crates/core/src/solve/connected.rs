@@ -16,6 +16,8 @@ pub(super) struct Connected {
     of: Option<[u64; 4]>,
     /// The set of each body; none of those that do not move, or that nothing touches.
     of_body: Vec<u32>,
+    /// The first body of each set.
+    first: Vec<u32>,
     /// Number of contacts of each set.
     contacts: Vec<u32>,
     /// Whether contacts with dynamical systems are among them.
@@ -35,6 +37,7 @@ impl Connected {
         let mut out = Self {
             of: None,
             of_body: vec![NONE; moves.len()],
+            first: Vec::new(),
             contacts: Vec::new(),
             with_systems: Vec::new(),
         };
@@ -57,6 +60,7 @@ impl Connected {
         let set = &mut self.of_body[root as usize];
         if *set == NONE {
             *set = self.contacts.len() as u32;
+            self.first.push(root);
             self.contacts.push(0);
             self.with_systems.push(false);
         }
@@ -66,6 +70,11 @@ impl Connected {
     /// Number of sets.
     pub fn len(&self) -> usize {
         self.contacts.len()
+    }
+
+    /// The first body of a set, which names it.
+    pub fn first(&self, set: usize) -> u32 {
+        self.first[set]
     }
 
     /// Number of contacts of a set between rigid bodies.
@@ -181,6 +190,7 @@ mod tests {
         let (a, b, c) = (Some(0), Some(1), Some(2));
         assert_eq!(of, [None, a, a, b, b, c, None, None]);
         assert_eq!([0, 1, 2].map(|k| sets.contacts(k)), [2, 3, 1]);
+        assert_eq!([0, 1, 2].map(|k| sets.first(k)), [1, 3, 5]);
         assert_eq!((sets.of([0, 7]), sets.of([3, 7])), (None, b));
     }
 

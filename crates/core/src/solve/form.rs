@@ -285,6 +285,8 @@ pub struct Problem<S: Space> {
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
     pub(super) of_kind: [Vec<u32>; 4],
+    /// Bodies whose motion is imposed or controlled, in order.
+    pub(super) controlled: Vec<u32>,
 }
 
 impl<S: Space> Default for Problem<S> {
@@ -307,6 +309,7 @@ impl<S: Space> Default for Problem<S> {
             connected: Connected::default(),
             compliant: false,
             of_kind: Default::default(),
+            controlled: Vec::new(),
         }
     }
 }

@@ -23,6 +23,7 @@ mod measure;
 mod momentum;
 pub mod nlgs;
 pub mod nodal;
+mod pinched;
 pub mod requirements;
 mod rocking;
 pub mod row;

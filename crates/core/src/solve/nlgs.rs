@@ -66,8 +66,8 @@ pub struct Report {
     /// Whether a loaded contact began to slide in a set of contacts that was too large to seek another solution, see
     /// [`Problem::is_not_searched`].
     pub not_searched: bool,
-    /// Whether another solution of a set too large to search in any step was sought.
-    pub searched: bool,
+    /// Whether it was one of a body that two or more bodies with imposed or controlled motion hold.
+    pub pinched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,
     /// The method that ended the solve.
@@ -217,7 +217,7 @@ impl Report {
             chosen: self.chosen.or(other.chosen),
             several: self.several || other.several,
             not_searched: self.not_searched || other.not_searched,
-            searched: self.searched || other.searched,
+            pinched: self.pinched || other.pinched,
             ..*other
         };
     }

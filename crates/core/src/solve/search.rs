@@ -1,7 +1,7 @@
 //! When another solution of a connected set is sought, see [`super::sticking`].
 
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of steps that are passed over after those that had no other solution, while no loaded contact that held begins to slide; and
 /// of steps without sliding until this is forgotten.
@@ -12,6 +12,9 @@ const PASSED: i32 = 8;
 pub struct Search {
     /// By the first body of a set that slid.
     waits: BTreeMap<u32, Wait>,
+    /// Sets of which another solve ended in a solution in this step.
+    #[serde(default)]
+    searched: BTreeSet<u32>,
 }
 
 /// After searches without a result.
@@ -26,6 +29,7 @@ struct Wait {
 impl Search {
     /// Begins a step.
     pub fn begin_step(&mut self) {
+        self.searched.clear();
         self.waits.values_mut().for_each(|wait| wait.left -= 1);
         self.waits.retain(|_, wait| wait.left >= -PASSED);
     }
@@ -33,6 +37,16 @@ impl Search {
     /// Whether a set is to be searched in this step.
     pub fn is_due(&self, set: u32) -> bool {
         self.waits.get(&set).is_none_or(|wait| wait.left <= 0)
+    }
+
+    /// Whether another solve of a set ended in a solution in this step.
+    pub fn was_searched(&self, set: u32) -> bool {
+        self.searched.contains(&set)
+    }
+
+    /// Takes that another solve of a set ended in a solution.
+    pub fn answered(&mut self, set: u32) {
+        self.searched.insert(set);
     }
 
     /// Takes the result of a search.
@@ -71,6 +85,8 @@ mod tests {
         assert_eq!(passed, [1, 2, 4, 8, 8]);
         search.learn(7, true);
         assert!(search.is_due(7));
+        search.answered(7);
+        assert_eq!([7, 8].map(|set| search.was_searched(set)), [true, false]);
         search.learn(7, false);
         for _ in 0..20 {
             search.begin_step();

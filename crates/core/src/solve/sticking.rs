@@ -11,23 +11,28 @@
 //! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
 //! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
 //!
-//! A set of more than [`SMALL`] contacts is solved again after steps without a result ([`super::search`]) only, one of more than [`MOST`] is not,
-//! nor one with bonds, compliances or dynamical systems; of the former it is told where
-//! a loaded contact begins to slide ([`Problem::is_not_searched`]).
+//! A set of more than [`SMALL`] contacts is solved again after steps without a result ([`super::search`]) only, one of more than [`MOST`] where
+//! two or more controlled bodies hold a body that begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not, nor
+//! those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved again, it
+//! is told ([`Problem::is_not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
-use super::connected::freedoms_of;
+use super::connected::{Connected, freedoms_of};
 use super::form::{ContactForm, ContactSolution, Problem};
 use super::local::solver::Method;
 use super::nlgs::{self, Options, Report};
 use super::row::MomentForm;
+use super::search::Search;
 use crate::geometry::space::{Space, VectorLike};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 
 /// Contacts of a set up to which a second solution is sought in each step in which a contact begins to slide, and up to which in some of these
 /// steps: a second solve costs more, and in a large set that flows some contacts begin to slide in every step.
 pub(super) const SMALL: usize = 64;
 pub(super) const MOST: usize = 256;
+/// Contacts of a set in which it is sought where controlled bodies let a body go that they might hold.
+const LARGE: RangeInclusive<usize> = MOST + 1..=16_384;
 /// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of the set.
 const ITERATIONS: u32 = 300;
 const OF_CONTACT: u32 = 10;
@@ -76,9 +81,17 @@ impl Does {
 
 /// A set of contacts, by their indices as pushed, in which some slide.
 struct SlidingSet {
-    /// Its first body.
+    /// Its first body, which names it.
     name: u32,
     contacts: Vec<u32>,
+}
+
+/// What a second solve gave.
+struct Sought<S: Space> {
+    /// Whether it reached a solution, whichever it is.
+    answered: bool,
+    /// One of less energy.
+    other: Option<Other<S>>,
 }
 
 /// A solution of a set.
@@ -133,11 +146,9 @@ fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f6
     if slip <= least || !at_bound(problem, k, form) {
         return if loaded { Does::Holds } else { Does::Nothing };
     }
-    let before = form.normal.dot(&form.impulse);
-    let across = S::tangential(&form.normal, &form.impulse);
-    if before <= 0.0 {
+    if form.normal.dot(&form.impulse) <= 0.0 {
         Does::New
-    } else if across.norm() < HELD * bound(form, before) {
+    } else if held_by(form, &form.impulse, HELD) {
         Does::Begins
     } else {
         Does::GoesOn
@@ -183,19 +194,26 @@ pub fn begins_to_slide<S: Space>(
     before: &S::Vector,
     solution: &ContactSolution<S>,
 ) -> bool {
-    let n = form.normal.dot(before);
-    let held = || S::tangential(&form.normal, before).norm() < HELD * bound(form, n);
-    form.friction > 0.0 && simple(form) && solution.unilateral_n > 0.0 && n > 0.0 && held()
+    let held = || held_by(form, before, AT_BOUND);
+    form.friction > 0.0 && simple(form) && solution.unilateral_n > 0.0 && held()
+}
+
+/// Whether a contact carried a load by this impulse, with less than a share of the friction bound.
+fn held_by<S: Space>(form: &ContactForm<S>, impulse: &S::Vector, share: f64) -> bool {
+    let n = form.normal.dot(impulse);
+    n > 0.0 && S::tangential(&form.normal, impulse).norm() < share * bound(form, n)
 }
 
 impl<S: Space> Problem<S> {
-    /// Whether one of these contacts, at their friction bound since this step, slides and is of a set that is too large to search in any step, and in which
-    /// impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine them.
+    /// Whether one of these contacts, at their friction bound since this step, slides and is of a set that is too large to search in every step and was not
+    /// searched in this one, and in which impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine
+    /// them. And whether one of them is of a body that two or more controlled ones hold.
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
         begin: impl Iterator<Item = usize> + Clone,
-    ) -> bool {
+        search: &Search,
+    ) -> [bool; 2] {
         let sets = self.take_connected();
         let freedoms = self.freedoms(&sets);
         let mut large: Vec<bool> = (0..sets.len())
@@ -204,6 +222,7 @@ impl<S: Space> Problem<S> {
                 !sets.with_systems(set)
                     && count > SMALL
                     && is_undetermined(S::D * count, freedoms[set])
+                    && !search.was_searched(sets.first(set))
             })
             .collect();
         if self.full.len() + self.levers.len() + self.bonded_levers.len() > 0 {
@@ -213,12 +232,16 @@ impl<S: Space> Problem<S> {
                 }
             }
         }
-        let mut of_large =
-            begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
-        let least = least_slip(self, of_large.clone().map(|k| &forms[k]));
-        let told = of_large.any(|k| parts(self, &forms[k])[1] > least);
+        let of_large = begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
+        let of_large: Vec<usize> = of_large.collect();
         self.connected = sets;
-        told
+        let pinched = self.of_pinched(forms, of_large.iter().copied());
+        // Each measured by its own free velocities: others may move fast.
+        [of_large, pinched].map(|contacts| {
+            let least = least_slip(self, contacts.iter().map(|k| &forms[*k]));
+            let slides = |k: &usize| parts(self, &forms[*k])[1] > least;
+            contacts.iter().any(slides)
+        })
     }
 }
 
@@ -234,7 +257,7 @@ impl<S: Space> SolveContext<'_, S> {
             return;
         }
         let mut found = Vec::new();
-        for set in self.small_sets(problem) {
+        for set in self.sets_to_search(problem) {
             let due = auto_state.search.is_due(set.name);
             let form = |k: &u32| &self.forms[*k as usize];
             let all = || set.contacts.iter().map(form);
@@ -245,8 +268,10 @@ impl<S: Space> SolveContext<'_, S> {
                 && self.is_sought(problem, &set.contacts, due)
                 && many()
             {
-                report.searched |= set.contacts.len() > SMALL;
-                let other = self.lower(problem, &set.contacts);
+                let Sought { answered, other } = self.lower(problem, &set.contacts);
+                if answered {
+                    auto_state.search.answered(set.name);
+                }
                 auto_state.search.learn(set.name, other.is_some());
                 found.extend(other);
             }
@@ -268,13 +293,14 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// The sets that are small enough to search, and of which impulses may outnumber freedoms.
-    fn small_sets(&self, problem: &mut Problem<S>) -> Vec<SlidingSet> {
+    fn sets_to_search(&self, problem: &mut Problem<S>) -> Vec<SlidingSet> {
         let sets = problem.take_connected();
         let freedoms = problem.freedoms(&sets);
+        let large = self.letting_go(problem, &sets);
         let is_small = |set: &usize| {
             let count = sets.contacts(*set);
             !sets.with_systems(*set)
-                && (2..=MOST).contains(&count)
+                && ((2..=MOST).contains(&count) || large.contains(set))
                 && is_undetermined(S::D * count, freedoms[*set])
         };
         let mut place = vec![NONE; sets.len()];
@@ -282,7 +308,7 @@ impl<S: Space> SolveContext<'_, S> {
         for set in (0..sets.len()).filter(is_small) {
             place[set] = small.len() as u32;
             small.push(SlidingSet {
-                name: NONE,
+                name: sets.first(set),
                 contacts: Vec::with_capacity(sets.contacts(set)),
             });
         }
@@ -290,16 +316,33 @@ impl<S: Space> SolveContext<'_, S> {
             for (form, k) in self.forms.iter().zip(0..) {
                 let set = sets.of(form.bodies).map(|set| place[set]);
                 if let Some(set) = set.filter(|set| *set != NONE) {
-                    let set = &mut small[set as usize];
-                    set.contacts.push(k);
-                    let moves = |b: &&u32| sets.of_body(**b).is_some();
-                    let first = form.bodies.iter().filter(moves).min();
-                    set.name = first.map_or(set.name, |b| set.name.min(*b));
+                    small[set as usize].contacts.push(k);
                 }
             }
         }
         problem.connected = sets;
         small
+    }
+
+    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies hold, or is held by them since this step and slides.
+    fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
+        let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
+        if problem.controlled.is_empty() || !(0..sets.len()).any(is_large) {
+            return BTreeSet::new();
+        }
+        let begins = |k: &usize| {
+            let form = &self.forms[*k];
+            let new = || form.normal.dot(&form.impulse) <= 0.0;
+            form.bodies.iter().any(|b| problem.is_controlled(b))
+                && sets.of(form.bodies).is_some_and(is_large)
+                && self.may_slide(problem, *k as u32)
+                && (new() || held_by(form, &form.impulse, AT_BOUND))
+        };
+        let begin = (0..self.forms.len()).filter(begins);
+        let pinched = problem.of_pinched(self.forms, begin).into_iter();
+        pinched
+            .filter_map(|k| sets.of(self.forms[k].bodies))
+            .collect()
     }
 
     /// Whether another solution of a set is to be sought: where a contact begins to slide, and in steps that are `due` where some slide while
@@ -317,7 +360,7 @@ impl<S: Space> SolveContext<'_, S> {
     }
 
     /// Another solution of a set, of less energy than the present one.
-    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> Option<Other<S>> {
+    fn lower(&self, problem: &Problem<S>, of: &[u32]) -> Sought<S> {
         let mut alone = Problem::default();
         let mut bodies = BTreeMap::new();
         let mut body = |b: u32| {
@@ -366,27 +409,37 @@ impl<S: Space> SolveContext<'_, S> {
             .map(|k| Some(problem.moments[*k as usize].moment()));
         let now_turned: Vec<_> = now_turned.collect();
         alone.adopt(&now, &now_turned);
-        let (report, differs) = context.find_lower(&mut alone)?;
+        let (answered, lower) = context.find_lower(&mut alone);
+        let Some((report, differs)) = lower else {
+            return Sought {
+                answered,
+                other: None,
+            };
+        };
         let impulses = of.iter().enumerate();
         let impulses = impulses.map(|(k, of)| (*of, alone.solution(k).impulse));
         let moments = turned.iter().zip(&alone.moments);
-        Some(Other {
-            report,
-            impulses: impulses.collect(),
-            moments: moments.map(|(k, row)| (*k, row.moment())).collect(),
-            several: differs,
-        })
+        Sought {
+            answered,
+            other: Some(Other {
+                report,
+                impulses: impulses.collect(),
+                moments: moments.map(|(k, row)| (*k, row.moment())).collect(),
+                several: differs,
+            }),
+        }
     }
 
-    /// Solves a set again from the start of the step. Whether a contact slides in one of both solutions and holds a load in the other; none where
-    /// no solution of less energy was found.
-    fn find_lower(&self, alone: &mut Problem<S>) -> Option<(Report, bool)> {
+    /// Solves a set again from the start of the step. Whether that ended in a solution; and if it has less energy, whether a contact slides in one of
+    /// both that holds a load in the other.
+    fn find_lower(&self, alone: &mut Problem<S>) -> (bool, Option<(Report, bool)>) {
         let before = self.energy(alone)[0];
         let least = least_slip(alone, self.forms.iter());
         let did = self.all_do(alone, least);
         self.start_anew(alone);
         let tolerance = 0.3 * self.options.tolerance;
-        let most = ITERATIONS.max(OF_CONTACT * self.forms.len() as u32);
+        let of_contacts = OF_CONTACT * self.forms.len().min(MOST) as u32;
+        let most = ITERATIONS.max(of_contacts);
         let mut other = self.improve(alone, Method::Pcpg, tolerance, most);
         let is_lower = |problem: &Problem<S>, by: f64| {
             let [energy, work] = self.energy(problem);
@@ -402,9 +455,9 @@ impl<S: Space> SolveContext<'_, S> {
         let one_differs = did.iter().zip(&does).any(differs);
         let by = if one_differs { LOWER_HOLDS } else { LOWER };
         if !(other.converged && is_lower(alone, by)) {
-            return None;
+            return (other.converged, None);
         }
-        Some((other, one_differs && is_lower(alone, DIFFERS)))
+        (true, Some((other, one_differs && is_lower(alone, DIFFERS))))
     }
 
     /// What the contacts of a problem do; those without a load do not hold.

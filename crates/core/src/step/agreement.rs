@@ -87,8 +87,8 @@ impl<S: Space> Simulation<S> {
                 .zip(&self.workspace.solved.contact_steps);
             both.for_each(|(form, step)| form.impulse = step.solution.impulse);
         }
-        let solver = &mut report.solver;
-        solver.not_searched = solver.converged && !solver.searched && self.is_not_searched();
+        let told = report.solver.converged.then(|| self.is_not_searched());
+        [report.solver.not_searched, report.solver.pinched] = told.unwrap_or_default();
         self.settle_sliding(sliding);
         self.settle_attractions(attractions, info.h);
         self.collect_spring_steps();

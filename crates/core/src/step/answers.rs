@@ -231,15 +231,17 @@ impl<S: Space> Simulation<S> {
         self.workspace.solved.begins = any_begins.into_inner();
     }
 
-    /// Whether a contact begins to slide in a set that was too large to seek another solution.
-    pub(super) fn is_not_searched(&mut self) -> bool {
+    /// Whether a contact begins to slide in a set that was too large to seek another solution, and one of a body that two or more controlled
+    /// bodies hold.
+    pub(super) fn is_not_searched(&mut self) -> [bool; 2] {
         let workspace = &mut self.workspace;
-        let (steps, forms) = (&workspace.solved.contact_steps, &workspace.forms);
         if !workspace.solved.begins {
-            return false;
+            return [false; 2];
         }
+        let (steps, forms) = (&workspace.solved.contact_steps, &workspace.forms);
         let begin = (0..steps.len()).filter(|k| steps[*k].begins);
-        workspace.problem.is_not_searched(forms, begin)
+        let search = self.state.auto_state.search();
+        workspace.problem.is_not_searched(forms, begin, search)
     }
 
     /// Collects the results of the contacts that resist rotation.

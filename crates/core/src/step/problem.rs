@@ -202,6 +202,8 @@ impl<S: Space> Simulation<S> {
     fn pose(&mut self, free: &[(S::Vector, S::Spin)]) {
         let (bodies, problem) = (&self.state.bodies, &mut self.workspace.problem);
         problem.clear();
+        let controlled = bodies.driven.iter().filter(|d| !d.is_free());
+        problem.set_controlled(controlled.map(|d| d.body));
         problem.push_bodies(free, self.options.solver.parallel, |b| {
             let mobility = Mobility {
                 mass: bodies.inverse_mass[b],
