@@ -76,7 +76,7 @@ pub struct SolverSummary {
     /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek another solution.
     #[serde(default)]
     pub not_searched_steps: u64,
-    /// Those of them in which it was a contact of a grain that two or more first bodies hold.
+    /// Those of them in which it was a contact of a grain that first bodies squeeze.
     #[serde(default)]
     pub pinched_steps: u64,
     /// Steps in which damage and opening did not reach the coupling's tolerance.

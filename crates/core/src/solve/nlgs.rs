@@ -66,7 +66,7 @@ pub struct Report {
     /// Whether a loaded contact began to slide in a set of contacts that was too large to seek another solution, see
     /// [`Problem::is_not_searched`].
     pub not_searched: bool,
-    /// Whether it was one of a body that two or more bodies with imposed or controlled motion hold.
+    /// Whether it was one of a body that bodies with imposed or controlled motion squeeze.
     pub pinched: bool,
     /// Index, as pushed, of the contact with the largest residual; `None` without contacts.
     pub worst: Option<usize>,

@@ -12,7 +12,7 @@
 //! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
 //!
 //! A set of more than [`SMALL`] contacts is solved again after steps without a result ([`super::search`]) only, one of more than [`MOST`] where
-//! two or more controlled bodies hold a body that begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not, nor
+//! controlled bodies squeeze a body that begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not, nor
 //! those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved again, it
 //! is told ([`Problem::is_not_searched`]).
 
@@ -207,7 +207,7 @@ fn held_by<S: Space>(form: &ContactForm<S>, impulse: &S::Vector, share: f64) -> 
 impl<S: Space> Problem<S> {
     /// Whether one of these contacts, at their friction bound since this step, slides and is of a set that is too large to search in every step and was not
     /// searched in this one, and in which impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine
-    /// them. And whether one of them is of a body that two or more controlled ones hold.
+    /// them. And whether one of them is of a body that controlled ones squeeze.
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
@@ -324,7 +324,7 @@ impl<S: Space> SolveContext<'_, S> {
         small
     }
 
-    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies hold, or is held by them since this step and slides.
+    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies squeeze, or slides and was not squeezed before.
     fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
         let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
         if problem.controlled.is_empty() || !(0..sets.len()).any(is_large) {

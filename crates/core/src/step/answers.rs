@@ -231,8 +231,8 @@ impl<S: Space> Simulation<S> {
         self.workspace.solved.begins = any_begins.into_inner();
     }
 
-    /// Whether a contact begins to slide in a set that was too large to seek another solution, and one of a body that two or more controlled
-    /// bodies hold.
+    /// Whether a contact begins to slide in a set that was too large to seek another solution, and one of a body that controlled bodies
+    /// squeeze.
     pub(super) fn is_not_searched(&mut self) -> [bool; 2] {
         let workspace = &mut self.workspace;
         if !workspace.solved.begins {
