@@ -56,6 +56,11 @@ impl<R> Rows<R> {
         self.rows.len() as u32 - 1
     }
 
+    /// Where each of [`Self::all`] is in the list that [`Self::set`] made them of.
+    pub fn sequence(&self) -> &[u32] {
+        self.order.sequence()
+    }
+
     /// All of them, in the order of the iteration.
     pub fn all(&self) -> &[R] {
         &self.rows

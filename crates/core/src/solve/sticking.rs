@@ -235,7 +235,12 @@ impl<S: Space> Problem<S> {
         let of_large = begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
         let of_large: Vec<usize> = of_large.collect();
         self.connected = sets;
-        let pinched = self.of_pinched(forms, of_large.iter().copied());
+        let pinched = if of_large.is_empty() {
+            Vec::new()
+        } else {
+            let several = self.of_several_controlled();
+            self.of_pinched(forms, &several, of_large.iter().copied())
+        };
         // Each measured by its own free velocities: others may move fast.
         [of_large, pinched].map(|contacts| {
             let least = least_slip(self, contacts.iter().map(|k| &forms[*k]));
@@ -333,13 +338,13 @@ impl<S: Space> SolveContext<'_, S> {
         let begins = |k: &usize| {
             let form = &self.forms[*k];
             let new = || form.normal.dot(&form.impulse) <= 0.0;
-            form.bodies.iter().any(|b| problem.is_controlled(b))
-                && sets.of(form.bodies).is_some_and(is_large)
+            sets.of(form.bodies).is_some_and(is_large)
                 && self.may_slide(problem, *k as u32)
                 && (new() || held_by(form, &form.impulse, AT_BOUND))
         };
-        let begin = (0..self.forms.len()).filter(begins);
-        let pinched = problem.of_pinched(self.forms, begin).into_iter();
+        let several = problem.of_several_controlled();
+        let begin = several.iter().copied().filter(begins);
+        let pinched = problem.of_pinched(self.forms, &several, begin).into_iter();
         pinched
             .filter_map(|k| sets.of(self.forms[k].bodies))
             .collect()
