@@ -22,6 +22,9 @@ pub(super) struct Connected {
     contacts: Vec<u32>,
     /// Whether contacts with dynamical systems are among them.
     with_systems: Vec<bool>,
+    /// The controlled bodies, and the contacts of such with others that have several, see [`Problem::of_several_controlled`].
+    controlled: Vec<u32>,
+    pub of_several_controlled: Vec<usize>,
 }
 
 impl Connected {
@@ -40,6 +43,8 @@ impl Connected {
             first: Vec::new(),
             contacts: Vec::new(),
             with_systems: Vec::new(),
+            controlled: Vec::new(),
+            of_several_controlled: Vec::new(),
         };
         pairs(&mut |[a, b]: [u32; 2]| {
             let body = if moves[a as usize] { a } else { b };
@@ -120,7 +125,7 @@ impl<S: Space> Problem<S> {
     pub(super) fn take_connected(&mut self) -> Connected {
         let of = self.contacts_of_rows();
         let known = std::mem::take(&mut self.connected);
-        if of.is_some() && known.of == of {
+        if of.is_some() && known.of == of && known.controlled == self.controlled {
             return known;
         }
         let movable = self.movable(false);
@@ -138,6 +143,8 @@ impl<S: Space> Problem<S> {
             }
         }
         sets.of = of;
+        sets.controlled.clone_from(&self.controlled);
+        sets.of_several_controlled = self.of_several_controlled();
         sets
     }
 

@@ -18,8 +18,8 @@ impl<S: Space> Problem<S> {
         self.controlled.binary_search(body).is_ok()
     }
 
-    /// Contacts of controlled bodies with others that have two or more such; none where systems act. Rows are looked through, which take less memory
-    /// than forms: reading all of these cost a packing of 5,000 balls a sixth of a step.
+    /// Contacts of controlled bodies with others that have two or more such, in order; none where systems act. Rows are looked through, which take
+    /// less memory than forms.
     pub(super) fn of_several_controlled(&self) -> Vec<usize> {
         if self.controlled.is_empty() || !self.systems.is_empty() {
             return Vec::new();
@@ -28,23 +28,16 @@ impl<S: Space> Problem<S> {
         for body in &self.controlled {
             controlled[*body as usize] = true;
         }
-        let held = |[a, b]: [u32; 2]| match [a, b].map(|b| controlled[b as usize]) {
-            [false, true] => Some(a as usize),
-            [true, false] => Some(b as usize),
-            _ => None,
-        };
-        let mut counts = vec![0u32; self.masses.len()];
-        self.each_body_pair(&mut |pair, _| {
-            if let Some(body) = held(pair) {
+        let (mut counts, mut found) = (vec![0u32; self.masses.len()], Vec::new());
+        self.each_body_pair(&mut |[a, b], contact| {
+            if controlled[a as usize] != controlled[b as usize] {
+                let body = if controlled[a as usize] { b } else { a } as usize;
                 counts[body] += 1;
+                found.push((contact as usize, body));
             }
         });
-        let mut found = Vec::new();
-        self.each_body_pair(&mut |pair, contact| {
-            if held(pair).is_some_and(|body| counts[body] > 1) {
-                found.push(contact as usize);
-            }
-        });
+        found.retain(|(_, body)| counts[*body] > 1);
+        let mut found: Vec<usize> = found.into_iter().map(|(contact, _)| contact).collect();
         found.sort_unstable();
         found
     }
@@ -67,8 +60,9 @@ impl<S: Space> Problem<S> {
         of(&self.bonded_levers, bonded_levers, give);
     }
 
-    /// Of these contacts those of a body, not a controlled one, which controlled bodies squeeze: by two loaded ones of `of_several` ([`Self::of_several_controlled`]) whose friction cones lie in
-    /// each other (Nguyen, "Constructing force-closure grasps", 1988, for two points with friction), so that no other load need press them.
+    /// Of these contacts those of a body, not a controlled one, which controlled bodies squeeze: by two loaded ones of `of_several`
+    /// ([`Self::of_several_controlled`]) whose friction cones lie in each other, so that no other load need press them (Nguyen, "Constructing
+    /// force-closure grasps", Int. J. Robotics Research 7, 1988).
     pub(super) fn of_pinched(
         &self,
         forms: &[ContactForm<S>],

@@ -234,13 +234,9 @@ impl<S: Space> Problem<S> {
         }
         let of_large = begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
         let of_large: Vec<usize> = of_large.collect();
+        let several = &sets.of_several_controlled;
+        let pinched = self.of_pinched(forms, several, of_large.iter().copied());
         self.connected = sets;
-        let pinched = if of_large.is_empty() {
-            Vec::new()
-        } else {
-            let several = self.of_several_controlled();
-            self.of_pinched(forms, &several, of_large.iter().copied())
-        };
         // Each measured by its own free velocities: others may move fast.
         [of_large, pinched].map(|contacts| {
             let least = least_slip(self, contacts.iter().map(|k| &forms[*k]));
@@ -332,9 +328,7 @@ impl<S: Space> SolveContext<'_, S> {
     /// The [`LARGE`] sets in which a body begins to slide that controlled bodies squeeze, or slides and was not squeezed before.
     fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
         let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
-        if problem.controlled.is_empty() || !(0..sets.len()).any(is_large) {
-            return BTreeSet::new();
-        }
+        let several = &sets.of_several_controlled;
         let begins = |k: &usize| {
             let form = &self.forms[*k];
             let new = || form.normal.dot(&form.impulse) <= 0.0;
@@ -342,9 +336,8 @@ impl<S: Space> SolveContext<'_, S> {
                 && self.may_slide(problem, *k as u32)
                 && (new() || held_by(form, &form.impulse, AT_BOUND))
         };
-        let several = problem.of_several_controlled();
         let begin = several.iter().copied().filter(begins);
-        let pinched = problem.of_pinched(self.forms, &several, begin).into_iter();
+        let pinched = problem.of_pinched(self.forms, several, begin).into_iter();
         pinched
             .filter_map(|k| sets.of(self.forms[k].bodies))
             .collect()
