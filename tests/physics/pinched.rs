@@ -398,21 +398,24 @@ fn fallen<S: Dimensional>(s: Simulation<S>) -> f64 {
     fallen_but(s, &[])
 }
 
-/// The same of those that are not among these. If they fall it is told.
+/// The same of those that are not among these. If they fall it is told, before they are a tenth of a millimetre down.
 fn fallen_but<S: Dimensional>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     let driven: Vec<usize> = (s.state.bodies.driven.iter())
         .map(|d| d.body as usize)
         .collect();
     let start = s.state.bodies.position.clone();
-    let mut told = false;
-    for _ in 0..500 {
+    let (mut told, mut fallen) = (false, 0.0);
+    for step in 1..=500 {
         let solver = s.step().unwrap_or_else(|e| panic!("{e}")).solver;
         told |= solver.several || solver.pinched;
+        let grains = (0..start.len()).filter(|b| !driven.contains(b) && !but.contains(b));
+        let down = grains.map(|b| start[b][S::D - 1] - s.state.bodies.position[b][S::D - 1]);
+        fallen = down.fold(0.0, f64::max);
+        assert!(
+            told || fallen < 1e-4,
+            "{fallen:e} m after {step} steps, and nothing is told"
+        );
     }
-    let grains = (0..start.len()).filter(|b| !driven.contains(b) && !but.contains(b));
-    let down = grains.map(|b| start[b][S::D - 1] - s.state.bodies.position[b][S::D - 1]);
-    let fallen = down.fold(0.0, f64::max);
-    assert!(told || fallen < 1e-4, "{fallen:e} m, and nothing is told");
     fallen
 }
 
@@ -504,7 +507,7 @@ fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {
         let at_default = debris_falls(dimension, count, "", 0.1);
         println!("{dimension}D, {count}: {at_default:e} m");
     }
-    for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 129)] {
+    for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 127), (2, 129)] {
         let solver = "method: Newton, tolerance: 1e-6";
         let fallen = debris_falls(dimension, count, solver, 0.1);
         println!("{dimension}D, {count}: {fallen:e} m by Newton's method");

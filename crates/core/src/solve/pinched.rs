@@ -104,3 +104,68 @@ impl<S: Space> Problem<S> {
         found.into_iter().map(|(k, _)| k).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::space::{Dim2, Space};
+    use nalgebra::{Matrix1, Vector1, Vector2};
+
+    /// A grain between two bodies that push it along these directions (degrees), with this friction; the loads are of 1 N s.
+    fn between(directions: [f64; 2], friction: f64, controlled: &[u32]) -> Vec<usize> {
+        let mut problem = Problem::<Dim2>::default();
+        for _ in 0..3 {
+            let mobility = (Vector2::repeat(1.0), Matrix1::new(1.0));
+            problem.push_body(
+                Vector2::zeros(),
+                Vector1::new(0.0),
+                mobility.0,
+                mobility.1,
+                1.0,
+            );
+        }
+        let form = |k: usize| {
+            let (y, x) = directions[k].to_radians().sin_cos();
+            // The grain is the candidate of the first contact, and the antagonist of the second.
+            let (push, by) = (Vector2::new(x, y), k as u32 + 1);
+            let (bodies, normal) = if k == 0 {
+                ([0, by], push)
+            } else {
+                ([by, 0], -push)
+            };
+            ContactForm {
+                bodies,
+                normal,
+                arms: [-normal, normal],
+                central: true,
+                apart: false,
+                shift_n: 0.0,
+                shift_t: <Dim2 as Space>::Tangent::zero(),
+                friction,
+                tension: 0.0,
+                cohesion: 0.0,
+                elastic: None,
+                compliance: [0.0; 2],
+                impulse: normal,
+            }
+        };
+        let forms = [form(0), form(1)];
+        problem.push_all(&forms, false);
+        problem.set_controlled(controlled.iter().copied());
+        let several = problem.of_several_controlled();
+        problem.of_pinched(&forms, &several, 0..2)
+    }
+
+    /// Two that push against each other squeeze, in a corner only where the friction angles bridge what the directions lack; not where one of them
+    /// is free, nor where all three are controlled.
+    #[test]
+    fn what_is_in_both_friction_cones_is_squeezed() {
+        assert_eq!(between([0.0, 180.0], 0.1, &[2, 1]), [0, 1]);
+        assert_eq!(between([0.0, 90.0], 0.4, &[1, 2]), [0; 0]);
+        assert_eq!(between([0.0, 90.0], 1.01, &[1, 2]), [0, 1]);
+        assert_eq!(between([0.0, 150.0], 0.3, &[1, 2]), [0, 1]);
+        assert_eq!(between([0.0, 150.0], 0.2, &[1, 2]), [0; 0]);
+        assert_eq!(between([0.0, 180.0], 0.1, &[1]), [0; 0]);
+        assert_eq!(between([0.0, 180.0], 0.1, &[0, 1, 2]), [0; 0]);
+    }
+}
