@@ -505,6 +505,11 @@ fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
             );
             println!("{what}");
             assert!((velocity[0] / speed - 1.0).abs() < allowed, "{what}");
+            let lost = s.state.network.step_size.lost_at_edges;
+            assert!(
+                lost < allowed * s.state.energy.scale,
+                "{what}: {lost} J at edges"
+            );
         }
     }
 }
@@ -515,4 +520,68 @@ fn free_bricks_are_one_floor() {
         slides_over_free_bricks::<Dim2>(last);
         slides_over_free_bricks::<Dim3>(last);
     }
+}
+
+/// Below the default alert distance the bricks sink by more than counts as flush, and the box may be stopped by the next one: that is told.
+#[test]
+fn an_edge_of_the_solution_is_told() {
+    fn slides<S: Dimensional + Steps>(brick: [f64; 2], side: f64, alert: f64, speed: f64) -> bool {
+        let (grains, slider) = on_bricks::<S>(brick, side, speed, true);
+        let mut s = build::<S>(&Sketch {
+            mu: 0.0,
+            solver: String::new(),
+            detection: [alert, 1e-2],
+            bodies: floor::<S>(),
+            grains,
+            ..Sketch::default()
+        });
+        let first = s.state.bodies.grains().next().expect("grains");
+        go(&mut s, (1.5 / (speed * 1e-3)).round() as usize);
+        let velocity = s.state.bodies.velocity[first + slider];
+        let step_size = &s.state.network.step_size;
+        let lost = step_size.lost_at_edges / s.state.energy.scale;
+        let changed = (velocity[0] / speed - 1.0).abs();
+        println!(
+            "{}D, {brick:?} m, alert {alert} m, {speed} m/s: changed by {changed:.2e}, lost {lost:.2e} at {} edges",
+            S::D,
+            step_size.edges
+        );
+        assert!(changed < 2e-2 || lost > 1e-2);
+        // Where nothing is met nothing is told.
+        assert_eq!(
+            s.state.energy.impact < 1e-2 * s.state.energy.scale,
+            lost == 0.0
+        );
+        lost > 1e-2
+    }
+    let mut told = [0, 0];
+    for alert in [1e-3, 1e-4] {
+        for speed in [0.2, 0.5, 0.7, 1.305] {
+            let low = ([0.15, 0.06], 0.25);
+            told[0] += usize::from(slides::<Dim2>(low.0, low.1, alert, speed));
+            told[1] += usize::from(slides::<Dim3>(low.0, low.1, alert, speed));
+            assert!(!slides::<Dim2>([0.2, 0.2], 0.1, alert, speed));
+        }
+    }
+    println!("{told:?} of 8");
+    assert!(told[0] > 3);
+}
+
+/// As low an edge of bodies that stand still is one of the case: it stops a box, and the solution is not blamed.
+#[test]
+fn an_edge_of_the_case_is_none_of_the_solution() {
+    let floor = [
+        shape::<Dim2>([0.0, 0.0, -0.5], [1.0, 0.0, 0.0]),
+        shape::<Dim2>([1.0, 0.0, -0.5], [2.0, 0.0, 3e-4]),
+    ];
+    let mut s = build::<Dim2>(&Sketch {
+        mu: 0.0,
+        gravity: G,
+        bodies: as_bodies(&floor, false),
+        grains: sliders::<Dim2>(0.2)[0].clone(),
+        ..Sketch::default()
+    });
+    go(&mut s, 4000);
+    assert!(motion(&s).0[0] < 0.1, "{:?}", motion(&s));
+    assert_eq!(s.state.network.step_size.edges, 0);
 }

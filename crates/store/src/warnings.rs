@@ -120,6 +120,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("IMPOSSIBLE MOTION", summary.impossible_motions.warning());
     serious("TOO FAST", summary.step_size.warning());
     serious("FOUND OVERLAPPING", summary.step_size.sunk_warning());
+    serious("EDGES MET", edges(summary));
     // No smaller step helps against a motion that cannot be obeyed.
     let possible = summary.impossible_motions.is_empty();
     serious("OVERLAP", overlap(summary).filter(|_| possible));
@@ -293,6 +294,15 @@ fn overlap(summary: &Summary) -> Option<String> {
             solver.overlap_max
         )
     })
+}
+
+/// Share of the energy that bodies may lose at the edges of flush neighbours: what they do then is another motion.
+const EDGES: f64 = 1e-2;
+
+/// Bodies that met the edges of flush neighbours.
+fn edges(summary: &Summary) -> Option<String> {
+    let share = summary.step_size.lost_at_edges / summary.energy.scale;
+    (share > EDGES).then(|| summary.step_size.edges_warning(share))?
 }
 
 /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.

@@ -1,6 +1,7 @@
 //! Tests of the warnings.
 
 use super::*;
+use fretwork_core::contact::Occurrence;
 use fretwork_observe::deformable::{BorderLoad, SmallStrain};
 
 fn of_run(change: impl FnOnce(&mut Summary)) -> Vec<Warning> {
@@ -188,6 +189,29 @@ fn friction_that_gives_energy_is_a_reason() {
 fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
     let list = of_run(|s| s.phases_missed = vec!["shear".to_owned()]);
     assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
+}
+
+/// What is lost at low edges is a reason from a hundredth of the energy.
+#[test]
+fn energy_lost_at_edges_is_a_reason() {
+    let told = |lost: f64| {
+        of_run(|s| {
+            s.energy.scale = 2.0;
+            s.step_size.edges = 3;
+            s.step_size.lost_at_edges = lost;
+            s.step_size.first_edge = Some(Occurrence {
+                time: 0.5,
+                bodies: vec!["grain 1".to_owned(), "floor".to_owned()],
+            });
+        })
+    };
+    assert!(told(1.9e-2).is_empty());
+    let list = told(0.1);
+    assert!(list.len() == 1 && list[0].serious && list[0].of == "EDGES MET");
+    assert!(
+        list[0].text.starts_with("3 times a body met the edge")
+            && list[0].text.contains("lost 5.0 %")
+    );
 }
 
 /// Steps in which no other solution was sought say nothing alone, as dense flows have them, but where grains between first bodies let go.

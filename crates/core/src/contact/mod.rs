@@ -14,5 +14,5 @@ pub use id::{ContactId, ContactNames, ContactorId, ContactorKind};
 pub use memory::{Bond, BondState, Memory, Slides};
 pub use network::{Acts, Contact, Key, Network};
 pub use spring::Spring;
-pub use step_size::StepSizeDiagnostics;
+pub use step_size::{Occurrence, StepSizeDiagnostics};
 pub use thermal::{ContactHeat, ContactTemperature, HeatSide, MaterialPair};

@@ -101,6 +101,13 @@ pub struct StepSizeDiagnostics {
     /// Start of the last such step (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
+    /// Number of times that a body met the edge of a neighbour of what it slid over, which stood out by less than half a percent of its size,
+    /// and the energy that it lost there (J).
+    pub edges: u64,
+    /// See [`Self::edges`].
+    pub lost_at_edges: f64,
+    /// First occurrence.
+    pub first_edge: Option<Occurrence>,
     /// First occurrence of a displacement lost to rounding.
     pub motion_lost: Option<Occurrence>,
     /// Number of contacts created before they closed.
@@ -177,6 +184,20 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
+    /// Records a body that loses energy (J) at the edge of a neighbour of what it slides over.
+    pub(super) fn record_edge<S: Space>(
+        &mut self,
+        time: f64,
+        bodies: &Bodies<S>,
+        pair: [u32; 2],
+        lost: f64,
+    ) {
+        self.edges += 1;
+        self.lost_at_edges += lost;
+        self.first_edge
+            .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
+    }
+
     /// Records a body that moves farther in a step than the range in which contacts are searched.
     pub(super) fn record_unwatched<S: Space>(&mut self, time: f64, bodies: &Bodies<S>, body: u32) {
         // A step may be examined several times.
@@ -198,6 +219,19 @@ impl StepSizeDiagnostics {
     ) {
         self.motion_lost
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
+    }
+
+    /// Returns the warning about bodies that lost this share of the energy at low edges.
+    pub fn edges_warning(&self, share: f64) -> Option<String> {
+        let first = self.first_edge.as_ref()?;
+        Some(format!(
+            "{} times a body met the edge of a neighbour of the body it slid over, which stood out by less than 0.5 % of its size, and lost \
+             {:.1} % of the energy there in all, {}: the error of the solver lets free bodies that lie flush sink by as much. Take a smaller \
+             solver.tolerance, or a larger detection.alert, a hundredth of which counts as flush",
+            self.edges,
+            100.0 * share,
+            first.text()
+        ))
     }
 
     /// Returns the warning about motion lost to rounding, if there was any.

@@ -2,7 +2,7 @@
 
 use super::motion::{self, StepStart};
 use super::{Scheme, Simulation, StepError, StepReport};
-use crate::contact::detect::detect;
+use crate::contact::detect::{detect, record_edges};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::{Interface, SpringForm};
@@ -14,6 +14,9 @@ const CHUNK: usize = 1024;
 /// About what it takes to look whether a contact is one of a driven body, and whether it carries an impulse (ns).
 const RECEIVED: f64 = 5.0;
 const ACTS: f64 = 5.0;
+
+/// Share of the largest energy below which what is lost at a contact in a step is not worth a look.
+const NOTHING: f64 = 1e-6;
 
 /// Velocity and spin of each body.
 type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
@@ -35,6 +38,7 @@ impl<S: Space> Simulation<S> {
         self.conduct()?;
         self.book(&start, &mut report);
         self.book_momentum(&start, &mut report);
+        self.watch_edges();
         self.move_to_end();
         self.end_step(&mut report)?;
         Ok(report)
@@ -212,6 +216,24 @@ impl<S: Space> Simulation<S> {
         }
         self.state.energy.book(totals, &work, kinetic, elastic);
         self.state.received = received;
+    }
+
+    /// Records what bodies lose at the edges of flush neighbours.
+    fn watch_edges(&mut self) {
+        let solved = &self.workspace.solved.contact_steps;
+        let springs = &self.workspace.solved.springs;
+        record_edges(
+            &mut self.state.network,
+            &self.shapes,
+            &self.state.bodies,
+            [self.state.time, self.options.scheme.h],
+            |k, contact| match springs.get(k) {
+                // Springs give back what they take.
+                Some(Some(_)) => 0.0,
+                _ => solved[k].normal_work(&contact.normal),
+            },
+            NOTHING * self.state.energy.scale,
+        );
     }
 
     /// Energy in the springs of compliant contacts (J).

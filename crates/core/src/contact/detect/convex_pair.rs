@@ -69,27 +69,9 @@ impl<S: Space> Narrow<'_, S> {
 
     /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece.
     fn beside(&self, pair: [u32; 2]) -> Vec<Beside<'_, S>> {
-        let balls = self.shapes.balls.len();
-        let origin = self.centres[balls + (pair[1] & !Key::PIECE) as usize];
-        let mut out = Vec::new();
-        for (side, name) in pair.into_iter().enumerate() {
-            let others = self
-                .partners
-                .of(self.pairs, self.centres.len(), balls, name);
-            for other in others.iter().filter(|other| **other != pair[1 - side]) {
-                let k = (*other & !Key::PIECE) as usize;
-                let centre = self.centres[balls + k];
-                out.push(Beside {
-                    core: &self.cores[k],
-                    at: self.shapes.periodic.shortest(centre - origin),
-                    rounding: self.shapes.pieces[k].rounding,
-                    // What is near the candidate is beside the antagonist.
-                    of_candidate: side == 1,
-                    name: *other,
-                });
-            }
-        }
-        out
+        let centre = |k: usize| self.centres[self.shapes.balls.len() + k];
+        self.partners
+            .beside(self.pairs, self.shapes, self.cores, centre, pair)
     }
 
     /// Returns whether the bounding balls of a pair without bonds are too far from each other for contacts.

@@ -1,6 +1,9 @@
-//! The pieces that each ball and piece may touch.
+//! The pieces that each ball and piece may touch, and those beside a pair.
 
 use crate::contact::network::Key;
+use crate::geometry::convex::seam::Beside;
+use crate::geometry::shape::Shapes;
+use crate::geometry::space::Space;
 use std::sync::OnceLock;
 
 /// Lists of pieces by ball or piece, made when the first is asked for: few steps of few scenes need them.
@@ -19,6 +22,36 @@ impl Partners {
         let lists = self.0.get_or_init(|| Lists::new(pairs, count, balls));
         let at = place(name, balls);
         &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
+    }
+
+    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece. `cores` are those of the pieces in world
+    /// axes, and `centre` gives where a piece stands (m).
+    pub fn beside<'a, S: Space>(
+        &self,
+        pairs: &[(u32, u32)],
+        shapes: &Shapes<S>,
+        cores: &'a [S::Core],
+        centre: impl Fn(usize) -> S::Vector,
+        pair: [u32; 2],
+    ) -> Vec<Beside<'a, S>> {
+        let balls = shapes.balls.len();
+        let origin = centre((pair[1] & !Key::PIECE) as usize);
+        let mut out = Vec::new();
+        for (side, name) in pair.into_iter().enumerate() {
+            let others = self.of(pairs, balls + shapes.pieces.len(), balls, name);
+            for other in others.iter().filter(|other| **other != pair[1 - side]) {
+                let k = (*other & !Key::PIECE) as usize;
+                out.push(Beside {
+                    core: &cores[k],
+                    at: shapes.periodic.shortest(centre(k) - origin),
+                    rounding: shapes.pieces[k].rounding,
+                    // What is near the candidate is beside the antagonist.
+                    of_candidate: side == 1,
+                    name: *other,
+                });
+            }
+        }
+        out
     }
 }
 

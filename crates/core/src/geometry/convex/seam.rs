@@ -16,6 +16,9 @@ pub const DEEPEST: f64 = 0.05;
 /// Cosine of the angle from which a face is another one than that of a contact.
 const OTHER: f64 = 0.99;
 
+/// Cosine of the angle up to which a face goes on as that of the piece beside it: free pieces tilt a little under what they carry.
+const PARALLEL: f64 = 0.9999;
+
 /// How far in front of a covered place a face must be open, in slacks: more than pieces that count as flush stand out.
 const OPEN: f64 = 4.0;
 
@@ -132,6 +135,47 @@ pub fn leave_seam<'a, S: Space + 'a>(
         out.clear();
         cores[0].points_on_face(cores[1], apart, roundings, tolerances, face, out);
     }
+}
+
+/// Whether the two of a pair, level with each other, meet at an edge: one lies on a face whose neighbour, the other one, stands out by
+/// `low` at most (m). The pieces beside them are within `near` (m) of the points of contact, on candidate and antagonist from the antagonist's
+/// centre.
+pub fn is_at_edge<S: Space>(
+    cores: [&S::Core; 2],
+    apart: &S::Vector,
+    roundings: [f64; 2],
+    point: &ContactPoint<S::Vector>,
+    [low, near]: [f64; 2],
+    beside: &[Beside<S>],
+) -> bool {
+    let pair = Pair::<S> {
+        corners: cores.map(Core::corners),
+        apart: *apart,
+        thickness: roundings[0] + roundings[1],
+        motion: &PairMotion {
+            shift: S::Vector::zero(),
+            turns: [S::Spin::zero(); 2],
+        },
+    };
+    let goes_on = |b: &Beside<S>, n: &S::Vector| {
+        let [bottom, top] = pair.ends(n, roundings);
+        let (out, height) = if b.of_candidate {
+            (-*n, -bottom)
+        } else {
+            (*n, top)
+        };
+        let corners = b.core.corners().iter();
+        let reach = corners.map(|q| out.dot(&(b.at + *q)));
+        let reach = reach.fold(f64::NEG_INFINITY, f64::max) + b.rounding;
+        let faces = b.core.normals();
+        (reach - height).abs() <= low
+            && b.covers(point, near)
+            && faces.iter().any(|m| m.dot(&out) > PARALLEL)
+    };
+    let level = |n: &S::Vector| pair.gap(n, -low).is_some_and(|(gap, _)| gap <= low);
+    faces::<S>(cores).any(|(n, _)| {
+        n.dot(&point.normal) < OTHER && level(&n) && beside.iter().any(|b| goes_on(b, &n))
+    })
 }
 
 /// Whether a ball, the candidate, meets a core across a seam: where that is nearest to it, another piece is as near. `name` is that of the
