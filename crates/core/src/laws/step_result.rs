@@ -23,8 +23,6 @@ pub struct ContactStep<S: Space> {
     pub corrected: f64,
     /// Whether friction is at its bound (slip).
     pub slides: bool,
-    /// Whether it held a load before and slides now.
-    pub begins: bool,
     /// The solver's solution.
     pub solution: ContactSolution<S>,
 }

@@ -117,8 +117,9 @@ impl<S: Space> Problem<S> {
             let mut compliant = false;
             for (contact, k) in contacts.iter().zip(first..) {
                 compliant |= contact.compliance != [0.0; 2];
-                let list = &mut of_kind[kind(contact) as usize];
-                places.push((kind(contact), list.len() as u32));
+                let kind = kind(contact);
+                let list = &mut of_kind[kind as usize];
+                places.push((kind, list.len() as u32));
                 list.push(k as u32);
             }
             (of_kind, places, compliant)
@@ -202,11 +203,13 @@ impl<S: Space> Problem<S> {
         [w_n, w_n + a.is * (i * i) + b.is * (j * j)]
     }
 
+    #[inline]
     fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
         let [w_n, w_t] = self.of_balls(contact, [1.0; 2]);
         PlainRow::new(contact, w_n, w_t)
     }
 
+    #[inline]
     fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
         let reach = self.reach(contact);
         let [w_n, w_t] = self.of_balls(contact, reach);

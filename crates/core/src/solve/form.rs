@@ -191,6 +191,7 @@ impl<S: Space> Mobility<S> {
     }
 
     /// Returns twice the kinetic energy of a velocity change, without imposed degrees of freedom (J).
+    #[inline]
     pub fn energy(&self, dv: &S::Vector, dw: &S::Spin) -> f64 {
         let masses = (0..S::D).filter(|k| self.mass[*k] > 0.0);
         let shift: f64 = masses.map(|k| dv[k] * dv[k] / self.mass[k]).sum();
@@ -201,8 +202,14 @@ impl<S: Space> Mobility<S> {
         if self.inertia == S::Tensor::uniform(about) {
             return shift + dw.dot(dw) / about;
         }
+        shift + self.energy_of_turning(dw)
+    }
+
+    /// The same of rotation, where the inertia has directions.
+    #[inline(never)]
+    fn energy_of_turning(&self, dw: &S::Spin) -> f64 {
         let inertia = self.inertia.inverse();
-        shift + inertia.map_or(0.0, |i| dw.dot(&i.apply(dw)))
+        inertia.map_or(0.0, |i| dw.dot(&i.apply(dw)))
     }
 }
 

@@ -211,7 +211,7 @@ impl<S: Space> Problem<S> {
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
-        begin: impl Iterator<Item = usize> + Clone,
+        begin: &[usize],
         search: &Search,
     ) -> [bool; 2] {
         let sets = self.take_connected();
@@ -232,8 +232,8 @@ impl<S: Space> Problem<S> {
                 }
             }
         }
-        let of_large = begin.filter(|k| sets.of(forms[*k].bodies).is_some_and(|set| large[set]));
-        let of_large: Vec<usize> = of_large.collect();
+        let is_of_large = |k: &usize| sets.of(forms[*k].bodies).is_some_and(|set| large[set]);
+        let of_large: Vec<usize> = begin.iter().copied().filter(is_of_large).collect();
         let several = &sets.of_several_controlled;
         let pinched = self.of_pinched(forms, several, of_large.iter().copied());
         self.connected = sets;

@@ -11,7 +11,7 @@ use crate::laws::columns::StepInfo;
 use crate::laws::{ContactStep, Interface, MomentStep, SolvedStep, SpringStep, Velocities};
 use crate::solve::{self, MomentForm, begins_to_slide};
 use crate::threads::{fill, pays};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
 /// new ones for many contacts costs more than filling them.
@@ -24,8 +24,8 @@ pub(super) struct Solved<S: Space> {
     /// Those of compliant contacts; empty without a compliant law.
     pub springs: Vec<Option<SpringStep<S>>>,
     pub moment_steps: Vec<MomentStep<S>>,
-    /// Whether a contact begins to slide.
-    pub begins: bool,
+    /// The contacts that held a load before and slide now, in order.
+    pub begin: Vec<usize>,
     /// Whether the step was solved with predicted damage.
     pub predicted: bool,
 }
@@ -51,7 +51,7 @@ impl<S: Space> Default for Solved<S> {
             contact_steps: Vec::new(),
             springs: Vec::new(),
             moment_steps: Vec::new(),
-            begins: false,
+            begin: Vec::new(),
             predicted: false,
         }
     }
@@ -181,7 +181,9 @@ impl<S: Space> Simulation<S> {
         let swerves = &self.workspace.swerves;
         let Scheme { h, theta } = self.options.scheme;
         let count = network.contacts.len();
-        let any_begins = AtomicBool::new(false);
+        let mut begin = std::mem::take(&mut self.workspace.solved.begin);
+        begin.clear();
+        let begin = Mutex::new(begin);
         fill(self.divides_contacts(), &mut contact_steps, count, |k| {
             let (contact, before) = (&network.contacts[k], &before[k]);
             let (form, solution) = (&forms[k], problem.solution(k));
@@ -211,14 +213,12 @@ impl<S: Space> Simulation<S> {
             // Some solvers satisfy the friction bound of a sliding contact only within their tolerance.
             let bound = form.friction * (solution.unilateral_n + form.tension) + form.cohesion;
             let slides = solution.unilateral_t.norm() >= (1.0 - 1e-6) * bound;
-            let begins = slides && begins_to_slide(form, &contact.impulse, &solution);
-            if begins {
-                any_begins.store(true, Ordering::Relaxed);
+            if slides && begins_to_slide(form, &contact.impulse, &solution) {
+                begin.lock().unwrap_or_else(PoisonError::into_inner).push(k);
             }
             ContactStep {
                 before: *before,
                 slides,
-                begins,
                 average,
                 adheres: form.tension > 0.0,
                 lost,
@@ -228,18 +228,19 @@ impl<S: Space> Simulation<S> {
         });
         self.workspace.solved.contact_steps = contact_steps;
         self.workspace.solved.after = after;
-        self.workspace.solved.begins = any_begins.into_inner();
+        let mut begin = begin.into_inner().unwrap_or_else(PoisonError::into_inner);
+        begin.sort_unstable();
+        self.workspace.solved.begin = begin;
     }
 
     /// Whether a contact begins to slide in a set that was too large to seek another solution, and one of a body that controlled bodies
     /// squeeze.
     pub(super) fn is_not_searched(&mut self) -> [bool; 2] {
         let workspace = &mut self.workspace;
-        if !workspace.solved.begins {
+        let (begin, forms) = (&workspace.solved.begin, &workspace.forms);
+        if begin.is_empty() {
             return [false; 2];
         }
-        let (steps, forms) = (&workspace.solved.contact_steps, &workspace.forms);
-        let begin = (0..steps.len()).filter(|k| steps[*k].begins);
         let search = self.state.auto_state.search();
         workspace.problem.is_not_searched(forms, begin, search)
     }

@@ -58,7 +58,6 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
         lost: None,
         corrected: 0.0,
         slides: true,
-        begins: false,
         solution: ContactSolution {
             impulse: along(elastic[0] + pressed, elastic[1] + friction),
             unilateral_n: pressed,

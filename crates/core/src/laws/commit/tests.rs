@@ -52,7 +52,6 @@ fn commit(law: &Interface, network: &mut Network<Dim2>) {
         lost: None,
         corrected: 0.0,
         slides: false,
-        begins: false,
         solution: ContactSolution {
             impulse: Vector2::zeros(),
             unilateral_n: 0.0,
