@@ -505,11 +505,9 @@ fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
             );
             println!("{what}");
             assert!((velocity[0] / speed - 1.0).abs() < allowed, "{what}");
-            let lost = s.state.network.step_size.lost_at_edges;
-            assert!(
-                lost < allowed * s.state.energy.scale,
-                "{what}: {lost} J at edges"
-            );
+            // A heavy box may meet an edge, which is reported.
+            let edges = s.state.network.step_size.edges;
+            assert!(edges == 0 || at_default > 1e-3, "{what}: {edges} edges");
         }
     }
 }
@@ -522,49 +520,65 @@ fn free_bricks_are_one_floor() {
     }
 }
 
-/// Below the default alert distance the bricks sink by more than counts as flush, and the box may be stopped by the next one: that is told.
+/// A box of this size slides over free bricks that sink by the tolerance: the change of its velocity over that at the start, and the number of edges
+/// that it met.
+fn over_bricks<S: Dimensional + Steps>(
+    (brick, side): ([f64; 2], f64),
+    (alert, speed): (f64, f64),
+    solver: &str,
+    restitution: f64,
+) -> (f64, u64) {
+    let (grains, slider) = on_bricks::<S>(brick, side, speed, true);
+    let (contact, of_contact) = match restitution > 0.0 {
+        true => ("newton-restitution", format!(", \"e_n\": {restitution:?}")),
+        false => ("coulomb", String::new()),
+    };
+    let mut s = build::<S>(&Sketch {
+        mu: 0.0,
+        contact,
+        of_contact,
+        solver: solver.to_owned(),
+        detection: [alert, 1e-2],
+        bodies: floor::<S>(),
+        grains,
+        ..Sketch::default()
+    });
+    let first = s.state.bodies.grains().next().expect("grains");
+    go(&mut s, (1.5 / (speed * 1e-3)).round() as usize);
+    let velocity = s.state.bodies.velocity[first + slider];
+    let changed = (velocity[0] / speed - 1.0).abs();
+    let edges = s.state.network.step_size.edges;
+    println!(
+        "{}D, {brick:?} m, alert {alert} m, {speed} m/s, e {restitution}, {solver}: changed by {changed:.2e}, {edges} edges",
+        S::D
+    );
+    (changed, edges)
+}
+
+/// Where the alert distance is small for the bricks they sink by more than counts as flush, and the box may be stopped by the next one: that is told.
 #[test]
 fn an_edge_of_the_solution_is_told() {
-    fn slides<S: Dimensional + Steps>(brick: [f64; 2], side: f64, alert: f64, speed: f64) -> bool {
-        let (grains, slider) = on_bricks::<S>(brick, side, speed, true);
-        let mut s = build::<S>(&Sketch {
-            mu: 0.0,
-            solver: String::new(),
-            detection: [alert, 1e-2],
-            bodies: floor::<S>(),
-            grains,
-            ..Sketch::default()
-        });
-        let first = s.state.bodies.grains().next().expect("grains");
-        go(&mut s, (1.5 / (speed * 1e-3)).round() as usize);
-        let velocity = s.state.bodies.velocity[first + slider];
-        let step_size = &s.state.network.step_size;
-        let lost = step_size.lost_at_edges / s.state.energy.scale;
-        let changed = (velocity[0] / speed - 1.0).abs();
-        println!(
-            "{}D, {brick:?} m, alert {alert} m, {speed} m/s: changed by {changed:.2e}, lost {lost:.2e} at {} edges",
-            S::D,
-            step_size.edges
-        );
-        assert!(changed < 2e-2 || lost > 1e-2);
-        // Where nothing is met nothing is told.
-        assert_eq!(
-            s.state.energy.impact < 1e-2 * s.state.energy.scale,
-            lost == 0.0
-        );
-        lost > 1e-2
-    }
-    let mut told = [0, 0];
+    let mut told = 0;
     for alert in [1e-3, 1e-4] {
         for speed in [0.2, 0.5, 0.7, 1.305] {
-            let low = ([0.15, 0.06], 0.25);
-            told[0] += usize::from(slides::<Dim2>(low.0, low.1, alert, speed));
-            told[1] += usize::from(slides::<Dim3>(low.0, low.1, alert, speed));
-            assert!(!slides::<Dim2>([0.2, 0.2], 0.1, alert, speed));
+            for restitution in [0.0, 1.0] {
+                let heavy = ([0.15, 0.06], 0.25);
+                let of = (alert, speed);
+                let plane = over_bricks::<Dim2>(heavy, of, "", restitution);
+                let space = over_bricks::<Dim3>(heavy, of, "", restitution);
+                for (changed, edges) in [plane, space] {
+                    assert!(changed < 2e-2 || edges > 0);
+                    told += usize::from(edges > 0);
+                }
+                let (_, edges) = over_bricks::<Dim2>(heavy, of, "tolerance: 1e-7", restitution);
+                assert_eq!(edges, 0);
+            }
+            let (_, edges) = over_bricks::<Dim2>(([0.2, 0.2], 0.1), (alert, speed), "", 0.0);
+            assert_eq!(edges, 0);
         }
     }
-    println!("{told:?} of 8");
-    assert!(told[0] > 3);
+    println!("{told} of 32 told");
+    assert!(told > 12);
 }
 
 /// As low an edge of bodies that stand still is one of the case: it stops a box, and the solution is not blamed.

@@ -120,7 +120,6 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
     serious("IMPOSSIBLE MOTION", summary.impossible_motions.warning());
     serious("TOO FAST", summary.step_size.warning());
     serious("FOUND OVERLAPPING", summary.step_size.sunk_warning());
-    serious("EDGES MET", edges(summary));
     // No smaller step helps against a motion that cannot be obeyed.
     let possible = summary.impossible_motions.is_empty();
     serious("OVERLAP", overlap(summary).filter(|_| possible));
@@ -149,6 +148,7 @@ pub fn of(summary: &Summary, advice: Option<String>) -> Vec<Warning> {
         .iter()
         .flat_map(fretwork_observe::jump::warnings);
     list.extend(jumps.filter(|w| reached || w.of != NOT_REACHED));
+    list.extend(edges(summary));
     list.extend(scheme(summary));
     list.extend(notes(summary));
     list.sort_by_key(|w| !w.serious);
@@ -296,13 +296,13 @@ fn overlap(summary: &Summary) -> Option<String> {
     })
 }
 
-/// Share of the energy that bodies may lose at the edges of flush neighbours: what they do then is another motion.
-const EDGES: f64 = 1e-2;
-
-/// Bodies that met the edges of flush neighbours.
-fn edges(summary: &Summary) -> Option<String> {
-    let share = summary.step_size.lost_at_edges / summary.energy.scale;
-    (share > EDGES).then(|| summary.step_size.edges_warning(share))?
+/// Bodies that slid into edges which the error of the solver may have made: a reason where they are many for the bodies of the scene.
+fn edges(summary: &Summary) -> Option<Warning> {
+    let (many, text) = summary.step_size.edges_warning()?;
+    Some(match many {
+        true => Warning::serious("EDGES MET", text),
+        false => Warning::note("EDGES MET", text),
+    })
 }
 
 /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.

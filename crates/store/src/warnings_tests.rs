@@ -191,26 +191,29 @@ fn phases_that_were_not_reached_are_a_reason_of_a_run_to_its_end() {
     assert!(list.len() == 1 && list[0].serious && list[0].of == NOT_REACHED);
 }
 
-/// What is lost at low edges is a reason from a hundredth of the energy.
+/// Bodies that slid into low edges are a reason from one to a thousand pieces, and a note below.
 #[test]
-fn energy_lost_at_edges_is_a_reason() {
-    let told = |lost: f64| {
-        of_run(|s| {
-            s.energy.scale = 2.0;
-            s.step_size.edges = 3;
-            s.step_size.lost_at_edges = lost;
-            s.step_size.first_edge = Some(Occurrence {
+fn low_edges_are_a_reason_where_they_are_many() {
+    let told = |edges: u64| {
+        let list = of_run(|s| {
+            (s.step_size.edges, s.step_size.pieces) = (edges, 5000);
+            s.step_size.highest_edge = 3e-5;
+            s.step_size.first_edge = (edges > 0).then(|| Occurrence {
                 time: 0.5,
                 bodies: vec!["grain 1".to_owned(), "floor".to_owned()],
             });
-        })
+        });
+        assert!(list.iter().all(|w| w.of == "EDGES MET"));
+        list
     };
-    assert!(told(1.9e-2).is_empty());
-    let list = told(0.1);
-    assert!(list.len() == 1 && list[0].serious && list[0].of == "EDGES MET");
+    assert!(told(0).is_empty());
+    let few = told(4);
+    assert!(few.len() == 1 && !few[0].serious);
+    let many = told(5);
+    assert!(many.len() == 1 && many[0].serious);
     assert!(
-        list[0].text.starts_with("3 times a body met the edge")
-            && list[0].text.contains("lost 5.0 %")
+        many[0].text.starts_with("5 times a body")
+            && many[0].text.contains("detection.alert of 6.0e-3 m")
     );
 }
 

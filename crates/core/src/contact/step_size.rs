@@ -101,11 +101,12 @@ pub struct StepSizeDiagnostics {
     /// Start of the last such step (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
-    /// Number of times that a body met the edge of a neighbour of what it slid over, which stood out by less than half a percent of its size,
-    /// and the energy that it lost there (J).
+    /// Number of times that a body slid into the edge of a neighbour of what it lay on, no higher than the overlaps in the scene.
     pub edges: u64,
-    /// See [`Self::edges`].
-    pub lost_at_edges: f64,
+    /// The highest of them (m).
+    pub highest_edge: f64,
+    /// Number of convex pieces at the last of them.
+    pub pieces: u64,
     /// First occurrence.
     pub first_edge: Option<Occurrence>,
     /// First occurrence of a displacement lost to rounding.
@@ -184,16 +185,18 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
-    /// Records a body that loses energy (J) at the edge of a neighbour of what it slides over.
+    /// Records a body that slides into an edge of this height (m), in a scene of some convex pieces.
     pub(super) fn record_edge<S: Space>(
         &mut self,
         time: f64,
         bodies: &Bodies<S>,
         pair: [u32; 2],
-        lost: f64,
+        height: f64,
+        pieces: u64,
     ) {
         self.edges += 1;
-        self.lost_at_edges += lost;
+        self.highest_edge = self.highest_edge.max(height);
+        self.pieces = pieces;
         self.first_edge
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
@@ -221,17 +224,19 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }
 
-    /// Returns the warning about bodies that lost this share of the energy at low edges.
-    pub fn edges_warning(&self, share: f64) -> Option<String> {
+    /// Returns the warning about bodies that slid into low edges, and whether these are more than one to a thousand pieces.
+    pub fn edges_warning(&self) -> Option<(bool, String)> {
         let first = self.first_edge.as_ref()?;
-        Some(format!(
-            "{} times a body met the edge of a neighbour of the body it slid over, which stood out by less than 0.5 % of its size, and lost \
-             {:.1} % of the energy there in all, {}: the error of the solver lets free bodies that lie flush sink by as much. Take a smaller \
-             solver.tolerance, or a larger detection.alert, a hundredth of which counts as flush",
+        let text = format!(
+            "{} times a body that slid over another one was slowed or stopped by the edge of its neighbour, {}. The edges stand out by up to \
+             {:.1e} m, no more than bodies overlap: the error of the solver may have made them of faces that were flush. Take a smaller \
+             solver.tolerance, or a detection.alert of {:.1e} m or more, since faces that differ by up to a hundredth of it count as one",
             self.edges,
-            100.0 * share,
-            first.text()
-        ))
+            first.text(),
+            self.highest_edge,
+            200.0 * self.highest_edge.max(0.0)
+        );
+        Some((1000 * self.edges >= self.pieces, text))
     }
 
     /// Returns the warning about motion lost to rounding, if there was any.

@@ -343,11 +343,14 @@ fn commit_contact<S: Space>(
     } else {
         0.0
     };
-    let ut = S::tangential(n, &contact_step.average);
+    let (un, ut) = (
+        n.dot(&contact_step.average),
+        S::tangential(n, &contact_step.average),
+    );
     let friction = -contact_step.solution.unilateral_t.dot(&ut);
     contact.slides = contact_step.slides;
     contact.friction_work += friction;
-    let work = contact_step.normal_work(n);
+    let work = -contact_step.solution.unilateral_n * un + contact_step.corrected;
     let adheres = contact_step.adheres && contact_step.solution.unilateral_n < 0.0;
     let (adhesion, impact) = if adheres { (work, 0.0) } else { (0.0, work) };
     ContactDissipation {

@@ -27,13 +27,6 @@ pub struct ContactStep<S: Space> {
     pub solution: ContactSolution<S>,
 }
 
-impl<S: Space> ContactStep<S> {
-    /// Work that its unilateral part took along this normal, without that of the position correction (J): impact, or adhesion.
-    pub fn normal_work(&self, normal: &S::Vector) -> f64 {
-        -self.solution.unilateral_n * normal.dot(&self.average) + self.corrected
-    }
-}
-
 /// Result of a contact that resists rotation over the step.
 #[derive(Clone, Copy, Debug)]
 pub struct MomentStep<S: Space> {

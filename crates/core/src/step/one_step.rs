@@ -1,8 +1,9 @@
 //! One time step, in the order of the picture in [`super`].
 
+use super::answers::effective_mass;
 use super::motion::{self, StepStart};
 use super::{Scheme, Simulation, StepError, StepReport};
-use crate::contact::detect::{detect, record_edges};
+use crate::contact::detect::{Impact, detect, record_edges};
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::columns::StepInfo;
 use crate::laws::{Interface, SpringForm};
@@ -14,9 +15,6 @@ const CHUNK: usize = 1024;
 /// About what it takes to look whether a contact is one of a driven body, and whether it carries an impulse (ns).
 const RECEIVED: f64 = 5.0;
 const ACTS: f64 = 5.0;
-
-/// Share of the largest energy below which what is lost at a contact in a step is not worth a look.
-const NOTHING: f64 = 1e-6;
 
 /// Velocity and spin of each body.
 type Motions<S> = Vec<(<S as Space>::Vector, <S as Space>::Spin)>;
@@ -218,21 +216,23 @@ impl<S: Space> Simulation<S> {
         self.state.received = received;
     }
 
-    /// Records what bodies lose at the edges of flush neighbours.
+    /// Records bodies that are stopped by the edges of neighbours that were flush.
     fn watch_edges(&mut self) {
-        let solved = &self.workspace.solved.contact_steps;
-        let springs = &self.workspace.solved.springs;
+        let tolerance = self.solver_in_force().tolerance;
+        let (solved, bodies) = (&self.workspace.solved, &self.state.bodies);
         record_edges(
             &mut self.state.network,
             &self.shapes,
-            &self.state.bodies,
+            bodies,
             [self.state.time, self.options.scheme.h],
-            |k, contact| match springs.get(k) {
-                // Springs give back what they take.
-                Some(Some(_)) => 0.0,
-                _ => solved[k].normal_work(&contact.normal),
+            tolerance,
+            |k, contact| {
+                let compliant = solved.springs.get(k).is_some_and(Option::is_some);
+                (!compliant).then(|| Impact {
+                    before: solved.contact_steps[k].before,
+                    mass: effective_mass(bodies, contact),
+                })
             },
-            NOTHING * self.state.energy.scale,
         );
     }
 

@@ -15,7 +15,7 @@ mod renewal;
 mod sorted;
 mod sweep;
 
-pub use edges::record_edges;
+pub use edges::{Impact, record_edges};
 pub use extents::{Extents, fast_motion};
 pub use prediction::{
     Motion, add_predicted, find_missed, is_calm, report_first_move, report_passing,

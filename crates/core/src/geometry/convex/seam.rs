@@ -137,17 +137,29 @@ pub fn leave_seam<'a, S: Space + 'a>(
     }
 }
 
-/// Whether the two of a pair, level with each other, meet at an edge: one lies on a face whose neighbour, the other one, stands out by
-/// `low` at most (m). The pieces beside them are within `near` (m) of the points of contact, on candidate and antagonist from the antagonist's
-/// centre.
-pub fn is_at_edge<S: Space>(
+/// An edge at which two pieces meet: one of the two lies on a third piece, whose face goes on as that of the other one.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge<S: Space> {
+    /// The name of the piece that the body lies on.
+    pub below: u32,
+    /// Whether it is beside the candidate: then the antagonist lies on it.
+    pub of_candidate: bool,
+    /// Normal of the faces, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// How far the other one stands out above what lies on its neighbour (m).
+    pub height: f64,
+}
+
+/// The edges at which two pieces touch at a point, of heights up to `low`. The pieces beside them are within `near` of the point (m), and their faces
+/// differ in height by no more than `low`. `apart` and `roundings` as in [`Core::contact_points`].
+pub fn edges_at<S: Space>(
     cores: [&S::Core; 2],
     apart: &S::Vector,
     roundings: [f64; 2],
     point: &ContactPoint<S::Vector>,
     [low, near]: [f64; 2],
     beside: &[Beside<S>],
-) -> bool {
+) -> Vec<Edge<S>> {
     let pair = Pair::<S> {
         corners: cores.map(Core::corners),
         apart: *apart,
@@ -172,10 +184,20 @@ pub fn is_at_edge<S: Space>(
             && b.covers(point, near)
             && faces.iter().any(|m| m.dot(&out) > PARALLEL)
     };
-    let level = |n: &S::Vector| pair.gap(n, -low).is_some_and(|(gap, _)| gap <= low);
-    faces::<S>(cores).any(|(n, _)| {
-        n.dot(&point.normal) < OTHER && level(&n) && beside.iter().any(|b| goes_on(b, &n))
-    })
+    let mut out = Vec::new();
+    for (normal, _) in faces::<S>(cores).filter(|(n, _)| n.dot(&point.normal) < PARALLEL) {
+        let Some((gap, _)) = pair.gap(&normal, -low).filter(|(gap, _)| *gap <= low) else {
+            continue;
+        };
+        let below = beside.iter().filter(|b| goes_on(b, &normal));
+        out.extend(below.map(|b| Edge {
+            below: b.name,
+            of_candidate: b.of_candidate,
+            normal,
+            height: -gap,
+        }));
+    }
+    out
 }
 
 /// Whether a ball, the candidate, meets a core across a seam: where that is nearest to it, another piece is as near. `name` is that of the
