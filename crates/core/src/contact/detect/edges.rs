@@ -60,7 +60,7 @@ pub fn record_edges<S: Space>(
         }
         let edges = edges_of(network, shapes, bodies, &partners, contact);
         let made = edges.iter().filter(|edge| {
-            let load = load_on(network, contact, edge, h);
+            let load = load_on(network, contact, edge, time);
             load.is_some_and(|load| {
                 slides_into(contact, edge, &impact, tolerance.max(NOISE) * load)
             })
@@ -105,12 +105,13 @@ fn slides_into<S: Space>(
     slides && closing > lands && impulse > noise && slows
 }
 
-/// The impulse with which the piece below holds the body that slides (N s); none where it did not hold it before and does now.
+/// The impulse of the piece below on the body that slides (N s), none where it touched it first at `time`, the start of the step; the edge may lift the
+/// body off it.
 fn load_on<S: Space>(
     network: &Network<S>,
     contact: &Contact<S>,
     edge: &Edge<S>,
-    h: f64,
+    time: f64,
 ) -> Option<f64> {
     let slider = if edge.of_candidate {
         contact.key.antagonist
@@ -123,8 +124,7 @@ fn load_on<S: Space>(
     let of_pair = contacts[first..]
         .iter()
         .take_while(|c| c.key.pair() == pair);
-    let holds =
-        |c: &&Contact<S>| c.compression_time > h && c.normal.dot(&edge.normal).abs() > HOLDS;
+    let holds = |c: &&Contact<S>| c.formed_at < time && c.normal.dot(&edge.normal).abs() > HOLDS;
     let loads = of_pair.filter(holds).map(|c| c.normal.dot(&c.impulse));
     loads.reduce(|a, b| a + b)
 }
