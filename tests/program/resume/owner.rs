@@ -98,6 +98,12 @@ impl Held {
             std::thread::sleep(Duration::from_millis(2));
         }
         held.signal(libc::SIGSTOP);
+        // The signal is on its way; until it has arrived the run may still make a file.
+        let mut status = 0;
+        // SAFETY: the status is this function's own, and a stopped child is not taken from its owner.
+        let stopped =
+            unsafe { libc::waitpid(held.0.id() as libc::pid_t, &raw mut status, libc::WUNTRACED) };
+        assert!(stopped > 0 && libc::WIFSTOPPED(status), "status {status}");
         held
     }
 
