@@ -12,6 +12,7 @@ mod blocks;
 mod bond_energy;
 mod bond_formation;
 mod bonded;
+mod bricks;
 mod compliant;
 mod elastic;
 mod extremes;
