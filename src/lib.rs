@@ -42,9 +42,9 @@
 //! | pictures | [`report`]: charts and pictures |
 //!
 //! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
-//! `fretwork-plot`, `fretwork-study`. Here they meet: [`cli`] is the command line, [`runs`] makes runs of a case in processes of their own,
-//! [`trade`] compares their accuracy and cost, [`study`] varies a case, [`fit`] finds its parameters, [`shipped`] has the laws that come
-//! with the program, [`contact_patch`] has contact patches in closed form.
+//! `fretwork-plot`, `fretwork-experiments`. Here they meet: [`cli`] is the command line,
+//! [`shipped`] has the laws that come with the program, [`experiments`] makes runs of a case in
+//! processes of their own for studies and fits, [`contact_patch`] has contact patches in closed form.
 //!
 //! # A scene without files
 //!
@@ -76,21 +76,18 @@
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 pub mod cli;
-pub mod contact_patch;
-pub mod fit;
 pub mod interrupt;
 pub mod record;
-pub mod runs;
 pub mod scene;
 pub mod shipped;
-pub mod study;
-pub mod trade;
 
 pub use fretwork_core::{
     bodies, certify, contact, energy, fields, geometry, heat, huge_pages, laws, out_of_memory,
     process, program, solve, step, threads, wear,
 };
 pub use fretwork_elastic as elastic;
+pub use fretwork_experiments as experiments;
+pub use fretwork_experiments::contact_patch;
 pub use fretwork_plot as report;
 
 /// The page of the documentation on the library: its code is run as tests.

@@ -2,7 +2,8 @@
 
 use super::Failure;
 use super::output::{answer, answer_json};
-use crate::contact_patch::{self, Question};
+use crate::experiments::contact_patch::{self, Question};
+use crate::shipped::search_path;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -108,7 +109,7 @@ pub fn contact_patch(args: &ContactPatchArgs) -> Result<(), Failure> {
         wear: args.wear.clone(),
         window: args.window.clone(),
     };
-    let found = contact_patch::answer(&question).map_err(Failure::Usage)?;
+    let found = contact_patch::answer(&question, &search_path()).map_err(Failure::Usage)?;
     if args.json {
         let text = serde_json::to_string_pretty(&found);
         return answer_json(&text.map_err(|e| Failure::Failed(e.to_string()))?);

@@ -2,14 +2,14 @@
 
 use super::output::{answer_json, inform, report};
 use super::{Failure, PluginArgs, again};
-use crate::fit::evaluate::Tests;
-use crate::fit::half_step::half_step;
-use crate::fit::outcome::{Outcome, identify};
-use crate::fit::search::{Found, Progress, Search, Stage};
-use crate::fit::spec::ReadFit;
-use crate::fit::{FitError, OWNER, files, page};
+use crate::experiments::fit::evaluate::Tests;
+use crate::experiments::fit::half_step::half_step;
+use crate::experiments::fit::outcome::{Outcome, identify};
+use crate::experiments::fit::search::{Found, Progress, Search, Stage};
+use crate::experiments::fit::spec::ReadFit;
+use crate::experiments::fit::{FitError, OWNER, files, page};
+use crate::experiments::runs::duration::parse as duration;
 use crate::interrupt;
-use crate::runs::duration::parse as duration;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
@@ -57,11 +57,11 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
         let name = args.fit.file_stem().unwrap_or_default();
         Path::new("results").join("fit").join(name)
     });
-    let path = args.plugins.search()?;
+    let program = args.plugins.program()?;
     let read = ReadFit::read(&args.fit)?;
     let _lock = OWNER.take(&out)?;
     let runs = args.cache.clone().unwrap_or_else(|| out.join("runs"));
-    let mut tests = Tests::new(&read, &runs, &args.plugins.words(), &path)?;
+    let mut tests = Tests::new(&read, &runs, &program)?;
     tests.limit = args.limit;
     if !args.json {
         inform(&page::consists_of(&read, &tests));

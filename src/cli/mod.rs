@@ -24,9 +24,10 @@ pub use self::run::{default_folder, place as place_of};
 pub use fretwork_report::{ReportError, compare as compare_runs};
 
 use crate::certify::{CERTIFY_APART, certify_asked};
+use crate::experiments::Program;
 use crate::laws::watch::{Saved, watch};
 use crate::laws::{LawError, SearchPath, child};
-use crate::record::RunError;
+use crate::record::{RunError, check_names};
 use crate::scene::InputError;
 use crate::shipped::built_in;
 use clap::{Args, Parser, Subcommand};
@@ -162,6 +163,15 @@ impl PluginArgs {
             words.extend(["--law-timeout".to_owned(), self.law_timeout.to_string()]);
         }
         words
+    }
+
+    /// What experiments need of this program.
+    fn program(&self) -> Result<Program, Failure> {
+        Ok(Program {
+            search: self.search()?,
+            plugins: self.words(),
+            check_names,
+        })
     }
 
     fn search(&self) -> Result<SearchPath, Failure> {

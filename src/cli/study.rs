@@ -4,20 +4,20 @@ mod answers;
 
 use super::output::{answer, answer_json, inform, report};
 use super::{Failure, PluginArgs, again};
+use crate::experiments::runs::duration::{parse as duration, seconds};
+use crate::experiments::runs::stored::Finished;
+use crate::experiments::study::analysis::Analysis;
+use crate::experiments::study::execute::{Event, execute, missing};
+use crate::experiments::study::export::{Engine, Export};
+use crate::experiments::study::figures::draw;
+use crate::experiments::study::forecast::Forecast;
+use crate::experiments::study::page::sheet;
+use crate::experiments::study::plan::{Place, Plan, Point};
+use crate::experiments::study::spec::ReadSpec;
+use crate::experiments::study::table::{Cell, Table, status};
+use crate::experiments::study::{OWNER, StudyError};
 use crate::interrupt;
-use crate::runs::duration::{parse as duration, seconds};
-use crate::runs::stored::Finished;
-use crate::study::analysis::Analysis;
-use crate::study::execute::{Event, execute, missing};
-use crate::study::export::{Engine, Export};
-use crate::study::figures::draw;
-use crate::study::forecast::Forecast;
-use crate::study::page::sheet;
-use crate::study::plan::{Place, Plan, Point};
-use crate::study::spec::ReadSpec;
-use crate::study::table::{Cell, Table, status};
-use crate::study::{OWNER, StudyError};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use fretwork_store::folder_lock::FolderLock;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeSet;
@@ -103,7 +103,7 @@ pub struct ExportArgs {
     of: StudyArgs,
     /// The engine
     #[arg(long, value_enum)]
-    to: Engine,
+    to: EngineName,
     /// Runs of one task; by default as few as give at most 1000 tasks
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     chunk: Option<u32>,
@@ -113,6 +113,30 @@ pub struct ExportArgs {
     /// A line for the head of the batch scripts of Slurm, such as --line=--partition=short
     #[arg(long = "line", value_name = "OPTION", allow_hyphen_values = true)]
     lines: Vec<String>,
+}
+
+/// An engine by its name on the command line.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum EngineName {
+    /// Slurm: a job array and a job that collects
+    Slurm,
+    /// HyperQueue: a job file with a task for each chunk
+    Hq,
+    /// Snakemake: a Snakefile with a rule for runs and one that collects
+    Snakemake,
+    /// A list of commands, one a line, for GNU parallel, xargs and others
+    Jobs,
+}
+
+impl EngineName {
+    fn engine(self) -> Engine {
+        match self {
+            Self::Slurm => Engine::Slurm,
+            Self::Hq => Engine::Hq,
+            Self::Snakemake => Engine::Snakemake,
+            Self::Jobs => Engine::Jobs,
+        }
+    }
 }
 
 #[derive(Args, Debug)]
@@ -158,8 +182,7 @@ impl StudyArgs {
         let place = Place {
             out: &self.out(),
             cache: self.cache.as_deref(),
-            plugins: self.plugins.words(),
-            search: &self.plugins.search()?,
+            program: &self.plugins.program()?,
         };
         Ok(Plan::new(&ReadSpec::read(&self.study)?, place)?)
     }
@@ -310,7 +333,7 @@ fn export(args: &ExportArgs) -> Result<(), Failure> {
         task_seconds: one.map(|s| s * chunk as f64),
         lines: args.lines.clone(),
     };
-    let written = export.write(args.to)?;
+    let written = export.write(args.to.engine())?;
     for file in &written.files {
         inform(&format!("wrote {}", file.display()));
     }
@@ -340,11 +363,11 @@ fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
         )));
     }
     let (csv, parquet) = (plan.out.join("table.csv"), plan.out.join("table.parquet"));
-    crate::study::csv::write(&table, &csv)?;
-    crate::study::parquet::write(&table, &parquet)?;
+    crate::experiments::study::csv::write(&table, &csv)?;
+    crate::experiments::study::parquet::write(&table, &parquet)?;
     let analysis = Analysis::of(plan, &plan.design, &table);
     let settings = plan.out.join("settings.csv");
-    crate::study::csv::write(&Table::of_settings(plan, &analysis), &settings)?;
+    crate::experiments::study::csv::write(&Table::of_settings(plan, &analysis), &settings)?;
     let page = plan.out.join("study.html");
     let picture = plan.out.join("study.png");
     let failed = |e: &dyn std::fmt::Display| Failure::Failed(e.to_string());
@@ -432,7 +455,7 @@ impl<'a> Display<'a> {
         let line = format!("{}: {}", name(self.plan, point), how(run));
         match &self.bar {
             Some(bar) => {
-                if status(Some(run)).0 != crate::study::table::DONE {
+                if status(Some(run)).0 != crate::experiments::study::table::DONE {
                     bar.println(line);
                 }
                 bar.inc(1);

@@ -6,30 +6,30 @@ mod refuse;
 use super::number::{not_negative, share};
 use super::output::{answer_json, inform, report};
 use super::{CaseArgs, Failure, again};
+use crate::experiments::runs::RunsError;
+use crate::experiments::runs::duration::{parse as duration, seconds};
+use crate::experiments::runs::launcher::Launcher;
+use crate::experiments::runs::offer::Offer;
+use crate::experiments::runs::perturbation::Perturbation;
+use crate::experiments::runs::randomness::seed_matters;
+use crate::experiments::runs::stored::{Limits, Status};
+use crate::experiments::trade::compare::Comparison;
+use crate::experiments::trade::output::Output;
+use crate::experiments::trade::parameters::{Solving, StudyParameter};
+use crate::experiments::trade::rung::Deformability;
+use crate::experiments::trade::setting::Setting;
+use crate::experiments::trade::study::{Event, Ledger, Study};
+use crate::experiments::trade::{
+    OWNER, TradeError, figure, files, forecast::Forecast, table, verdict::verdicts,
+};
 use crate::interrupt;
 use crate::record::check_names;
-use crate::runs::RunsError;
-use crate::runs::duration::{parse as duration, seconds};
-use crate::runs::launcher::Launcher;
-use crate::runs::offer::Offer;
-use crate::runs::perturbation::Perturbation;
-use crate::runs::randomness::seed_matters;
-use crate::runs::stored::{Limits, Status};
 use crate::scene::build::Built;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::most_steps::most_steps;
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load};
 use crate::solve::local::solver::Method;
-use crate::trade::compare::Comparison;
-use crate::trade::output::Output;
-use crate::trade::parameters::{Solving, StudyParameter};
-use crate::trade::rung::Deformability;
-use crate::trade::setting::Setting;
-use crate::trade::study::{Event, Ledger, Study};
-use crate::trade::{
-    OWNER, TradeError, figure, files, forecast::Forecast, table, verdict::verdicts,
-};
 use clap::Args;
 use fretwork_observe::standard::Observed;
 use std::collections::BTreeSet;

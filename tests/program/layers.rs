@@ -16,7 +16,7 @@ const BESIDE_NUMBERS: [&str; 7] = [
 ];
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
-const LAYERS: [(&str, &[&str], &[&str]); 10] = [
+const LAYERS: [(&str, &[&str], &[&str]); 11] = [
     ("diffusion", &[], &BESIDE_NUMBERS),
     ("study", &[], &BESIDE_NUMBERS),
     (
@@ -70,6 +70,13 @@ const LAYERS: [(&str, &[&str], &[&str]); 10] = [
         "report",
         &["observe", "scene", "store"],
         &["clap", "plotters", "ab_glyph", "tiny-skia"],
+    ),
+    (
+        "experiments",
+        &[
+            "core", "elastic", "observe", "plot", "report", "scene", "store", "study",
+        ],
+        &["clap", "indicatif"],
     ),
 ];
 

@@ -1,11 +1,11 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
-use crate::runs::duration::seconds;
-use crate::runs::stored::summary;
-use crate::study::analysis::{labels, numeric};
-use crate::study::forecast::Forecast;
-use crate::study::plan::{Plan, Point};
-use crate::study::table::{Cell, DONE, Table};
+use crate::experiments::runs::duration::seconds;
+use crate::experiments::runs::stored::summary;
+use crate::experiments::study::analysis::{labels, numeric};
+use crate::experiments::study::forecast::Forecast;
+use crate::experiments::study::plan::{Plan, Point};
+use crate::experiments::study::table::{Cell, DONE, Table};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -77,9 +77,9 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
     if !numeric(plan, factor) {
         return None;
     }
-    let given = |v: &&crate::study::factor::Value| v.number.is_some();
+    let given = |v: &&crate::experiments::study::factor::Value| v.number.is_some();
     let values = || plan.settings.iter().map(|s| &s[factor]).filter(given);
-    let number = |v: &&crate::study::factor::Value| v.number.unwrap_or(f64::NAN);
+    let number = |v: &&crate::experiments::study::factor::Value| v.number.unwrap_or(f64::NAN);
     let low = values().min_by(|a, b| number(a).total_cmp(&number(b)))?;
     let high = values().max_by(|a, b| number(a).total_cmp(&number(b)))?;
     Some((&low.label, &high.label))

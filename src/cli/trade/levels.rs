@@ -2,11 +2,11 @@
 
 use super::{Facts, TradeArgs};
 use crate::cli::Failure;
+use crate::experiments::trade::form::variants;
+use crate::experiments::trade::parameters::{Sense, StudyParameter, parameters};
+use crate::experiments::trade::rung::keep_accepted;
 use crate::laws::SearchPath;
 use crate::scene::{Loaded, load};
-use crate::trade::form::variants;
-use crate::trade::parameters::{Sense, StudyParameter, parameters};
-use crate::trade::rung::keep_accepted;
 
 /// The varied parameters, each level of which gives a case that can be built.
 pub fn parameters_of(

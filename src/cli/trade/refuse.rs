@@ -2,17 +2,17 @@
 
 use super::TradeArgs;
 use crate::cli::Failure;
-use crate::runs::cost::Trial;
-use crate::runs::duration::seconds;
-use crate::runs::launcher::{Ended, Launcher};
-use crate::runs::offer::{Offer, measure_names};
-use crate::runs::stored::summary;
+use crate::experiments::runs::cost::Trial;
+use crate::experiments::runs::duration::seconds;
+use crate::experiments::runs::launcher::{Ended, Launcher};
+use crate::experiments::runs::offer::{Offer, measure_names};
+use crate::experiments::runs::stored::summary;
+use crate::experiments::trade::TradeError;
+use crate::experiments::trade::output::Output;
 use crate::scene::build::Built;
 use crate::scene::most_steps::most_steps;
 use crate::scene::{Loaded, Scene};
 use crate::step::Steps;
-use crate::trade::TradeError;
-use crate::trade::output::Output;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 

@@ -1,0 +1,247 @@
+//! From load, radii and moduli to the contact patch: its pressure and size, where gross slip begins, friction and wear against
+//! creepage, and what a window of a third body in it should have.
+//!
+//! ```
+//! use fretwork_experiments::contact_patch::{Question, answer};
+//!
+//! let answer = answer(&Question {
+//!     load: "75 kN".into(),
+//!     radius: vec!["0.46 m".into(), "flat".into()],
+//!     across: vec!["flat".into(), "0.30 m".into()],
+//!     material: vec!["wheel_steel_er7".into(), "rail_steel_r260".into()],
+//!     ..Question::default()
+//! }, &fretwork_core::laws::SearchPath::new(&[]))?;
+//! assert!((answer.patch.pressure / 1.12e9 - 1.0).abs() < 0.01);
+//! # Ok::<(), String>(())
+//! ```
+
+mod friction;
+mod question;
+mod range;
+mod runs;
+mod slip;
+mod text;
+mod warnings;
+mod wear;
+
+pub use friction::Friction;
+pub use question::Question;
+pub use range::Range;
+pub use slip::{Rolling, Tangential, Window};
+pub use wear::{BodyWear, EnergyMap, Wear, WindowWear};
+
+use fretwork_core::laws::SearchPath;
+use fretwork_elastic::patch::{self, LinePatch, PointPatch};
+use question::Body;
+use serde::Serialize;
+
+/// The answer, in SI units; of a line contact, forces are per metre.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// `line`, `circle` or `ellipse`.
+    pub shape: &'static str,
+    /// Load (N; N/m of a line).
+    pub load: f64,
+    /// Names of the two bodies or their materials.
+    pub bodies: [String; 2],
+    /// E* (Pa).
+    pub effective_modulus: f64,
+    /// Hertz' pressure and size.
+    pub patch: Patch,
+    /// Pressures at which the steel yields.
+    pub strength: Option<Strength>,
+    /// The friction coefficient, where one was given.
+    pub friction: Option<Friction>,
+    /// Where gross slip begins under a tangential force or displacement.
+    pub tangential: Option<Tangential>,
+    /// Rolling with a creepage.
+    pub rolling: Option<Rolling>,
+    /// Wear while rolling with a creepage.
+    pub wear: Option<Wear>,
+    /// The window of a third body in the middle of the patch.
+    pub window: Window,
+    /// Where the theory does not hold, or an answer needs more.
+    pub warnings: Vec<String>,
+}
+
+/// Pressure and size of the patch.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Patch {
+    /// Largest pressure (Pa).
+    pub pressure: f64,
+    /// Mean pressure (Pa).
+    pub mean_pressure: f64,
+    /// Semi-axis along the motion (m).
+    pub semi_axis: f64,
+    /// Semi-axis across it (m); none of a line.
+    pub semi_axis_across: Option<f64>,
+    /// Area (m²); none of a line.
+    pub area: Option<f64>,
+    /// Approach of distant points (m); of a line it depends on the form of the bodies at a distance.
+    pub approach: Option<f64>,
+}
+
+/// Largest pressures that the softer body bears.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Strength {
+    /// Yield stress (Pa).
+    pub yield_stress: f64,
+    /// Whether it is estimated from the hardness, H/2.8 (D. Tabor, The Hardness of Metals, 1951).
+    pub estimated: bool,
+    /// Largest pressure at which nothing yields (Pa): 1.6 Y of a point, 1.79 Y of a line (Johnson, 6.2).
+    pub first_yield: f64,
+    /// Largest pressure to which the steel shakes down elastically in rolling (Pa), with k = Y/sqrt(3): 4 k of a line without
+    /// friction, 4.7 k of a point, and k/mu of full slip (Johnson, 9.2).
+    pub shakedown: f64,
+    /// Hardness (Pa).
+    pub hardness: Option<f64>,
+}
+
+/// The patch as either theory has it.
+enum Theory {
+    Line(LinePatch),
+    Point(PointPatch),
+}
+
+/// What all parts of the answer go by.
+struct Contact {
+    bodies: [Body; 2],
+    /// Load (N; N/m).
+    load: f64,
+    theory: Theory,
+    /// Relative curvature along the motion (1/m).
+    curvature: f64,
+}
+
+impl Contact {
+    fn solids(&self) -> [patch::Solid; 2] {
+        [self.bodies[0].solid, self.bodies[1].solid]
+    }
+
+    /// Semi-axis along the motion (m).
+    fn semi_axis(&self) -> f64 {
+        match &self.theory {
+            Theory::Line(line) => line.half_width,
+            Theory::Point(point) => point.along,
+        }
+    }
+
+    fn pressure(&self) -> f64 {
+        match &self.theory {
+            Theory::Line(line) => line.pressure,
+            Theory::Point(point) => point.pressure,
+        }
+    }
+
+    fn is_line(&self) -> bool {
+        matches!(self.theory, Theory::Line(_))
+    }
+}
+
+/// Answers a question; the map of wear over T gamma/A is that of the law `t-gamma` among `laws`.
+///
+/// # Errors
+/// A sentence about what is wrong or missing.
+pub fn answer(question: &Question, laws: &SearchPath) -> Result<Answer, String> {
+    let (load, line) = question.load()?;
+    let bodies = question.bodies(line)?;
+    let modulus = patch::effective_modulus(&[bodies[0].solid, bodies[1].solid]);
+    let relative = |axis: usize| bodies[0].curvature[axis] + bodies[1].curvature[axis];
+    let theory = match line {
+        true => Theory::Line(patch::line(load, relative(0), modulus)),
+        false => Theory::Point(patch::point(load, [relative(0), relative(1)], modulus)),
+    };
+    let curvature = relative(0);
+    let contact = Contact {
+        bodies,
+        load,
+        theory,
+        curvature,
+    };
+    let friction = Friction::of(question)?;
+    let strength = strength(question, &contact, friction.as_ref())?;
+    let tangential = Tangential::of(question, &contact, friction.as_ref())?;
+    let rolling = Rolling::of(question, &contact, friction.as_ref())?;
+    let wear = Wear::of(
+        question,
+        &contact,
+        rolling.as_ref(),
+        friction.as_ref(),
+        laws,
+    )?;
+    let window = Window::of(question, &contact, rolling.as_ref(), tangential.as_ref())?;
+    let patch = match &contact.theory {
+        Theory::Line(line) => Patch {
+            pressure: line.pressure,
+            mean_pressure: load / (2.0 * line.half_width),
+            semi_axis: line.half_width,
+            semi_axis_across: None,
+            area: None,
+            approach: None,
+        },
+        Theory::Point(point) => Patch {
+            pressure: point.pressure,
+            mean_pressure: load / point.area(),
+            semi_axis: point.along,
+            semi_axis_across: Some(point.across),
+            area: Some(point.area()),
+            approach: Some(point.approach),
+        },
+    };
+    let shape = match patch.semi_axis_across {
+        None => "line",
+        Some(across) if (across / patch.semi_axis - 1.0).abs() < 1e-9 => "circle",
+        Some(_) => "ellipse",
+    };
+    let mut answer = Answer {
+        shape,
+        load,
+        bodies: contact.bodies.each_ref().map(|b| b.name.clone()),
+        effective_modulus: modulus,
+        patch,
+        strength,
+        friction,
+        tangential,
+        rolling,
+        wear,
+        window,
+        warnings: Vec::new(),
+    };
+    answer.warnings = warnings::of(question, &contact, &answer);
+    Ok(answer)
+}
+
+/// Yield stress over hardness of a metal that does not harden (Tabor 1951).
+const HARDNESS_OVER_YIELD: f64 = 2.8;
+
+fn strength(
+    question: &Question,
+    contact: &Contact,
+    friction: Option<&Friction>,
+) -> Result<Option<Strength>, String> {
+    let least = |values: [Option<f64>; 2]| values.into_iter().flatten().reduce(f64::min);
+    let hardness = least(contact.bodies.each_ref().map(|b| b.hardness));
+    let given = match &question.yield_stress {
+        Some(text) => Some(question::positive("yield_stress", text, "Pa")?),
+        None => least(contact.bodies.each_ref().map(|b| b.yield_stress)),
+    };
+    let estimate = hardness.map(|h| h / HARDNESS_OVER_YIELD);
+    let Some(yield_stress) = given.or(estimate) else {
+        return Ok(None);
+    };
+    let (first, frictionless): (f64, f64) = match contact.is_line() {
+        true => (1.79, 4.0),
+        false => (1.6, 4.7),
+    };
+    let k = yield_stress / 3.0f64.sqrt();
+    let factor = friction.map_or(frictionless, |f| {
+        frictionless.min(1.0 / f.coefficient.value)
+    });
+    Ok(Some(Strength {
+        yield_stress,
+        estimated: given.is_none(),
+        first_yield: first * yield_stress,
+        shakedown: factor * k,
+        hardness,
+    }))
+}

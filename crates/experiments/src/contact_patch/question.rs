@@ -1,0 +1,236 @@
+//! What is asked: numbers as an engineer writes them, and materials by name.
+
+use super::range::Range;
+use fretwork_elastic::patch::Solid;
+use fretwork_scene::material::{Material, MaterialLibrary};
+use fretwork_scene::quantity::{hardness_in_pascal, quantity};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// What is asked. Texts are numbers with units, `75 kN`; without a unit they are in SI units.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Question {
+    /// Load: a force, or a force per length for a line contact.
+    pub load: String,
+    /// Radii of the two bodies in the direction of motion: `flat` for a plane, negative where concave; one alone is against a plane.
+    pub radius: Vec<String>,
+    /// Radii across it; those of `radius` without any.
+    pub across: Vec<String>,
+    /// Materials of the two bodies by name; one alone is that of both.
+    pub material: Vec<String>,
+    /// Young's moduli, in place of those of the materials.
+    pub young: Vec<String>,
+    /// Poisson's ratios, in place of those of the materials.
+    pub poisson: Vec<String>,
+    /// Hardnesses, in place of those of the materials.
+    pub hardness: Vec<String>,
+    /// Yield stress of the softer body; by default of its material, or its hardness over 2.8.
+    pub yield_stress: Option<String>,
+    /// Friction coefficient: `0.4`, `0.40+-0.03` or `0.3..0.5`.
+    pub friction: Option<String>,
+    /// Folders of runs whose friction coefficients are taken, with their interval.
+    pub runs: Vec<PathBuf>,
+    /// Tangential force: a force, or a force per length for a line contact.
+    pub force: Option<String>,
+    /// Amplitude of the displacement of distant points of the bodies, in fretting.
+    pub displacement: Option<String>,
+    /// Longitudinal creepage, in rolling.
+    pub creepage: Option<String>,
+    /// Speed of rolling.
+    pub speed: Option<String>,
+    /// Archard's coefficient K, as `friction`.
+    pub wear: Option<String>,
+    /// Width of the window of a third body; by default a fiftieth of the patch.
+    pub window: Option<String>,
+}
+
+/// One of the two bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Body {
+    /// Its material, or what it is called without one.
+    pub name: String,
+    /// Curvature along the motion and across it (1/m).
+    pub curvature: [f64; 2],
+    /// Its elasticity.
+    pub solid: Solid,
+    /// Hardness (Pa).
+    pub hardness: Option<f64>,
+    /// Yield stress (Pa) of its material.
+    pub yield_stress: Option<f64>,
+}
+
+/// A number with a unit.
+pub(super) fn number(what: &str, text: &str, unit: &str) -> Result<f64, String> {
+    quantity(text, unit).map_err(|e| {
+        let expected = e.expected.map(|x| format!("; give {x}"));
+        format!("{what}: {}{}", e.message, expected.unwrap_or_default())
+    })
+}
+
+/// A number with a unit, above zero.
+pub(super) fn positive(what: &str, text: &str, unit: &str) -> Result<f64, String> {
+    let value = number(what, text, unit)?;
+    match value > 0.0 {
+        true => Ok(value),
+        false => Err(format!("{what}: `{text}` must be above zero")),
+    }
+}
+
+/// The friction coefficient that is given as a range.
+pub(super) fn range(what: &str, text: &str) -> Result<Range, String> {
+    Range::parse(text).map_err(|e| format!("{what}: {e}"))
+}
+
+impl Question {
+    /// The load, and whether it is one per length.
+    pub(super) fn load(&self) -> Result<(f64, bool), String> {
+        if self.load.trim().is_empty() {
+            return Err(
+                "load: give the normal load, such as 75 kN, or 13 MN/m for a line contact".into(),
+            );
+        }
+        let force = quantity(&self.load, "N");
+        let per_length = force.is_err() && quantity(&self.load, "N/m").is_ok();
+        let unit = if per_length { "N/m" } else { "N" };
+        Ok((positive("load", &self.load, unit)?, per_length))
+    }
+
+    /// The two bodies.
+    pub(super) fn bodies(&self, line: bool) -> Result<[Body; 2], String> {
+        if self.radius.is_empty() {
+            return Err("radius: give the radius of one body or of both along the motion, such as 0.46m or 0.46m,flat".into());
+        }
+        if line && !self.across.is_empty() {
+            return Err("across: a load per length is that of a line contact, which has no radius across; leave it out, or give the load as a force".into());
+        }
+        let along = curvatures("radius", &self.radius)?;
+        let across = match (line, self.across.is_empty()) {
+            (true, _) => [0.0; 2],
+            (false, true) => along,
+            (false, false) => curvatures("across", &self.across)?,
+        };
+        for (what, pair, needed) in [("radius", along, true), ("across", across, !line)] {
+            if needed && pair[0] + pair[1] <= 0.0 {
+                return Err(format!(
+                    "{what}: the bodies conform, their curvatures 1/R1 + 1/R2 add to {:.3e} 1/m, which must be above zero; Hertz' theory is for bodies that touch in a point or a line",
+                    pair[0] + pair[1]
+                ));
+            }
+        }
+        let first = self.body(0, [along[0], across[0]])?;
+        Ok([first, self.body(1, [along[1], across[1]])?])
+    }
+
+    fn body(&self, side: usize, curvature: [f64; 2]) -> Result<Body, String> {
+        let material = of_side("material", &self.material, side)?;
+        let file = material.map(read).transpose()?;
+        let property = |name: &str, unit: &str| {
+            let given = file.as_ref().and_then(|m| m.properties.get(name));
+            given.and_then(|p| p.in_unit(unit).ok())
+        };
+        let elastic = |what: &str, given: &[String], unit: &str| {
+            let own = of_side(what, given, side)?.map(|text| number(what, text, unit));
+            own.transpose()?
+                .or(property(what, unit))
+                .ok_or_else(|| match material {
+                    Some(name) => format!("{what}: the material `{name}` has none; give it here"),
+                    None => {
+                        format!("{what}: name a material of materials/, or give young and poisson")
+                    }
+                })
+        };
+        let young = elastic("young", &self.young, "Pa")?;
+        let poisson = elastic("poisson", &self.poisson, "")?;
+        if !(young > 0.0 && (0.0..=0.5).contains(&poisson)) {
+            return Err(format!(
+                "young and poisson: {young:e} Pa and {poisson} must be above zero and within 0 to 0.5"
+            ));
+        }
+        let hardness = match of_side("hardness", &self.hardness, side)? {
+            Some(text) => Some(hardness(text)?),
+            None => file.as_ref().and_then(|m| {
+                let given = m.properties.get("hardness")?;
+                hardness_in_pascal(given.value, &given.unit)
+            }),
+        };
+        Ok(Body {
+            name: material.map_or_else(|| format!("body {}", side + 1), ToOwned::to_owned),
+            curvature,
+            solid: Solid { young, poisson },
+            hardness,
+            yield_stress: property("yield_stress", "Pa"),
+        })
+    }
+}
+
+/// The hardness (Pa) as one writes it: `260 HBW` or `2.5 GPa`.
+fn hardness(text: &str) -> Result<f64, String> {
+    let (value, unit) = match text.trim().split_once(' ') {
+        Some((value, unit)) => (value.parse().ok(), unit),
+        None => (None, ""),
+    };
+    let scaled = value.and_then(|v: f64| hardness_in_pascal(v, unit));
+    let pascal = match scaled {
+        Some(pascal) => pascal,
+        None => number("hardness", text, "Pa")?,
+    };
+    match pascal > 0.0 {
+        true => Ok(pascal),
+        false => Err(format!("hardness: `{text}` must be above zero")),
+    }
+}
+
+/// The entry of a body in a list of one, which is of both, or of two.
+fn of_side<'a>(what: &str, list: &'a [String], side: usize) -> Result<Option<&'a str>, String> {
+    match list {
+        [] => Ok(None),
+        [both] => Ok(Some(both)),
+        [_, _] => Ok(Some(&list[side])),
+        _ => Err(format!(
+            "{what}: {} values for two bodies; give one or two",
+            list.len()
+        )),
+    }
+}
+
+/// Curvatures (1/m) of the two bodies; a single one is against a plane.
+fn curvatures(what: &str, radii: &[String]) -> Result<[f64; 2], String> {
+    let mut out = [0.0; 2];
+    if radii.len() > 2 {
+        return Err(format!("{what}: {} radii for two bodies", radii.len()));
+    }
+    for (curvature, text) in out.iter_mut().zip(radii) {
+        if matches!(text.trim(), "flat" | "inf") {
+            continue;
+        }
+        let radius = number(what, text, "m")?;
+        if radius == 0.0 {
+            return Err(format!("{what}: a radius of zero; a plane is `flat`"));
+        }
+        *curvature = 1.0 / radius;
+    }
+    Ok(out)
+}
+
+/// A material of a folder `materials` here or above, or of the program.
+fn read(name: &str) -> Result<Material, String> {
+    let library = MaterialLibrary::beside(Path::new("case.ron"));
+    let source = library.read(name).map_err(|e| match e {
+        Err(error) => error.to_string(),
+        Ok(missing) => {
+            let near = missing.nearest.map(|n| format!("; did you mean `{n}`?"));
+            format!(
+                "material: there is no file `{name}.ron` in {}{}; there are {}",
+                missing.looked,
+                near.unwrap_or_default(),
+                missing.available
+            )
+        }
+    })?;
+    let material: Material = source.parse().map_err(|e| e.to_string())?;
+    material
+        .density()
+        .map_err(|f| source.locate(f).to_string())?;
+    Ok(material)
+}

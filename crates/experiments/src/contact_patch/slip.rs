@@ -1,0 +1,201 @@
+//! Slip of the patch: under a tangential force or displacement, in rolling, and in the window of a third body.
+
+use super::question::{Question, number, positive};
+use super::range::Range;
+use super::{Contact, Friction, Theory};
+use fretwork_elastic::patch::{Creep, PartialSlip, stuck_strip};
+use serde::Serialize;
+
+/// Partial and gross slip of bodies that do not roll.
+#[derive(Clone, Debug, Serialize)]
+pub struct Tangential {
+    /// Force at which gross slip begins (N; N/m), mu P.
+    pub slip_force: Range,
+    /// Displacement of distant points at which it begins (m); of a line it depends on the form of the bodies at a distance.
+    pub slip_displacement: Option<Range>,
+    /// Under the force or displacement that was asked for: Q/(mu P), 1 in gross slip.
+    pub share: Option<Range>,
+    /// Semi-axis of the part that sticks over that of the patch; 0 in gross slip.
+    pub stuck: Option<Range>,
+    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was asked for: 0 in partial slip.
+    pub local_slip: Option<Range>,
+}
+
+impl Tangential {
+    pub(super) fn of(
+        question: &Question,
+        contact: &Contact,
+        friction: Option<&Friction>,
+    ) -> Result<Option<Self>, String> {
+        let asked = question.force.is_some() || question.displacement.is_some();
+        let Some(friction) = friction else {
+            return match asked {
+                true => Err("force, displacement: where slip begins needs the friction coefficient; give friction".into()),
+                false => Ok(None),
+            };
+        };
+        if question.force.is_some() && question.displacement.is_some() {
+            return Err("force, displacement: one follows from the other; give one of them".into());
+        }
+        let (load, mu) = (contact.load, friction.coefficient);
+        let solids = contact.solids();
+        let unit = if contact.is_line() { "N/m" } else { "N" };
+        let force = question.force.as_ref();
+        let force = force.map(|t| number("force", t, unit)).transpose()?;
+        let moved = question.displacement.as_ref();
+        let moved = moved
+            .map(|t| positive("displacement", t, "m"))
+            .transpose()?;
+        let mut out = Self {
+            slip_force: mu.map(|mu| mu * load),
+            slip_displacement: None,
+            share: None,
+            stuck: None,
+            local_slip: None,
+        };
+        match &contact.theory {
+            Theory::Line(_) => {
+                if moved.is_some() {
+                    return Err("displacement: that of a line contact depends on the form of the bodies at a distance; give force, or a load as a force for a point contact".into());
+                }
+                if let Some(q) = force {
+                    let share = mu.map(|mu| (q.abs() / (mu * load)).min(1.0));
+                    out.share = Some(share);
+                    out.stuck = Some(share.map(stuck_strip));
+                }
+            }
+            Theory::Point(point) => {
+                let slip = |mu| PartialSlip::of(point, load, mu, &solids);
+                out.slip_displacement = Some(mu.map(|mu| slip(mu).displacement));
+                let under = |mu: f64| {
+                    let q = moved.map_or(force.unwrap_or(0.0), |d| slip(mu).force_at(d));
+                    q.abs().min(mu * load)
+                };
+                if asked {
+                    out.share = Some(mu.map(|mu| under(mu) / (mu * load)));
+                    out.stuck = Some(mu.map(|mu| slip(mu).stuck(under(mu))));
+                }
+                out.local_slip = moved.map(|d| mu.map(|mu| (d - slip(mu).displacement).max(0.0)));
+            }
+        }
+        Ok(Some(out))
+    }
+}
+
+/// Rolling with a longitudinal creepage.
+#[derive(Clone, Debug, Serialize)]
+pub struct Rolling {
+    /// Creepage from which the whole patch slips.
+    pub saturation: Range,
+    /// The creepage that was asked for.
+    pub creepage: Option<f64>,
+    /// Tangential force over load at this creepage.
+    pub adhesion: Option<Range>,
+    /// Tangential force (N; N/m).
+    pub force: Option<Range>,
+    /// Work of friction per metre rolled (J/m; J/m²): force times creepage, T gamma.
+    pub energy: Option<Range>,
+    /// Speed of slip (m/s), in the mean over the pressure.
+    pub slip_speed: Option<Range>,
+    /// Slip of a point as it passes the patch (m), in the mean over the pressure.
+    pub slip_distance: Option<Range>,
+}
+
+impl Rolling {
+    pub(super) fn of(
+        question: &Question,
+        contact: &Contact,
+        friction: Option<&Friction>,
+    ) -> Result<Option<Self>, String> {
+        let asked = question.creepage.is_some() || question.speed.is_some();
+        let Some(friction) = friction else {
+            return match asked {
+                true => Err(
+                    "creepage, speed: rolling needs the friction coefficient; give friction".into(),
+                ),
+                false => Ok(None),
+            };
+        };
+        let (load, mu, solids) = (contact.load, friction.coefficient, contact.solids());
+        let creep = |mu: f64| match &contact.theory {
+            Theory::Line(line) => Some(Creep::of_line(line, contact.curvature, mu)),
+            Theory::Point(point) => Creep::of_point(point, load, mu, &solids),
+        };
+        if creep(mu.value).is_none() {
+            return match asked {
+                true => Err("creepage: the patch is more than ten times as long in one direction as in the other, beyond Kalker's table; give the load per length for a line contact".into()),
+                false => Ok(None),
+            };
+        }
+        let share = |mu: f64, xi: f64| creep(mu).map_or(f64::NAN, |c| c.share(xi));
+        let creepage = question.creepage.as_ref();
+        let creepage = creepage.map(|t| number("creepage", t, "")).transpose()?;
+        if let Some(xi) = creepage.filter(|xi| !(xi.abs() > 0.0 && xi.abs() < 1.0)) {
+            return Err(format!(
+                "creepage: {xi} must be a share between 0 and 1 or in per cent, 0.5 %"
+            ));
+        }
+        let speed = question.speed.as_ref();
+        let speed = speed.map(|t| positive("speed", t, "m/s")).transpose()?;
+        let xi = creepage.map(f64::abs);
+        let adhesion = xi.map(|xi| mu.map(|mu| mu * share(mu, xi)));
+        let slip = xi.map(|xi| mu.map(|mu| share(mu, xi) * xi));
+        Ok(Some(Self {
+            saturation: mu.map(|mu| creep(mu).map_or(f64::NAN, |c| c.saturation)),
+            creepage,
+            adhesion,
+            force: adhesion.map(|a| a.map(|a| a * load)),
+            energy: adhesion.zip(xi).map(|(a, xi)| a.map(|a| a * load * xi)),
+            slip_speed: slip.zip(speed).map(|(s, v)| s.map(|s| s * v)),
+            slip_distance: slip.map(|s| s.map(|s| s * 2.0 * contact.semi_axis())),
+        }))
+    }
+}
+
+/// A window of a third body in the middle of the patch: periodic along the motion, under the largest pressure.
+#[derive(Clone, Debug, Serialize)]
+pub struct Window {
+    /// Width along the motion (m).
+    pub width: f64,
+    /// Pressure (Pa).
+    pub pressure: f64,
+    /// Load in two dimensions (N/m): pressure times width.
+    pub load: f64,
+    /// By what share the pressure at its edges is below that in the middle.
+    pub pressure_drop: f64,
+    /// By how much the gap of the undeformed bodies grows from the middle to its edges (m).
+    pub gap: f64,
+    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; none where neither was asked for.
+    pub slip: Option<Range>,
+}
+
+impl Window {
+    pub(super) fn of(
+        question: &Question,
+        contact: &Contact,
+        rolling: Option<&Rolling>,
+        tangential: Option<&Tangential>,
+    ) -> Result<Self, String> {
+        let a = contact.semi_axis();
+        let width = match &question.window {
+            Some(text) => positive("window", text, "m")?,
+            None => a / 25.0,
+        };
+        if width > 2.0 * a {
+            return Err(format!(
+                "window: {width:e} m is wider than the patch, {:e} m",
+                2.0 * a
+            ));
+        }
+        let pressure = contact.pressure();
+        let fretting = tangential.and_then(|t| t.local_slip);
+        Ok(Self {
+            width,
+            pressure,
+            load: pressure * width,
+            pressure_drop: 1.0 - (1.0 - (width / (2.0 * a)).powi(2)).sqrt(),
+            gap: contact.curvature * width * width / 8.0,
+            slip: fretting.or_else(|| rolling.and_then(|r| r.slip_distance)),
+        })
+    }
+}

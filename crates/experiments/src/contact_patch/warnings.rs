@@ -1,0 +1,82 @@
+//! Where Hertz' theory does not hold, and what an answer leaves open.
+
+use super::{Answer, Contact, Question};
+
+/// Largest semi-axis over a radius: beyond it the parabola of Hertz' theory is off by more than about a percent.
+const FLAT: f64 = 0.1;
+
+pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec<String> {
+    let mut out = Vec::new();
+    let patch = &answer.patch;
+    let axes = [Some(patch.semi_axis), patch.semi_axis_across];
+    for body in &contact.bodies {
+        for (axis, curvature) in axes.iter().zip(body.curvature) {
+            if let Some(a) = axis.filter(|a| a * curvature.abs() > FLAT) {
+                let said = format!(
+                    "NOT HERTZ: the patch, {a:.3e} m, is {:.2} of a radius of {}; the theory takes it as small, and the bodies as half-spaces",
+                    a * curvature.abs(),
+                    body.name
+                );
+                // Both directions of a sphere are one.
+                if !out.contains(&said) {
+                    out.push(said);
+                }
+            }
+        }
+    }
+    let giga = 1e-9;
+    match &answer.strength {
+        None => out.push("NO STRENGTH: neither material has a hardness or a yield stress; whether the bodies stay elastic is not known (hardness, yield_stress)".into()),
+        Some(s) => {
+            let of = if s.estimated { " (estimated as hardness/2.8)" } else { "" };
+            let (y, p) = (s.yield_stress * giga, patch.pressure);
+            if s.hardness.is_some_and(|h| p > h) {
+                out.push(format!(
+                    "NOT ELASTIC: {:.3} GPa is above the hardness, {:.3} GPa; the softer body is indented, and the pressure is about its hardness",
+                    p * giga,
+                    s.hardness.unwrap_or_default() * giga
+                ));
+            } else if p > s.shakedown {
+                out.push(format!(
+                    "BEYOND SHAKEDOWN: {:.3} GPa is above {:.3} GPa; with a yield stress of {y:.3} GPa{of} the surface deforms plastically in every passage",
+                    p * giga,
+                    s.shakedown * giga
+                ));
+            } else if p > s.first_yield {
+                out.push(format!(
+                    "YIELDS AT FIRST: {:.3} GPa is above {:.3} GPa; with a yield stress of {y:.3} GPa{of} it flows until residual stresses and hardening make it elastic, over a slightly larger patch",
+                    p * giga,
+                    s.first_yield * giga
+                ));
+            }
+        }
+    }
+    let [one, other] = contact.solids();
+    // Dundurs' second constant: tangential displacements under pressure, which the theories here leave out.
+    let soft = |s: &fretwork_elastic::patch::Solid| (1.0 - 2.0 * s.poisson) / s.shear();
+    let stiff = |s: &fretwork_elastic::patch::Solid| 2.0 * (1.0 - s.poisson) / s.shear();
+    let beta = (soft(&one) - soft(&other)) / (stiff(&one) + stiff(&other));
+    if beta.abs() > 0.05 && answer.friction.is_some() {
+        out.push(format!(
+            "UNLIKE MATERIALS: Dundurs' constant is {beta:.2}; pressure alone makes the surfaces slip, which where slip begins and the creep curve leave out"
+        ));
+    }
+    if let Some(f) = &answer.friction {
+        if f.runs == 1 {
+            out.push("ONE RUN: its interval is over its own cycles; runs with other seeds give the scatter of samples".into());
+        }
+        if f.runs > 0 && f.numerical.is_none() {
+            out.push("NUMERICAL ERROR NOT KNOWN: a run did not estimate the error of its steps; the interval has the scatter alone".into());
+        }
+    }
+    if answer.wear.is_some() && question.wear.is_some() {
+        let without = contact.bodies.iter().filter(|b| b.hardness.is_none());
+        for body in without {
+            out.push(format!(
+                "NO HARDNESS: {} has none, and no wear by Archard's law",
+                body.name
+            ));
+        }
+    }
+    out
+}

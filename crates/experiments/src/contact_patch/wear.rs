@@ -1,0 +1,236 @@
+//! Wear of rolling bodies: Archard's law with K and the hardness of each body, and the map over T gamma/A.
+
+use super::question::{Question, range};
+use super::range::Range;
+use super::runs;
+use super::{Contact, Friction, Rolling, Theory};
+use fretwork_core::laws::{Kind, Plugin, SearchPath};
+use serde::Serialize;
+
+/// Wear while rolling with a creepage.
+#[derive(Clone, Debug, Serialize)]
+pub struct Wear {
+    /// By Archard's law, of each body with a hardness.
+    pub archard: Vec<BodyWear>,
+    /// By the map of the law `t-gamma`; none of a line contact, which has no area.
+    pub energy_map: Option<EnergyMap>,
+    /// Of each first body of the runs from which the friction coefficient is, by its specific wear rate there.
+    pub window: Vec<WindowWear>,
+}
+
+/// Wear of a first body of a window, carried over to the patch.
+#[derive(Clone, Debug, Serialize)]
+pub struct WindowWear {
+    /// Its name in the case.
+    pub body: String,
+    /// Specific wear rate (m³/(N m)), volume over load times slip of the window.
+    pub specific_rate: Range,
+    /// Volume per metre rolled (m³/m; m³/m² of a line).
+    pub volume: Range,
+    /// Depth (m) by which a point wears as it passes the patch, the mean over the width of the patch.
+    pub depth_per_passage: Range,
+}
+
+/// Wear of a body by Archard's law.
+#[derive(Clone, Debug, Serialize)]
+pub struct BodyWear {
+    /// Its name.
+    pub body: String,
+    /// k = K/H (1/Pa).
+    pub coefficient: Range,
+    /// Volume per metre rolled (m³/m; m³/m² of a line).
+    pub volume: Range,
+    /// Depth (m): of a body that turns, per metre that it rolls, the mean over the width of the patch.
+    pub depth_per_metre: Option<Range>,
+    /// Depth (m) of a straight body per passage, the mean over the width of the patch.
+    pub depth_per_passage: Option<Range>,
+}
+
+/// Wear by the map over T gamma/A.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnergyMap {
+    /// T gamma/A (Pa).
+    pub energy_per_area: Range,
+    /// `mild`, `severe` or `catastrophic` at the middle of the interval.
+    pub regime: &'static str,
+    /// Mass per metre rolled and area (kg/m³).
+    pub mass_per_area: Range,
+    /// Volume per metre rolled (m³/m).
+    pub volume: Range,
+}
+
+impl Wear {
+    pub(super) fn of(
+        question: &Question,
+        contact: &Contact,
+        rolling: Option<&Rolling>,
+        friction: Option<&Friction>,
+        laws: &SearchPath,
+    ) -> Result<Option<Self>, String> {
+        let given = question.wear.as_ref();
+        let k = given.map(|t| range("wear", t)).transpose()?;
+        let energy = rolling.and_then(|r| r.energy);
+        let (Some(energy), Some(friction)) = (energy, friction) else {
+            return match k {
+                Some(_) => {
+                    Err("wear: the rate needs what slips; give friction and creepage".into())
+                }
+                None => Ok(None),
+            };
+        };
+        if let Some(k) = k.filter(|k| k.high > 1.0) {
+            return Err(format!("wear: K = {} is above 1", k.high));
+        }
+        // Within the interval of the friction coefficient, the energy over it: the load times the slip.
+        let slipped = Range {
+            low: energy.high / friction.coefficient.high,
+            value: energy.value / friction.coefficient.value,
+            high: energy.low / friction.coefficient.low,
+        };
+        let archard = k
+            .map(|k| archard(contact, &k, &slipped))
+            .unwrap_or_default();
+        let map = match &contact.theory {
+            Theory::Point(point) => Some(EnergyMap::of(&energy, point.area(), laws)?),
+            Theory::Line(_) => None,
+        };
+        let window = carried_over(contact, &runs::read(&question.runs)?, &slipped);
+        let any = !archard.is_empty() || map.is_some() || !window.is_empty();
+        Ok(any.then_some(Self {
+            archard,
+            energy_map: map,
+            window,
+        }))
+    }
+}
+
+/// The specific wear rates of a window times load and slip of the patch.
+fn carried_over(contact: &Contact, runs: &[runs::Run], slipped: &Range) -> Vec<WindowWear> {
+    let of = |(body, specific_rate): (String, Range)| {
+        let volume = Range::of(&specific_rate, slipped, |k, s| k * s);
+        WindowWear {
+            body,
+            specific_rate,
+            volume,
+            depth_per_passage: volume.map(|v| v / width(contact)),
+        }
+    };
+    runs::wear_rates(runs).into_iter().map(of).collect()
+}
+
+/// Width of the patch across the motion (m); 1 of a line, whose rates are per metre.
+fn width(contact: &Contact) -> f64 {
+    match &contact.theory {
+        Theory::Line(_) => 1.0,
+        Theory::Point(point) => 2.0 * point.across,
+    }
+}
+
+/// V = K/H times load and slip, of each body with its own hardness.
+fn archard(contact: &Contact, k: &Range, slipped: &Range) -> Vec<BodyWear> {
+    let of = |body: &super::Body| {
+        let hardness = body.hardness?;
+        let coefficient = k.map(|k| k / hardness);
+        let volume = Range::of(&coefficient, slipped, |k, s| k * s);
+        let depth = volume.map(|v| v / width(contact));
+        let curvature = body.curvature[0];
+        let round = std::f64::consts::TAU / curvature;
+        Some(BodyWear {
+            body: body.name.clone(),
+            coefficient,
+            volume,
+            depth_per_metre: (curvature > 0.0).then(|| depth.map(|d| d / round)),
+            depth_per_passage: (curvature == 0.0).then_some(depth),
+        })
+    };
+    contact.bodies.iter().filter_map(of).collect()
+}
+
+impl EnergyMap {
+    /// The map of the shipped law, with its default parameters, over the energy per metre (J/m).
+    fn of(energy: &Range, area: f64, laws: &SearchPath) -> Result<Self, String> {
+        let plugin = laws.find(Kind::WEAR, "t-gamma");
+        let plugin = plugin.map_err(|e| e.to_string())?;
+        let map = Map::of(&plugin).ok_or("the wear law t-gamma has other parameters")?;
+        let density = map.density;
+        let per_area = energy.map(|e| e / area);
+        let mass = per_area.map(|x| map.mass(x));
+        Ok(Self {
+            energy_per_area: per_area,
+            regime: map.regime(per_area.value),
+            mass_per_area: mass,
+            volume: mass.map(|m| m * area / density),
+        })
+    }
+}
+
+/// Parameters of the map; see `fretwork law show t-gamma`.
+struct Map {
+    density: f64,
+    mild: f64,
+    severe: f64,
+    catastrophic: f64,
+    catastrophic_start: f64,
+    mild_end: f64,
+    severe_end: f64,
+}
+
+impl Map {
+    fn of(plugin: &Plugin) -> Option<Self> {
+        let default = |name: &str| {
+            let found = plugin.parameters.iter().find(|p| p.name == name)?;
+            Some(found.default)
+        };
+        Some(Self {
+            density: default("density")?,
+            mild: default("mild")?,
+            severe: default("severe")?,
+            catastrophic: default("catastrophic")?,
+            catastrophic_start: default("catastrophic_start")?,
+            mild_end: default("mild_end")?,
+            severe_end: default("severe_end")?,
+        })
+    }
+
+    fn regime(&self, x: f64) -> &'static str {
+        match x {
+            x if x < self.mild_end => "mild",
+            x if x <= self.severe_end => "severe",
+            _ => "catastrophic",
+        }
+    }
+
+    /// Mass per metre and area (kg/m³).
+    fn mass(&self, x: f64) -> f64 {
+        match self.regime(x) {
+            "mild" => self.mild * x,
+            "severe" => self.severe,
+            _ => self.catastrophic_start + self.catastrophic * (x - self.severe_end),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fretwork_core::laws::BuiltInLaws;
+
+    /// The regimes by hand, in N/mm² and ug/(m mm²): R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004) 467-478.
+    #[test]
+    fn the_map_is_that_of_the_law() {
+        // SAFETY: the crate compiles the shipped laws with `plugin_table!` of this workspace.
+        let shipped = unsafe { BuiltInLaws::from_tables(fretwork_shipped::plugins()) };
+        let laws = SearchPath::new(&[]).with_built_in(shipped);
+        for (x, regime, mass) in [
+            (5.0, "mild", 26.5),
+            (20.0, "severe", 55.0),
+            (100.0, "catastrophic", 55.0 + 61.9 * 22.8),
+        ] {
+            // Of an area of 100 mm².
+            let map = EnergyMap::of(&Range::certain(x * 100.0), 1e-4, &laws).unwrap();
+            assert_eq!(map.regime, regime);
+            assert!((map.mass_per_area.value * 1e3 / mass - 1.0).abs() < 1e-12);
+            assert!((map.volume.value / (mass * 100.0 * 1e-9 / 7850.0) - 1.0).abs() < 1e-12);
+        }
+    }
+}

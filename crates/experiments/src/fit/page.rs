@@ -1,0 +1,454 @@
+//! What a fit says: lines for the terminal, the page `fit.html` and the picture `fit.png`.
+
+use super::evaluate::Tests;
+use super::measured::heading;
+use super::outcome::{HalfStep, Moved, Outcome, mean_of};
+use super::search::Found;
+use super::spec::{ReadFit, TestSpec};
+use fretwork_observe::quantity::number;
+use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use fretwork_report::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
+use fretwork_study::fit::identify::{End, Estimate};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Correlation from which two parameters are said to be hard to tell apart.
+const HIGH: f64 = 0.9;
+
+/// What a fit consists of.
+pub fn consists_of(read: &ReadFit, tests: &Tests) -> String {
+    let mut out = format!("{}: {}\n", read.path.display(), title(read));
+    for test in tests.target.tests() {
+        let values = if test.x.len() == 1 { "value" } else { "values" };
+        let _ = writeln!(
+            out,
+            "  test {}: {} measured {values}",
+            test.name,
+            test.x.len()
+        );
+    }
+    for p in &read.spec.parameters {
+        let _ = writeln!(out, "  {}: {} to {} {}", p.name, p.low, p.high, p.unit);
+    }
+    let seeds = match tests.random {
+        true => format!(
+            "{} to {} seeds for each point",
+            read.spec.seeds.0, read.spec.seeds.1
+        ),
+        false => "nothing is drawn from the seed: one run for each point".to_owned(),
+    };
+    let _ = write!(out, "  {seeds}");
+    out
+}
+
+fn title(read: &ReadFit) -> String {
+    read.spec
+        .title
+        .clone()
+        .unwrap_or_else(|| "a fit".to_owned())
+}
+
+/// The sentences of the result, worst first.
+fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
+    let told = &outcome.identification;
+    let names: Vec<&str> = read
+        .spec
+        .parameters
+        .iter()
+        .map(|p| p.name.as_str())
+        .collect();
+    let mut out = Vec::new();
+    if !told.describes {
+        out.push(format!(
+            "NOT DESCRIBED: the curves differ from the measured ones by more than their errors (reduced sum of squares {}, probability {}); intervals are widened by {}, which holds only if the departures are as random as noise",
+            told.reduced.map_or("unknown".to_owned(), |r| number(r, 3)),
+            told.p.map_or("unknown".to_owned(), |p| number(p, 2)),
+            number(told.widened, 3)
+        ));
+    }
+    if !outcome.settled && !told.at_edge {
+        out.push("NOT SETTLED: the estimate fits worse than the best point, or the runs around it are not as wide as its intervals; take the intervals as rough, and look at evaluations.csv".to_owned());
+    }
+    if told.at_edge {
+        out.push("NOT SETTLED: the least squares lie at the edge of the runs around the best point; more generations or points may find better values".to_owned());
+    }
+    for direction in told.directions.iter().filter(|d| !d.determined) {
+        out.push(format!(
+            "NOT DETERMINED: the measurements do not tell {} (all at once, in shares of their ranges); measure something else too, or fix one of them",
+            direction.words(&names)
+        ));
+    }
+    for e in &told.estimates {
+        if let Some(end) = e.at {
+            let end = match end {
+                End::Lowest => "lower",
+                End::Highest => "upper",
+            };
+            out.push(format!("AT AN END: {} lies at the {end} end of its range; extend the range, unless the end is physical", e.name));
+        }
+    }
+    for i in 0..names.len() {
+        for j in i + 1..names.len() {
+            if let Some(r) = told.correlation[i][j].filter(|r| r.abs() > HIGH) {
+                let way = if r > 0.0 { "the same" } else { "opposite" };
+                out.push(format!("{} and {} are hard to tell apart: their errors go {way} ways (correlation {r:.2})", names[i], names[j]));
+            }
+        }
+    }
+    match &outcome.half_step {
+        Some(HalfStep::Moves { parameters, beyond }) => {
+            for &i in beyond {
+                let e = &told.estimates[i];
+                let unit = &read.spec.parameters[i].unit;
+                let half = parameters[i].map_or(String::new(), moved_text);
+                out.push(format!(
+                    "STEP NOT SMALL: with half the step {} would be {half} instead of {} {unit}, a change by more than an eighth of the half-width of its interval; take a smaller step (`time.step` in `set` of the tests)",
+                    e.name, number(e.value, 4)
+                ));
+            }
+        }
+        Some(HalfStep::Failed(why)) => out.push(format!(
+            "what the step does to the estimates is not known: a run with half the step failed ({why})"
+        )),
+        None => {}
+    }
+    let failed = found
+        .evaluations
+        .iter()
+        .filter(|e| e.chi_squared.is_none())
+        .count();
+    if failed > 0 {
+        out.push(format!(
+            "{failed} of {} points failed; evaluations.csv has the reasons",
+            found.evaluations.len()
+        ));
+    }
+    out
+}
+
+/// A value with its interval.
+fn value_text(e: &Estimate, unit: &str) -> String {
+    let unit = if unit.is_empty() {
+        String::new()
+    } else {
+        format!(" {unit}")
+    };
+    let low = if e.open_below {
+        format!("below {}", number(e.interval.low, 4))
+    } else {
+        number(e.interval.low, 4)
+    };
+    let high = if e.open_above {
+        format!("above {}", number(e.interval.high, 4))
+    } else {
+        number(e.interval.high, 4)
+    };
+    match e.determined {
+        true => format!("{} ({low} to {high}){unit}", number(e.value, 4)),
+        false => format!(
+            "not determined within {} to {}{unit}",
+            number(e.interval.low, 4),
+            number(e.interval.high, 4)
+        ),
+    }
+}
+
+/// A parameter with half the step, with its interval if runs scatter.
+fn moved_text(moved: Moved) -> String {
+    let Moved { value, low, high } = moved;
+    match low < high {
+        true => format!(
+            "{} ({} to {})",
+            number(value, 4),
+            number(low, 4),
+            number(high, 4)
+        ),
+        false => number(value, 4),
+    }
+}
+
+/// The result for the terminal.
+pub fn answer(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> String {
+    let told = &outcome.identification;
+    let mut out = format!(
+        "{} points, search ended: {}\n",
+        found.evaluations.len(),
+        found.ended
+    );
+    for (e, p) in told.estimates.iter().zip(&read.spec.parameters) {
+        let _ = writeln!(out, "  {:<16} {}", e.name, value_text(e, &p.unit));
+    }
+    let _ = writeln!(
+        out,
+        "  with intervals of 95 %; sum of squares {} for {} measured values",
+        number(
+            found.evaluations[outcome.best]
+                .chi_squared
+                .unwrap_or(told.chi_squared),
+            4
+        ),
+        tests.target.measured().len()
+    );
+    for line in verdict(read, found, outcome) {
+        let _ = writeln!(out, "  {line}");
+    }
+    out.trim_end().to_owned()
+}
+
+/// Axes of a test: names of abscissae and values.
+fn axes(read: &ReadFit, test: usize) -> (String, String) {
+    match &read.spec.tests[test] {
+        TestSpec::Curve { measured, .. } => {
+            let file = read.beside(&measured.file);
+            let of = |column: &str| heading(&file, column);
+            (of(&measured.x), of(&measured.y))
+        }
+        TestSpec::Value { output, .. } => (String::new(), output.clone()),
+    }
+}
+
+/// Measured and fitted points of a test: places, measured, standard deviations, fitted, scatter of one run.
+type Points = Vec<(f64, f64, f64, f64, f64)>;
+
+fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
+    let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
+    let mut place = 0;
+    let of = |test: &fretwork_study::fit::residuals::Measurement| {
+        let mut points: Points = Vec::new();
+        for j in 0..test.x.len() {
+            let fitted = mean.get(place).copied().unwrap_or(f64::NAN);
+            let scatter = deviation
+                .as_ref()
+                .and_then(|d| d.get(place))
+                .copied()
+                .unwrap_or(f64::NAN);
+            points.push((test.x[j], test.y[j], test.sigma[j], fitted, scatter));
+            place += 1;
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points
+    };
+    tests.target.tests().iter().map(of).collect()
+}
+
+/// The page of a fit.
+pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
+    let told = &outcome.identification;
+    let mut sections = vec![Section {
+        title: "Parameters".to_owned(),
+        blocks: parameter_blocks(read, found, outcome),
+    }];
+    let figures = points(tests, found, outcome).into_iter().enumerate().map(|(t, points)| {
+        let (x, y) = axes(read, t);
+        let measured = SheetCurve {
+            label: "measured, with two standard deviations".to_owned(),
+            points: points.iter().map(|p| (p.0, p.1)).collect(),
+            intervals: points.iter().map(|p| (p.1 - 2.0 * p.2, p.1 + 2.0 * p.2)).collect(),
+            markers: true,
+            ..SheetCurve::default()
+        };
+        let fitted = SheetCurve {
+            label: "fitted, mean over seeds".to_owned(),
+            points: points.iter().map(|p| (p.0, p.3)).collect(),
+            intervals: points.iter().map(|p| (p.3 - 2.0 * p.4, p.3 + 2.0 * p.4)).collect(),
+            line: true,
+            ..SheetCurve::default()
+        };
+        Block::Figure(SheetFigure {
+            title: tests.target.tests()[t].name.clone(),
+            note: "Bars of the fitted curve are two standard deviations of one run from seed to seed.".to_owned(),
+            x: (x, String::new()),
+            y: (y, String::new()),
+            curves: vec![measured, fitted],
+            ..SheetFigure::default()
+        })
+    });
+    sections.push(Section {
+        title: "Curves".to_owned(),
+        blocks: figures.collect(),
+    });
+    sections.push(Section {
+        title: "Search".to_owned(),
+        blocks: search_blocks(found),
+    });
+    let text = read.source.text().to_owned();
+    sections.push(Section {
+        title: "The fit".to_owned(),
+        blocks: vec![
+            Block::Text(format!("Made by fretwork {}.", env!("CARGO_PKG_VERSION"))),
+            Block::Code(text),
+        ],
+    });
+    let state = match (told.describes, told.directions.iter().all(|d| d.determined)) {
+        (true, true) => "The model describes the measurements, which determine all parameters.",
+        (true, false) => {
+            "The model describes the measurements, which do not determine all parameters."
+        }
+        (false, _) => "The model does not describe the measurements within their errors.",
+    };
+    Sheet {
+        title: title(read),
+        lead: state.to_owned(),
+        sections,
+        command: "fretwork fit".to_owned(),
+    }
+}
+
+fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Block> {
+    let told = &outcome.identification;
+    let names: Vec<String> = read
+        .spec
+        .parameters
+        .iter()
+        .map(|p| p.name.clone())
+        .collect();
+    let rows = told
+        .estimates
+        .iter()
+        .zip(&read.spec.parameters)
+        .enumerate()
+        .map(|(i, (e, p))| {
+            let half = match &outcome.half_step {
+                Some(HalfStep::Moves { parameters, .. }) => {
+                    parameters[i].map_or("-".to_owned(), moved_text)
+                }
+                _ => String::new(),
+            };
+            let both = format!(
+                "{} to {}",
+                number(e.simultaneous.low, 4),
+                number(e.simultaneous.high, 4)
+            );
+            vec![
+                e.name.clone(),
+                value_text(e, &p.unit),
+                both,
+                half,
+                format!("{} to {} {}", p.low, p.high, p.unit),
+            ]
+        });
+    let mut blocks = vec![Block::Table(SheetTable {
+        note: "Values with intervals of 95 % for each parameter alone, and such that all of them hold at once in 95 %.".to_owned(),
+        heads: ["parameter", "value", "all at once", "with half the step", "range of the search"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    })];
+    let said = verdict(read, found, outcome);
+    if !said.is_empty() {
+        blocks.push(Block::List(said));
+    }
+    if names.len() > 1 {
+        let cell = |r: &Option<f64>| r.map_or(String::new(), |r| format!("{r:.2}"));
+        let rows = names.iter().zip(&told.correlation).map(|(name, row)| {
+            std::iter::once(name.clone())
+                .chain(row.iter().map(cell))
+                .collect()
+        });
+        blocks.push(Block::Table(SheetTable {
+            note: "Correlations of the errors of the parameters.".to_owned(),
+            heads: std::iter::once(String::new())
+                .chain(names.iter().cloned())
+                .collect(),
+            rows: rows.collect(),
+        }));
+        let words: Vec<&str> = names.iter().map(String::as_str).collect();
+        let rows = told.directions.iter().map(|d| {
+            let width = d.half_width.map_or("no limit".to_owned(), |h| {
+                format!("± {:.2} % of the range", 100.0 * h)
+            });
+            let known = if d.determined {
+                "determined"
+            } else {
+                "not determined"
+            };
+            vec![d.words(&words), width, known.to_owned()]
+        });
+        blocks.push(Block::Table(SheetTable {
+            note: "Combinations of parameters, the best known first, in shares of their ranges."
+                .to_owned(),
+            heads: ["together", "known to", ""].map(str::to_owned).to_vec(),
+            rows: rows.collect(),
+        }));
+    }
+    blocks
+}
+
+fn search_blocks(found: &Found) -> Vec<Block> {
+    let mut least = f64::INFINITY;
+    let mut points = Vec::new();
+    let mut best = Vec::new();
+    for (k, e) in found.evaluations.iter().enumerate() {
+        if let Some(x) = e.chi_squared {
+            least = least.min(x);
+            points.push(((k + 1) as f64, x.max(1e-12).log10()));
+            best.push(((k + 1) as f64, least.max(1e-12).log10()));
+        }
+    }
+    let failed = found
+        .evaluations
+        .iter()
+        .filter(|e| e.chi_squared.is_none())
+        .count();
+    let curve = |label: &str, points, line| SheetCurve {
+        label: label.to_owned(),
+        points,
+        line,
+        markers: !line,
+        ..SheetCurve::default()
+    };
+    vec![
+        Block::Text(format!(
+            "{} points were run, {failed} of which failed. The search ended: {}.",
+            found.evaluations.len(),
+            found.ended
+        )),
+        Block::Figure(SheetFigure {
+            title: "Sum of squares".to_owned(),
+            note: "Of each point in the order of the search (logarithm to base 10), and the least so far.".to_owned(),
+            x: ("evaluation".to_owned(), String::new()),
+            y: ("log10 of the sum of squares".to_owned(), String::new()),
+            curves: vec![curve("a point", points, false), curve("least so far", best, true)],
+            ..SheetFigure::default()
+        }),
+    ]
+}
+
+/// Draws measured and fitted curves.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn draw(
+    read: &ReadFit,
+    tests: &Tests,
+    found: &Found,
+    outcome: &Outcome,
+    path: &Path,
+) -> Result<(), ReportError> {
+    let charts = points(tests, found, outcome)
+        .into_iter()
+        .enumerate()
+        .map(|(t, points)| {
+            let (x, y) = axes(read, t);
+            let mut chart = Chart::new(
+                tests.target.tests()[t].name.clone(),
+                Axis::new(x, ""),
+                Axis::new(y, ""),
+            );
+            chart.subtitle = Some(format!(
+                "{}: measured with two standard deviations, and fitted",
+                title(read)
+            ));
+            let measured = Series::new("measured", points.iter().map(|p| (p.0, p.1)).collect())
+                .style(Style::Markers);
+            let bars = points
+                .iter()
+                .map(|p| (p.1 - 2.0 * p.2, p.1 + 2.0 * p.2))
+                .collect();
+            let fitted = Series::new("fitted", points.iter().map(|p| (p.0, p.3)).collect());
+            chart.with(measured.intervals(bars)).with(fitted)
+        });
+    let charts: Vec<Chart> = charts.filter(Chart::has_data).collect();
+    if charts.is_empty() {
+        return Ok(());
+    }
+    draw_panels(&charts, charts.len().min(2), path)
+}

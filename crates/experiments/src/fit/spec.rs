@@ -1,0 +1,351 @@
+//! The file of a fit.
+
+use crate::runs::expression::Derived;
+use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
+use fretwork_scene::source::{InputError, Source};
+use fretwork_scene::unseen_fault;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A fit as its file says it.
+///
+/// ```ron
+/// (
+///     tests: [
+///         Curve(
+///             name: "opening",
+///             case: "bond_mode_1.ron",
+///             measured: (file: "opening.csv", x: "opening", y: "traction", sigma: Column("uncertainty")),
+///             model: (x: "1e6 * (delta - delta_start)", y: "1e-6 * P / 0.5"),
+///         ),
+///     ],
+///     parameters: [(name: "w", key: "interfaces.all.parameters.damage.w", low: 0.01, high: 1.0, scale: Log)],
+/// )
+/// ```
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitSpec {
+    /// Title.
+    #[serde(default)]
+    pub title: Option<String>,
+    /// Measurements, each with the case that stands for it.
+    pub tests: Vec<TestSpec>,
+    /// What is sought.
+    pub parameters: Vec<ParameterSpec>,
+    /// Pairs of names: the first parameter is at most the second.
+    #[serde(default)]
+    pub order: Vec<(String, String)>,
+    /// Seeds of each point: with how many the search begins, and how many it may take where points cannot be told apart.
+    #[serde(default = "seeds")]
+    pub seeds: (u16, u16),
+    /// Whether the measured specimens scatter as runs do from seed to seed: their scatter then joins the error of the measurement.
+    #[serde(default)]
+    pub specimen_scatters: bool,
+    /// Whether each test counts as much as a single value, however many it has.
+    #[serde(default)]
+    pub balanced: bool,
+    /// How the search goes.
+    #[serde(default)]
+    pub search: SearchSpec,
+    /// Whether the runs at the estimate are repeated with half the step.
+    #[serde(default = "yes")]
+    pub half_step: bool,
+    /// Threads of each run.
+    #[serde(default = "one")]
+    pub threads: u16,
+    /// Largest fraction of steps that may miss the tolerance in an accepted run.
+    #[serde(default = "one_percent")]
+    pub unconverged: f64,
+    /// Largest energy residual, relative to the largest energy, of an accepted run.
+    #[serde(default = "one_percent")]
+    pub residual: f64,
+}
+
+/// A test: a measurement and how a case gives it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum TestSpec {
+    /// A measured curve.
+    Curve {
+        /// Its name.
+        name: String,
+        /// The case, relative to the file of the fit.
+        case: PathBuf,
+        /// `key.path=value` of its runs; with `${...}` in the value what follows from the parameters, by their names.
+        #[serde(default)]
+        set: Vec<String>,
+        /// The measured curve.
+        measured: MeasuredSpec,
+        /// The same curve from columns of `statistics.csv`.
+        model: ModelSpec,
+    },
+    /// A measured number.
+    Value {
+        /// Its name.
+        name: String,
+        /// The case, relative to the file of the fit.
+        case: PathBuf,
+        /// `key.path=value` of its runs, as for a curve.
+        #[serde(default)]
+        set: Vec<String>,
+        /// A number of `summary.json`, or `statistics.COLUMN`.
+        output: String,
+        /// Its measured value.
+        measured: f64,
+        /// Its standard deviation.
+        sigma: f64,
+    },
+}
+
+impl TestSpec {
+    /// Name, case and changes of any test.
+    pub fn common(&self) -> (&str, &Path, &[String]) {
+        match self {
+            Self::Curve {
+                name, case, set, ..
+            }
+            | Self::Value {
+                name, case, set, ..
+            } => (name, case, set),
+        }
+    }
+}
+
+/// Where a measured curve stands.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MeasuredSpec {
+    /// A CSV file with headings, relative to the file of the fit.
+    pub file: PathBuf,
+    /// Heading of the abscissae, without unit.
+    pub x: String,
+    /// Heading of the values, without unit.
+    pub y: String,
+    /// How well the values are known, and how closely the fit should follow them.
+    pub sigma: SigmaSpec,
+    /// Least and largest abscissa that is used; all by default.
+    #[serde(default)]
+    pub within: Option<(f64, f64)>,
+}
+
+/// The standard deviation of measured values.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub enum SigmaSpec {
+    /// A column of the file.
+    Column(String),
+    /// The same for all.
+    Value(f64),
+    /// A share of the largest magnitude of the values.
+    OfLargest(f64),
+}
+
+/// How a run gives a curve: expressions in the columns of `statistics.csv`; `COLUMN_start` is the value at the first row that is
+/// used.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelSpec {
+    /// Abscissae, in the unit of the measured ones.
+    pub x: String,
+    /// Values, in the unit of the measured ones.
+    pub y: String,
+    /// Which rows are used.
+    #[serde(default)]
+    pub rows: RowsSpec,
+    /// Rows over which values are averaged, an odd number.
+    #[serde(default = "one")]
+    pub smooth: u16,
+    /// How a curve that turns back is compared.
+    #[serde(default)]
+    pub along: AlongSpec,
+}
+
+/// Rows of the statistics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+pub enum RowsSpec {
+    /// All.
+    #[default]
+    All,
+    /// From a time on (s).
+    From(f64),
+    /// Between two times (s).
+    Between(f64, f64),
+    /// Those of the last complete cycle of a friction test.
+    LastCycle,
+}
+
+/// How points of two curves belong together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum AlongSpec {
+    /// By the abscissa, which increases.
+    #[default]
+    Abscissa,
+    /// By branch and abscissa, for loops: the measured one must begin on the same branch.
+    Branches,
+}
+
+/// What is sought.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterSpec {
+    /// Its name.
+    pub name: String,
+    /// The key of all cases that takes it, or several; none for one that is used by its name in `set` of the tests.
+    #[serde(default)]
+    pub key: CaseKeys,
+    /// Lower limit.
+    pub low: f64,
+    /// Upper limit.
+    pub high: f64,
+    /// How it is spread.
+    #[serde(default)]
+    pub scale: RangeScale,
+    /// Unit for the reader.
+    #[serde(default)]
+    pub unit: String,
+}
+
+/// How the search goes.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SearchSpec {
+    /// Points of the Latin hypercube that it begins with; 10 for each parameter by default.
+    pub points: Option<u32>,
+    /// Points of a generation; by the number of parameters by default.
+    pub population: Option<u32>,
+    /// Most generations.
+    pub generations: u32,
+    /// Seed of the search.
+    pub seed: u64,
+}
+
+impl Default for SearchSpec {
+    fn default() -> Self {
+        Self {
+            points: None,
+            population: None,
+            generations: 60,
+            seed: 1,
+        }
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn seeds() -> (u16, u16) {
+    (3, 12)
+}
+
+/// A fit that was read, with the text for the places of errors.
+#[derive(Debug)]
+pub struct ReadFit {
+    /// The fit.
+    pub spec: FitSpec,
+    /// Its text.
+    pub source: Source,
+    /// Path of the file.
+    pub path: PathBuf,
+}
+
+impl ReadFit {
+    /// Reads a fit and checks what can be checked without its cases.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let source = Source::read(path)?;
+        let spec: FitSpec = source.parse()?;
+        let read = Self {
+            spec,
+            source,
+            path: path.to_owned(),
+        };
+        read.check()?;
+        Ok(read)
+    }
+
+    /// A path of the fit, which is relative to its file.
+    pub fn beside(&self, path: &Path) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(path)
+    }
+
+    fn check(&self) -> Result<(), InputError> {
+        let spec = &self.spec;
+        let fail = |path: &str, text: &str| Err(self.source.error_at(path, text));
+        if spec.tests.is_empty() {
+            return fail("tests", "a fit has one measurement or more");
+        }
+        if spec.parameters.is_empty() {
+            return fail("parameters", "a fit seeks one parameter or more");
+        }
+        let names: Vec<&str> = spec.parameters.iter().map(|p| p.name.as_str()).collect();
+        let mut used = vec![false; names.len()];
+        for (k, test) in spec.tests.iter().enumerate() {
+            for (i, set) in test.common().2.iter().enumerate() {
+                let derived = Derived::parse(set, &names)
+                    .map_err(|why| self.source.error_at(&format!("tests.{k}.set.{i}"), why))?;
+                for place in derived.needs() {
+                    used[place] = true;
+                }
+            }
+        }
+        for (k, parameter) in spec.parameters.iter().enumerate() {
+            let path = format!("parameters.{k}.name");
+            if let Some(fault) = unseen_fault(&parameter.name) {
+                return fail(&path, &fault);
+            }
+            if spec.parameters[..k]
+                .iter()
+                .any(|p| p.name == parameter.name)
+            {
+                return fail(&path, "two parameters have this name");
+            }
+            if parameter.key.0.is_empty() && !used[k] {
+                return fail(
+                    &path,
+                    "no test uses this parameter; give it a `key` of the case, or use it as `${name}` in `set` of a test",
+                );
+            }
+            if parameter.scale == RangeScale::Integer {
+                return fail(
+                    &format!("parameters.{k}.scale"),
+                    "a fit seeks numbers that vary continuously: `Linear` or `Log`; whole numbers are for the factors of a study",
+                );
+            }
+        }
+        for (k, test) in spec.tests.iter().enumerate() {
+            if let Some(fault) = unseen_fault(test.common().0) {
+                return fail(&format!("tests.{k}.name"), &fault);
+            }
+            if spec.tests[..k]
+                .iter()
+                .any(|t| t.common().0 == test.common().0)
+            {
+                return fail(&format!("tests.{k}.name"), "two tests have this name");
+            }
+            if let TestSpec::Curve { model, .. } = test
+                && model.smooth % 2 == 0
+            {
+                return fail(
+                    &format!("tests.{k}.model.smooth"),
+                    "the number of rows is odd, so that a value stays in its place",
+                );
+            }
+        }
+        if spec.seeds.0 == 0 || spec.seeds.0 > spec.seeds.1 {
+            return fail(
+                "seeds",
+                "the first number of seeds is 1 or more, the second not less",
+            );
+        }
+        check_runs(&self.source, spec.threads, spec.unconverged, spec.residual)?;
+        if spec.search.points == Some(0) {
+            return fail("search.points", "the region has one point or more");
+        }
+        if spec.search.population.is_some_and(|n| n < 4) {
+            return fail("search.population", "a generation has 4 points or more");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,304 @@
+//! Numbers that a run leaves: from `summary.json` or a column of `statistics.csv`.
+
+use fretwork_scene::source::nearest;
+use serde_json::Value;
+use std::path::Path;
+
+/// Location of a number.
+#[derive(Clone, Debug, PartialEq)]
+enum Place {
+    /// In `summary.json`, by its path.
+    Summary(Vec<String>),
+    /// A column of the statistics, and its reduction to a number.
+    Column(String, Take),
+}
+
+/// Reduction of a column to a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Take {
+    /// The mean over the last half of the rows.
+    Mean,
+    /// The largest value.
+    Max,
+    /// The smallest value.
+    Min,
+    /// The last value.
+    Last,
+}
+
+/// A number that a run leaves, by its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with `:mean` of the last half of
+    /// the rows, `:max`, `:min` or `:last`.
+    pub name: String,
+    place: Place,
+}
+
+impl Quantity {
+    /// Parses a name.
+    ///
+    /// # Errors
+    /// What is wrong with it, as the end of a sentence.
+    pub fn parse(name: &str) -> Result<Self, String> {
+        let name = name.trim();
+        if name.is_empty() {
+            return Err("the name is missing".into());
+        }
+        let place = match name.strip_prefix("statistics.") {
+            Some(column) => {
+                let (column, take) = match column.rsplit_once(':') {
+                    None => (column, Take::Mean),
+                    Some((c, "mean")) => (c, Take::Mean),
+                    Some((c, "max")) => (c, Take::Max),
+                    Some((c, "min")) => (c, Take::Min),
+                    Some((c, "last")) => (c, Take::Last),
+                    Some((_, other)) => {
+                        return Err(format!("`:{other}` is not one of :mean, :max, :min, :last"));
+                    }
+                };
+                Place::Column(column.to_owned(), take)
+            }
+            None => Place::Summary(name.split('.').map(str::to_owned).collect()),
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            place,
+        })
+    }
+
+    /// Path of its name in `summary.json`; `None` if it is a column of the statistics.
+    pub(super) fn summary_path(&self) -> Option<&[String]> {
+        match &self.place {
+            Place::Summary(path) => Some(path),
+            Place::Column(..) => None,
+        }
+    }
+
+    /// Its column of the statistics, if it is one.
+    pub fn column_name(&self) -> Option<&str> {
+        match &self.place {
+            Place::Summary(_) => None,
+            Place::Column(name, _) => Some(name),
+        }
+    }
+
+    /// Its value in the folder of a run; `None` if the run has none (null).
+    pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
+        match &self.place {
+            Place::Summary(path) => {
+                let step = |v: &Value, part: &String| match v {
+                    Value::Array(list) => list.get(part.parse::<usize>().ok()?).cloned(),
+                    _ => v.get(part).cloned(),
+                };
+                let found = path.iter().try_fold(summary.clone(), |v, p| step(&v, p))?;
+                found.as_f64().filter(|x| x.is_finite())
+            }
+            Place::Column(name, take) => {
+                let values = column(&folder.join("statistics.csv"), name)?;
+                let found = match take {
+                    Take::Last => values.last().copied(),
+                    Take::Max => values.iter().copied().reduce(f64::max),
+                    Take::Min => values.iter().copied().reduce(f64::min),
+                    Take::Mean => {
+                        let half = &values[values.len() / 2..];
+                        Some(half.iter().sum::<f64>() / half.len() as f64)
+                    }
+                };
+                found.filter(|x| x.is_finite())
+            }
+        }
+    }
+
+    /// Whether it is a result that one of these measures gives at the end of a run.
+    pub(super) fn measured(&self, measures: &[&str]) -> bool {
+        let Place::Summary(path) = &self.place else {
+            return false;
+        };
+        let [group, name] = path.as_slice() else {
+            return false;
+        };
+        let begins = |m: &&str| {
+            let rest = name.strip_prefix(*m);
+            rest.is_some_and(|r| r.is_empty() || r.starts_with('_'))
+        };
+        group == "measures" && measures.iter().any(begins)
+    }
+
+    /// What to say of an output that a case does not have, with the nearest existing one.
+    pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
+        let close = nearest(wanted, names.iter().map(String::as_str))
+            .or_else(|| {
+                // Compare the last component alone, since parents may have been omitted.
+                let last = |n: &&String| n.rsplit('.').next() == wanted.rsplit('.').next();
+                names.iter().find(last).map(String::as_str)
+            })
+            .map_or(String::new(), |c| format!(" did you mean `{prefix}{c}`?"));
+        format!(
+            "a run of this case has no such output;{close} {}",
+            listed(names, prefix)
+        )
+    }
+
+    /// Checks whether a run has an output of this name; it may be null, or absent because one of the case's `measures` begins later.
+    ///
+    /// # Errors
+    /// A sentence with the nearest name.
+    pub fn check(&self, summary: &Value, folder: &Path, measures: &[&str]) -> Result<(), String> {
+        match &self.place {
+            Place::Summary(path) => {
+                let mut at = summary;
+                for part in path {
+                    at = match at {
+                        // Groups that are empty after a short run may be filled by a whole one.
+                        Value::Null | Value::Array(_) => return Ok(()),
+                        _ => match at.get(part) {
+                            Some(next) => next,
+                            None if self.measured(measures) => return Ok(()),
+                            None => {
+                                let mut names = Vec::new();
+                                flatten(summary, "", &mut names);
+                                return Err(self.unknown(&names, "", &self.name));
+                            }
+                        },
+                    };
+                }
+                match at {
+                    Value::Number(_) | Value::Null => Ok(()),
+                    _ => Err(format!(
+                        "it is not a number but a group; name one of its entries, as {}.NAME",
+                        self.name
+                    )),
+                }
+            }
+            Place::Column(name, _) => {
+                let names = header(&folder.join("statistics.csv"));
+                if names.iter().any(|n| n == name) {
+                    Ok(())
+                } else {
+                    Err(self.unknown(&names, "statistics.", name))
+                }
+            }
+        }
+    }
+}
+
+/// List of the existing outputs.
+pub(super) fn listed(names: &[String], prefix: &str) -> String {
+    let more = if prefix.is_empty() {
+        ", and statistics.COLUMN of statistics.csv (:mean of the last half, :max, :min, :last)"
+    } else {
+        ""
+    };
+    if names.is_empty() {
+        return format!("it has none of this kind{more}");
+    }
+    format!("there are {}{more}", names.join(", "))
+}
+
+/// Paths of the numbers in a summary.
+pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
+    // Not useful for a comparison.
+    if [
+        "solver",
+        "bodies",
+        "biaxial",
+        "circuit",
+        "fretting",
+        "jump",
+        "stopped",
+        "cpu_seconds",
+        "time_spent",
+        "plugins",
+        "version",
+        "seed",
+        "threads",
+        "steps",
+        "time",
+        "wall_seconds",
+        "dimension",
+    ]
+    .contains(&path)
+    {
+        return;
+    }
+    match value {
+        Value::Object(map) => {
+            for (key, inner) in map {
+                let path = if path.is_empty() {
+                    key.clone()
+                } else {
+                    format!("{path}.{key}")
+                };
+                flatten(inner, &path, out);
+            }
+        }
+        Value::Number(_) | Value::Null => out.push(path.to_owned()),
+        _ => {}
+    }
+}
+
+/// Names of the columns, without units.
+fn header(path: &Path) -> Vec<String> {
+    let Ok(mut reader) = csv::Reader::from_path(path) else {
+        return Vec::new();
+    };
+    let bare = |h: &str| h.split(" [").next().unwrap_or(h).to_owned();
+    reader
+        .headers()
+        .map(|h| h.iter().map(bare).collect())
+        .unwrap_or_default()
+}
+
+/// Unit of a column of a table of statistics.
+pub fn column_unit(path: &Path, name: &str) -> Option<String> {
+    let mut reader = csv::Reader::from_path(path).ok()?;
+    let headings = reader.headers().ok()?.clone();
+    headings.iter().find_map(|h| {
+        let (bare, unit) = h.split_once(" [")?;
+        (bare == name).then(|| unit.trim_end_matches(']').to_owned())
+    })
+}
+
+/// Values of a column; only complete rows are read, since the table may still be written to.
+pub fn column(path: &Path, name: &str) -> Option<Vec<f64>> {
+    let place = header(path).iter().position(|n| n == name)?;
+    let mut reader = csv::ReaderBuilder::new().from_path(path).ok()?;
+    let rows = reader.records().map_while(Result::ok);
+    let values: Vec<f64> = rows.map_while(|r| r.get(place)?.parse().ok()).collect();
+    (!values.is_empty()).then_some(values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_numbers_in_a_summary_and_names_the_nearest() {
+        let summary: Value = serde_json::from_str(
+            r#"{"friction_coefficient": 0.3, "wear": {"Qs": 2.0, "Qe": null}, "cycles": [{"work": 4.0}]}"#,
+        )
+        .unwrap();
+        let none = Path::new("/nowhere");
+        let read = |name: &str| Quantity::parse(name).unwrap().read(&summary, none);
+        assert_eq!(read("wear.Qs"), Some(2.0));
+        assert_eq!(read("cycles.0.work"), Some(4.0));
+        assert_eq!(read("wear.Qe"), None);
+        let check = |name: &str| {
+            let output = Quantity::parse(name).unwrap();
+            output.check(&summary, none, &["bulk"])
+        };
+        // A measure that begins later is not in the summary of a short run.
+        assert!(check("measures.bulk_mu").is_ok() && check("measures.bulk").is_ok());
+        assert!(check("measures.bulky").is_err() && check("measures.mu").is_err());
+        assert!(check("wear.Qe").is_ok() && check("cycles.3.work").is_ok());
+        let said = check("frction_coefficient").unwrap_err().to_string();
+        assert!(
+            said.contains("did you mean `friction_coefficient`?"),
+            "{said}"
+        );
+        let said = check("Qs").unwrap_err().to_string();
+        assert!(said.contains("did you mean `wear.Qs`?"), "{said}");
+        assert!(check("wear").is_err());
+    }
+}

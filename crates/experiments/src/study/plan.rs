@@ -1,0 +1,426 @@
+//! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
+
+use super::StudyError;
+use super::design::{Setting, settings};
+use super::factor::{AS_IN_THE_CASE, Factor, Kind, Value};
+use super::spec::{DesignSpec, ReadSpec};
+use crate::Program;
+use crate::load;
+use crate::runs::RunsError;
+use crate::runs::expression::Derived;
+use crate::runs::launcher::Launcher;
+use crate::runs::offer::{Offer, measure_names};
+use crate::runs::perturbation::Perturbation;
+use crate::runs::quantity::Quantity;
+use crate::runs::randomness::seed_matters;
+use crate::runs::stored::Limits;
+use fretwork_core::laws::SearchPath;
+use fretwork_scene::inputs::{self, Input};
+use fretwork_scene::{InputError, Loaded, Scene};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Levels that are built before a run; of more, only the text is checked.
+const BUILT: usize = 60;
+
+/// A run of a study.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Number of its setting, from 1.
+    pub setting: usize,
+    /// Its seed.
+    pub seed: u64,
+    /// The changes of the case.
+    pub sets: Vec<String>,
+}
+
+/// A study whose runs are known.
+#[derive(Debug)]
+pub struct Plan {
+    /// Title.
+    pub title: String,
+    /// The file of the study.
+    pub file: PathBuf,
+    /// Its folder.
+    pub out: PathBuf,
+    /// What varies.
+    pub factors: Vec<Factor>,
+    /// One value of each factor, for each setting.
+    pub settings: Vec<Setting>,
+    /// What follows from the factors, for each setting.
+    derived: Vec<Vec<String>>,
+    units: Vec<String>,
+    /// Seeds of each setting.
+    pub seeds: Vec<u64>,
+    /// Whether the seed changes the scene.
+    pub random: bool,
+    /// What is compared.
+    pub outputs: Vec<Quantity>,
+    /// Texts of the summary that are mapped.
+    pub regimes: Vec<String>,
+    /// Design of the study.
+    pub design: DesignSpec,
+    /// Names of the measures of the case.
+    pub measures: Vec<String>,
+    /// Who makes the runs.
+    pub launcher: Launcher,
+    /// The case with what all runs change.
+    pub base: Loaded,
+    known: Known,
+}
+
+/// What was found out about a study before, so that each of its points need not find it again.
+#[derive(Debug, Serialize, Deserialize, PartialEq)]
+struct Known {
+    /// Key of the case, of the program, and text of the study.
+    fingerprint: String,
+    random: bool,
+    outputs: Vec<String>,
+}
+
+/// The file of what is known.
+const KNOWN: &str = "study.json";
+
+impl Known {
+    fn read(file: &Path) -> Option<Self> {
+        serde_json::from_str(&std::fs::read_to_string(file).ok()?).ok()
+    }
+}
+
+/// Where a study is made.
+#[derive(Debug)]
+pub struct Place<'a> {
+    /// Folder of its results.
+    pub out: &'a Path,
+    /// Folder of its runs, which other studies may share; `runs` in that of the results by default.
+    pub cache: Option<&'a Path>,
+    /// What is needed of the program.
+    pub program: &'a Program,
+}
+
+impl Plan {
+    /// Plans a study. What takes long is taken from `study.json` of its folder, if [`keep`](Self::keep) left it there.
+    ///
+    /// # Errors
+    /// The study, its case, an output or a level that the case refuses.
+    pub fn new(read: &ReadSpec, place: Place<'_>) -> Result<Self, StudyError> {
+        let spec = &read.spec;
+        let case = read.beside(&spec.case);
+        let (derived, set): (Vec<String>, Vec<String>) =
+            spec.set.iter().cloned().partition(|s| Derived::is(s));
+        let base = load(&case, &set)?;
+        let mut factors = Vec::new();
+        for (k, factor) in spec.factors.iter().enumerate() {
+            factors.push(Factor::of(factor, read, &format!("factors.{k}"))?);
+        }
+        let inputs = inputs::of(base.source.text()).unwrap_or_default();
+        let own = |factor: &Factor| own_value(factor, &inputs);
+        let settings = settings(read, &mut factors, own)?;
+        if let Some(k) = (1..factors.len()).find(|&k| {
+            factors[..k]
+                .iter()
+                .any(|other| other.name == factors[k].name)
+        }) {
+            let text = format!("two factors are named `{}`", factors[k].name);
+            return Err(read
+                .source
+                .error_at(&format!("factors.{k}.name"), text)
+                .into());
+        }
+        let units = units(read, &factors, &inputs)?;
+        let derived = derive(read, &derived, &factors, &settings)?;
+        check_factors(read, &factors)?;
+        let limits = Limits {
+            unconverged: spec.unconverged,
+            residual: spec.residual,
+        };
+        let own = place.out.join("runs");
+        let folder = place.cache.unwrap_or(&own);
+        let mut launcher =
+            Launcher::new(&case, &set, place.program.plugins.clone(), folder, limits)?;
+        launcher.keep = spec.keep;
+        launcher.threads = spec.threads;
+        let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
+        let known = Known::read(&place.out.join(KNOWN));
+        let known = match known.filter(|k| k.fingerprint == fingerprint) {
+            Some(known) => known,
+            None => {
+                let scene = base.build(&place.program.search)?;
+                (place.program.check_names)(&base, &scene)?;
+                let first = [
+                    settings[0].iter().flat_map(|v| v.sets.clone()).collect(),
+                    derived[0].clone(),
+                ]
+                .concat();
+                check_levels(read, &base, &factors, &first, &place.program.search)?;
+                let outputs = outputs(read, &base, &scene)?;
+                Known {
+                    fingerprint,
+                    random: seed_matters(&base, &scene, &place.program.search)?,
+                    outputs: outputs.iter().map(|o| o.name.clone()).collect(),
+                }
+            }
+        };
+        let first = base.case.seed;
+        launcher.perturbation = (!known.random).then_some(Perturbation { first });
+        let outputs = known.outputs.iter().map(|name| Quantity::parse(name));
+        Ok(Self {
+            title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),
+            file: read.path.clone(),
+            out: place.out.to_owned(),
+            factors,
+            settings,
+            derived,
+            units,
+            regimes: spec.regimes.clone(),
+            design: spec.design.clone(),
+            seeds: (0..u64::from(spec.seeds))
+                .map(|k| first.wrapping_add(k))
+                .collect(),
+            random: known.random,
+            outputs: outputs
+                .collect::<Result<_, _>>()
+                .map_err(StudyError::Usage)?,
+            measures: measure_names(&base.case)
+                .iter()
+                .map(|m| (*m).to_owned())
+                .collect(),
+            launcher,
+            base,
+            known,
+        })
+    }
+
+    /// Keeps what took long in `study.json` of its folder, if there is one, for the next call.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn keep(&self) -> Result<(), RunsError> {
+        let file = self.out.join(KNOWN);
+        if self.out.is_dir() && Known::read(&file).as_ref() != Some(&self.known) {
+            let text = serde_json::to_string_pretty(&self.known).unwrap_or_default();
+            std::fs::write(&file, text).map_err(|e| RunsError::write(&file, &e))?;
+        }
+        Ok(())
+    }
+
+    /// Number of runs.
+    pub fn count(&self) -> usize {
+        self.settings.len() * self.seeds.len()
+    }
+
+    /// The run of a number from 1 to [`count`](Self::count).
+    pub fn point(&self, number: usize) -> Option<Point> {
+        let k = number.checked_sub(1).filter(|k| *k < self.count())?;
+        let (setting, seed) = (k / self.seeds.len(), k % self.seeds.len());
+        let values = self.settings[setting].iter();
+        Some(Point {
+            number,
+            setting: setting + 1,
+            seed: self.seeds[seed],
+            sets: values
+                .flat_map(|v| &v.sets)
+                .chain(&self.derived[setting])
+                .cloned()
+                .collect(),
+        })
+    }
+
+    /// All runs.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        (1..=self.count()).filter_map(|k| self.point(k))
+    }
+
+    /// Folder of a run.
+    pub fn place(&self, point: &Point) -> PathBuf {
+        self.launcher.place(&point.sets, point.seed)
+    }
+
+    /// SI unit of a factor, if the case has one for its key; empty otherwise.
+    pub fn unit_of(&self, factor: usize) -> String {
+        self.units.get(factor).cloned().unwrap_or_default()
+    }
+
+    /// What a run is, in words: `friction 0.2, speed 1.0, seed 4`.
+    pub fn words(&self, point: &Point) -> String {
+        let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
+        let mut words: Vec<String> = values
+            .map(|(f, v)| format!("{} {}", f.name, v.label))
+            .collect();
+        if self.seeds.len() > 1 {
+            words.push(format!("seed {}", point.seed));
+        }
+        words.join(", ")
+    }
+}
+
+/// Names of columns that the table of a study has itself.
+const COLUMNS: [&str; 11] = [
+    "point",
+    "setting",
+    "seed",
+    "status",
+    "reason",
+    "not_trustworthy",
+    "steps",
+    "cpu_seconds",
+    "wall_seconds",
+    "identity",
+    "folder",
+];
+
+/// Refuses names that the table has itself, keys that a study sets, and factors that change nothing.
+fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> {
+    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+    let mut used = vec![false; names.len()];
+    for set in &read.spec.set {
+        let derived =
+            Derived::parse(set, &names).map_err(|why| read.source.error_at("set", why))?;
+        for place in derived.needs() {
+            used[place] = true;
+        }
+    }
+    for (k, factor) in factors.iter().enumerate() {
+        let fail = |text: String| Err(read.source.error_at(&format!("factors.{k}"), text));
+        let name = factor.name.as_str();
+        if factor.keys.iter().any(|key| key.trim() == "seed") {
+            return fail("a study sets the seed itself; for more of them give `seeds`".to_owned());
+        }
+        if COLUMNS.contains(&name) || read.spec.outputs.iter().any(|o| o == name) {
+            return fail(format!(
+                "the table has a column `{name}` already; give the factor another `name`"
+            ));
+        }
+        let changes = factor
+            .levels()
+            .is_none_or(|l| l.iter().any(|v| !v.sets.is_empty()));
+        if factor.keys.is_empty() && !changes && !used[k] {
+            return fail(format!(
+                "`{name}` changes nothing: give it a `key`, or use it as `${{{name}}}` in `set`"
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// SI units of the factors: those of their keys, or what the study says where there is none.
+fn units(read: &ReadSpec, factors: &[Factor], inputs: &[Input]) -> Result<Vec<String>, InputError> {
+    let of = |(k, factor): (usize, &Factor)| {
+        let known = inputs.iter().find(|i| factor.keys.contains(&i.path));
+        let known = known.map_or("", |i| i.unit);
+        match (known, factor.unit.as_str()) {
+            ("", own) => Ok(own.to_owned()),
+            (known, own) if own.is_empty() || own == known => Ok(known.to_owned()),
+            (known, own) => Err(read.source.error_at(
+                &format!("factors.{k}.unit"),
+                format!("the case has its key in `{known}`, not in `{own}`; leave the unit out"),
+            )),
+        }
+    };
+    factors.iter().enumerate().map(of).collect()
+}
+
+/// What follows from the factors, for each setting.
+fn derive(
+    read: &ReadSpec,
+    texts: &[String],
+    factors: &[Factor],
+    settings: &[Setting],
+) -> Result<Vec<Vec<String>>, InputError> {
+    let refused = |why: String| read.source.error_at("set", why);
+    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+    let parsed = texts.iter().map(|text| Derived::parse(text, &names));
+    let parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    let of = |setting: &Setting| {
+        let numbers: Vec<Option<f64>> = setting.iter().map(|v| v.number).collect();
+        parsed.iter().map(|d| d.set(&numbers)).collect()
+    };
+    settings
+        .iter()
+        .map(of)
+        .collect::<Result<_, _>>()
+        .map_err(refused)
+}
+
+/// The value of a factor that the case has: no changes.
+fn own_value(factor: &Factor, inputs: &[Input]) -> Value {
+    let of_key = |key: &String| inputs.iter().find(|i| i.path == *key);
+    let own = factor.keys.first().and_then(of_key);
+    let text = own.map_or("", |i| i.value.trim_matches('"'));
+    Value {
+        label: if text.is_empty() {
+            AS_IN_THE_CASE.to_owned()
+        } else {
+            text.to_owned()
+        },
+        number: text.parse().ok(),
+        sets: Vec::new(),
+    }
+}
+
+/// The outputs that are asked for, or those that the case has.
+fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity>, StudyError> {
+    let offer = match scene {
+        Scene::Dim2(built) => Offer::of(&base.case, built),
+        Scene::Dim3(built) => Offer::of(&base.case, built),
+    };
+    let asked = &read.spec.outputs;
+    if asked.is_empty() {
+        let usual: Result<Vec<Quantity>, String> =
+            offer.usual().into_iter().map(Quantity::parse).collect();
+        let usual = usual.map_err(StudyError::Usage)?;
+        if usual.is_empty() {
+            let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
+            return Err(read.source.error_at("outputs", text).into());
+        }
+        return Ok(usual);
+    }
+    let mut all: Vec<Quantity> = Vec::new();
+    for (k, name) in asked.iter().enumerate() {
+        let refused = |why: String| read.source.error_at(&format!("outputs.{k}"), why);
+        let quantity = Quantity::parse(name).map_err(refused)?;
+        offer.check(&quantity).map_err(refused)?;
+        if all.contains(&quantity) {
+            return Err(refused("it is given twice".to_owned()).into());
+        }
+        all.push(quantity);
+    }
+    Ok(all)
+}
+
+/// Builds the first setting, and reads, and builds if they are few, the case with each level alone, so that a wrong one is refused
+/// before any run.
+fn check_levels(
+    read: &ReadSpec,
+    base: &Loaded,
+    factors: &[Factor],
+    first: &[String],
+    search: &SearchPath,
+) -> Result<(), InputError> {
+    let levels = |f: &Factor| match &f.kind {
+        Kind::Listed(values) => values.clone(),
+        Kind::Range { .. } => vec![f.at(0.0), f.at(1.0)],
+    };
+    load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
+    let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;
+    for factor in factors {
+        for value in levels(factor).into_iter().filter(|v| !v.sets.is_empty()) {
+            let sets = [base.source.sets(), &value.sets].concat();
+            let checked = load(&base.path, &sets).and_then(|loaded| match built {
+                true => loaded.build(search).map(|_| ()),
+                false => Ok(()),
+            });
+            checked.map_err(|e| {
+                e.note(format!(
+                    "with `{}` = {} of {}",
+                    factor.name,
+                    value.label,
+                    read.path.display()
+                ))
+            })?;
+        }
+    }
+    Ok(())
+}

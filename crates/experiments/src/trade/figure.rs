@@ -1,0 +1,282 @@
+//! Figure of error against cost, one panel per output.
+
+use super::compare::{Comparison, OutputError, Row};
+use super::output::{Output, Wanted};
+use super::parameters::{Level, Sense, StudyParameter};
+use super::setting::Setting;
+use super::study::Study;
+use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
+use std::path::Path;
+
+const GREY: (u8, u8, u8) = (120, 120, 120);
+const RED: (u8, u8, u8) = (190, 30, 45);
+/// Largest number of settings with their own legend entry; more are grouped by what they change.
+const NAMED: usize = 8;
+/// One colour per group of settings, in the order of their first appearance.
+const COLOURS: [(u8, u8, u8); 8] = [
+    (0, 114, 178),
+    (213, 94, 0),
+    (0, 158, 115),
+    (204, 121, 167),
+    (86, 160, 215),
+    (200, 140, 0),
+    (110, 80, 40),
+    (60, 60, 60),
+];
+
+/// Draws the figure; returns whether any setting that ran has a finite error.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn draw(
+    study: &Study,
+    found: &Comparison,
+    title: &str,
+    path: &Path,
+) -> Result<bool, ReportError> {
+    let known = |r: &Row| {
+        let mut errors = r.errors.iter().flatten();
+        r.failed.is_none() && errors.any(|e| e.at_most.is_finite())
+    };
+    if !found.rows.iter().any(known) {
+        return Ok(false);
+    }
+    let charts: Vec<Chart> = (0..study.outputs.len())
+        .map(|o| panel(study, found, title, o))
+        .collect();
+    draw_panels(&charts, charts.len().min(2), path)?;
+    Ok(true)
+}
+
+/// Settings that ran, with their errors of the output of a panel.
+type Points<'a> = Vec<(&'a Row, &'a OutputError)>;
+
+/// What a panel shows: the errors of one output.
+struct Panel<'a> {
+    study: &'a Study,
+    output: &'a Output,
+    reference: Setting,
+    /// All settings with a finite error.
+    good: Points<'a>,
+    /// Those whose error is one from the reference or from the exact value.
+    others: Points<'a>,
+    /// Factor of errors, 100 for those in per cent.
+    factor: f64,
+    /// Errors below it are drawn at it, since the axis is logarithmic.
+    floor: f64,
+}
+
+fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
+    let output = &study.outputs[o];
+    let (Wanted::Relative(wanted) | Wanted::Absolute(wanted)) = output.wanted;
+    let (factor, unit) = match output.wanted {
+        Wanted::Relative(_) => (100.0, "%"),
+        Wanted::Absolute(_) => (1.0, ""),
+    };
+    let name = output.name().replace('_', " ");
+    let y = Axis::new(format!("error of {name}"), unit).log();
+    let x = Axis::new("processor time of a run", "s").log();
+    let mut chart = Chart::new(format!("{title}: {name}"), x, y);
+    chart.subtitle = Some(subtitle(study, output, found, o));
+    let reference = Setting::reference(&study.parameters);
+    let ran = found.rows.iter().filter(|r| r.failed.is_none());
+    let errors = ran.filter_map(|r| Some((r, r.errors[o].as_ref()?)));
+    let good: Points<'_> = errors.filter(|(_, e)| e.at_most.is_finite()).collect();
+    let compared = |p: &&(&Row, &OutputError)| p.0.setting != reference || output.exact.is_some();
+    let others: Points<'_> = good.iter().filter(compared).copied().collect();
+    let sizes = others
+        .iter()
+        .flat_map(|(_, e)| [e.error.mean.abs(), e.at_most])
+        .chain([wanted]);
+    let floor = sizes.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min) / 3.0;
+    let panel = Panel {
+        study,
+        output,
+        reference,
+        good,
+        others,
+        factor,
+        floor,
+    };
+    let each = found.rows.len() <= NAMED;
+    let series = panel.wanted(wanted).into_iter();
+    let series = series.chain([panel.frontier()]).chain(panel.settings(each));
+    series
+        .chain(panel.own_error())
+        .fold(chart, |chart, series| chart.with(series))
+}
+
+impl Panel<'_> {
+    /// An error on the axis.
+    fn on_axis(&self, error: f64) -> f64 {
+        self.factor * error.max(self.floor)
+    }
+
+    /// The wanted error, as a line over all costs.
+    fn wanted(&self, wanted: f64) -> Option<Series> {
+        let costs = self.good.iter().map(|(r, _)| r.seconds);
+        let (low, high) = costs.fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
+        (low < high).then(|| {
+            let line = vec![(low, self.factor * wanted), (high, self.factor * wanted)];
+            let mut series = Series::new("wanted", line).style(Style::Dashed);
+            series.colour = Some(RED);
+            series
+        })
+    }
+
+    /// The frontier joins the error bounds as a staircase that falls with increasing cost: between two
+    /// settings the cheaper one is the best available.
+    fn frontier(&self) -> Series {
+        let mut stairs: Vec<(f64, f64)> = Vec::new();
+        for (r, e) in self.others.iter().filter(|(_, e)| e.on_frontier) {
+            let next = (r.seconds, self.on_axis(e.at_most));
+            if let Some(&(_, before)) = stairs.last() {
+                stairs.push((next.0, before));
+            }
+            stairs.push(next);
+        }
+        let mut line = Series::new("frontier, error at most", stairs);
+        line.colour = Some(GREY);
+        line
+    }
+
+    /// Errors with their intervals, a series for each setting or for each group of them.
+    fn settings(&self, each: bool) -> Vec<Series> {
+        let mut groups: Vec<(String, Points<'_>)> = Vec::new();
+        for &(row, e) in &self.others {
+            let name = if each {
+                named(&self.study.parameters, &row.setting)
+            } else {
+                group(self.study, row)
+            };
+            match groups.iter_mut().find(|g| g.0 == name) {
+                Some(g) => g.1.push((row, e)),
+                None => groups.push((name, vec![(row, e)])),
+            }
+        }
+        let series = groups.iter().enumerate().map(|(k, (name, rows))| {
+            let points = rows
+                .iter()
+                .map(|(r, e)| (r.seconds, self.on_axis(e.error.mean.abs())));
+            let bars = rows.iter().map(|(_, e)| {
+                let half = e.error.half_width.unwrap_or(0.0);
+                if half > 0.0 {
+                    let low = self.on_axis((e.error.mean.abs() - half).max(0.0));
+                    (low, self.on_axis(e.at_most))
+                } else {
+                    (f64::NAN, f64::NAN)
+                }
+            });
+            let mut marks = Series::new(name.clone(), points.collect())
+                .style(Style::Markers)
+                .intervals(bars.collect());
+            marks.colour = Some(COLOURS[k % COLOURS.len()]);
+            marks
+        });
+        series.collect()
+    }
+
+    /// The reference's own error, where it is known and there is no exact value.
+    fn own_error(&self) -> Option<Series> {
+        let (r, e) = self.good.iter().find(|(r, e)| {
+            r.setting == self.reference && self.output.exact.is_none() && e.bound.is_finite()
+        })?;
+        let name = format!(
+            "own error of the reference: {}",
+            named(&self.study.parameters, &r.setting)
+        );
+        let point = vec![(r.seconds, self.on_axis(e.bound))];
+        let mut mark = Series::new(name, point).style(Style::Markers);
+        mark.colour = Some((0, 0, 0));
+        Some(mark)
+    }
+}
+
+fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> String {
+    let seeds = if study.random {
+        format!("intervals of 95 % over {} seeds", study.seeds.len())
+    } else {
+        "no randomness in the case".into()
+    };
+    let against = match (output.exact, &found.own[o]) {
+        (Some(x), _) => format!("against the true value {x}"),
+        (None, Some(own)) => format!("against {} in the reference", shown(own.value.mean)),
+        _ => String::new(),
+    };
+    format!("{against}, {seeds}")
+}
+
+/// Four significant digits or decimals.
+fn shown(x: f64) -> String {
+    if (1e-3..1e6).contains(&x.abs()) {
+        format!("{x:.4}")
+    } else {
+        format!("{x:.3e}")
+    }
+}
+
+/// A setting by the values of all parameters that vary: what stands in the case may change, a figure says what was run.
+fn named(parameters: &[StudyParameter], setting: &Setting) -> String {
+    let varied = parameters
+        .iter()
+        .zip(&setting.0)
+        .filter(|(k, _)| k.levels.len() > 1);
+    let parts: Vec<String> = varied
+        .map(|(parameter, level)| {
+            let name = parameter.name.rsplit('.').next().unwrap_or_default();
+            format!(
+                "{} {}",
+                name.replace('_', " "),
+                value(parameter, &parameter.levels[*level])
+            )
+        })
+        .collect();
+    parts.join(", ")
+}
+
+fn value(parameter: &StudyParameter, level: &Level) -> String {
+    match (parameter.sense, level.number) {
+        (Sense::Step, Some(x)) => quantity(x, "s", 2),
+        (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
+        _ => level.label.clone(),
+    }
+}
+
+/// Group of a setting among many: the case's own by its values, others by the parameter they change.
+fn group(study: &Study, row: &Row) -> String {
+    match row.setting.changed(&study.parameters).as_slice() {
+        [] => format!("as in the case: {}", named(&study.parameters, &row.setting)),
+        [k] => format!("other {}", study.parameters[*k].name),
+        _ => "several changed".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_named_by_their_values_whatever_the_case_has() {
+        let level = |x: f64| Level {
+            label: format!("{x:e}"),
+            sets: Vec::new(),
+            number: Some(x),
+        };
+        let parameter = |name: &str, sense, own| StudyParameter {
+            name: name.to_owned(),
+            sense,
+            levels: vec![level(5e-5), level(1e-4)],
+            own,
+            reference: 0,
+            left_out: Vec::new(),
+        };
+        for own in [0, 1] {
+            let parameters = [
+                parameter("time.step", Sense::Step, own),
+                parameter("solver.tolerance", Sense::Tolerance, own),
+            ];
+            let name = named(&parameters, &Setting(vec![0, 1]));
+            assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");
+        }
+    }
+}
