@@ -19,7 +19,7 @@ use fretwork::scene::load;
 use fretwork::scene::sample::deposit::Corners;
 use fretwork::scene::sample::voronoi_space::tiling;
 use fretwork::solve::Problem;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::hint::black_box;
 use std::path::Path;
@@ -113,7 +113,7 @@ fn trial<S: Dimensional>(case: &str, feature: &Feature) -> Trial<S> {
     }
 }
 
-fn round<S: Steps>(t: &mut Trial<S>) {
+fn round<S: Space>(t: &mut Trial<S>) {
     let mut sums = [0.0; 4];
     let mut sweeps = 0;
     let clock = Instant::now();

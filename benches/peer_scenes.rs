@@ -7,9 +7,10 @@
 //! the scenes whose names contain it; `STEPS` sets the number of steps of the later window.
 
 use cpu_time::ProcessTime;
+use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -114,7 +115,7 @@ fn main() {
     }
 }
 
-fn bench<S: Steps>(name: &str, mut s: Simulation<S>, windows: &[Window]) {
+fn bench<S: Space>(name: &str, mut s: Simulation<S>, windows: &[Window]) {
     let mut number = 0;
     for window in windows {
         while number + 1 < window.first {
@@ -127,7 +128,7 @@ fn bench<S: Steps>(name: &str, mut s: Simulation<S>, windows: &[Window]) {
 }
 
 /// Performs the steps of a window and prints its line.
-fn time<S: Steps>(name: &str, s: &mut Simulation<S>, window: &Window) {
+fn time<S: Space>(name: &str, s: &mut Simulation<S>, window: &Window) {
     let [mut detect, mut laws, mut solve] = [Duration::ZERO; 3];
     let (mut iterations, mut swept, mut contacts, mut unconverged) = (0u64, 0.0, 0, 0);
     let (clock, wall) = (ProcessTime::now(), Instant::now());

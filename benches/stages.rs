@@ -12,9 +12,10 @@
 //! less. `sweeps` tells whether two revisions do the same. `benches/before_after.sh` compares two revisions by this bench.
 
 use cpu_time::ProcessTime;
+use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Case, Scene, load, processes};
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -135,7 +136,7 @@ fn run(case: &str, stages: &[Stage], wanted: Option<&str>, threads: usize) {
     }
 }
 
-fn time<S: Steps>(
+fn time<S: Space>(
     mut s: Simulation<S>,
     case: &Case,
     stages: &[Stage],

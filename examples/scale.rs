@@ -5,12 +5,12 @@
 //! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth is constant, and with it the
 //! number of iterations that a load needs to propagate across the layer.
 
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -251,7 +251,7 @@ fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
 }
 
 /// Steps until the layer is at rest: ten steps in a row that converge at the first test.
-fn settle<S: Steps>(s: &mut Simulation<S>) -> Result<(), Failure> {
+fn settle<S: Space>(s: &mut Simulation<S>) -> Result<(), Failure> {
     let (first, mut calm) = (s.options.solver.test_every.div_ceil(2), 0);
     for _ in 0..SETTLING {
         let sweeps = s.step()?.solver.iterations;

@@ -5,6 +5,7 @@ use crate::infinity;
 use crate::paths;
 use crate::search::search_path;
 use fretwork::cli;
+use fretwork::geometry::space::Space;
 use fretwork::scene::source::{Names, Tree, nearest, split_path};
 use fretwork::scene::{Case as CaseSpec, InputError, Loaded, Scene, check, load, load_text};
 use pyo3::exceptions::PyKeyError;
@@ -135,11 +136,7 @@ impl Case {
     }
 }
 
-fn lines<S: fretwork::step::Steps>(
-    loaded: &Loaded,
-    built: fretwork::scene::Built<S>,
-    timed: bool,
-) -> Lines {
+fn lines<S: Space>(loaded: &Loaded, built: fretwork::scene::Built<S>, timed: bool) -> Lines {
     let mut lines = cli::check_lines(loaded, &built, timed);
     if timed {
         lines.push(cli::check_run_time(loaded, built));

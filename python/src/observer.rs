@@ -5,10 +5,11 @@
 //! `restore(bytes)`; see `fretwork/_observers.py`.
 
 use crate::simulation::Simulation;
+use fretwork::geometry::space::Space;
 use fretwork::record::Observer;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::statistics::Column;
-use fretwork::step::{self, StepReport, Steps};
+use fretwork::step::{self, StepReport};
 use pyo3::prelude::*;
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -88,7 +89,7 @@ impl PythonObserver {
     }
 
     /// Calls a method with the simulation, lent for the call.
-    fn call<S: Steps>(&mut self, method: &str, s: &step::Simulation<S>) {
+    fn call<S: Space>(&mut self, method: &str, s: &step::Simulation<S>) {
         if self.wishes.lock().is_some() {
             return;
         }
@@ -112,7 +113,7 @@ impl PythonObserver {
     }
 }
 
-impl<S: Steps> Observer<S> for PythonObserver {
+impl<S: Space> Observer<S> for PythonObserver {
     fn name(&self) -> String {
         format!("Python: {}", self.name)
     }

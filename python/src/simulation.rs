@@ -113,8 +113,8 @@ impl Simulation {
     }
 
     /// A loan of a simulation of a run, which must be [ended](Self::end_loan) before the reference ends.
-    pub(crate) fn lend<S: step::Steps>(simulation: &step::Simulation<S>) -> Self {
-        Self::lent(match S::in_dimension(simulation) {
+    pub(crate) fn lend<S: Space>(simulation: &step::Simulation<S>) -> Self {
+        Self::lent(match step::InDimension::of(simulation) {
             step::InDimension::Dim2(s) => Held::Lent2(Lent(s)),
             step::InDimension::Dim3(s) => Held::Lent3(Lent(s)),
         })

@@ -21,7 +21,7 @@ use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
 use crate::scene::{Loaded, Scene, load, sampling};
 use crate::solve::local::solver::Method;
-use crate::step::{Simulation, Steps};
+use crate::step::Simulation;
 use clap::Args;
 use features::{Features, memory};
 use load::Load;
@@ -46,7 +46,7 @@ pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     }
 }
 
-fn describe_and_time<S: Steps>(
+fn describe_and_time<S: Space>(
     loaded: &Loaded,
     built: Built<S>,
     args: &CheckArgs,
@@ -71,7 +71,7 @@ fn line_of(label: &str, text: &str) -> String {
 pub type CheckLine = (String, String);
 
 /// The estimated time of a run, from steps that are made for half a second.
-pub fn run_time<S: Steps>(loaded: &Loaded, built: Built<S>) -> CheckLine {
+pub fn run_time<S: Space>(loaded: &Loaded, built: Built<S>) -> CheckLine {
     let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     let mut text = Trial::of(built.simulation, steps).text(steps, grains, S::D);

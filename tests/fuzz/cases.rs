@@ -2,9 +2,9 @@
 
 use crate::campaign::Campaign;
 use crate::mutate;
+use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
-use fretwork::step::Steps;
 use fretwork::step::coupling::Coupling;
 use rand::RngExt;
 use std::path::{Path, PathBuf};
@@ -61,7 +61,7 @@ pub fn furnish(folder: &Path) {
 }
 
 /// Two steps, with limits on iterations of this test: those of a case may be as many as its writer likes.
-fn steps<S: Steps>(mut built: Built<S>) {
+fn steps<S: Space>(mut built: Built<S>) {
     let s = &mut built.simulation;
     s.options.solver.max_iterations = s.options.solver.max_iterations.min(20);
     if let Coupling::Implicit { max_iterations, .. } = &mut s.options.coupling {

@@ -4,8 +4,7 @@
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::form::{ContactForm, Elastic, Problem};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, Options};
-use fretwork::step::Steps;
+use fretwork::solve::{AutoState, Options, solve};
 
 const RADIUS: f64 = 0.1;
 
@@ -100,7 +99,7 @@ fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>)
 }
 
 /// Velocities and spins (times the radius) of the bodies by a method.
-fn by<S: Steps>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec<f64> {
+fn by<S: Space>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec<f64> {
     let (mut problem, forms) = pile::<S>(stiff, blocks);
     let options = Options {
         tolerance,
@@ -108,7 +107,7 @@ fn by<S: Steps>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec
         method,
         ..Options::default()
     };
-    let report = S::solve(
+    let report = solve(
         &mut problem,
         &forms,
         &[],
@@ -126,7 +125,7 @@ fn by<S: Steps>(stiff: f64, blocks: bool, method: Method, tolerance: f64) -> Vec
     out
 }
 
-fn agree<S: Steps>(stiff: f64, blocks: bool, methods: &[Method]) {
+fn agree<S: Space>(stiff: f64, blocks: bool, methods: &[Method]) {
     let known = by::<S>(stiff, blocks, Method::Nlgs, 1e-12);
     let size = known.iter().fold(0.0f64, |m, x| m.max(x.abs()));
     for method in methods.iter().copied() {
@@ -140,7 +139,7 @@ fn agree<S: Steps>(stiff: f64, blocks: bool, methods: &[Method]) {
 }
 
 /// Friction is low: at 0.3 the pile has several solutions, and each method finds one of its own.
-fn every_method<S: Steps>(blocks: bool) {
+fn every_method<S: Space>(blocks: bool) {
     // Where levers couple the directions gradients stop short, at the root of rounding (2e-8).
     let methods: Vec<Method> = Method::ALL
         .iter()

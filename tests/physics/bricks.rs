@@ -3,7 +3,7 @@
 use crate::extremes::bench::{Sketch, floor};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 
 /// Width and height of free bricks, and the side of a box that slides over them (m), at the alert distance that a case has without one: a twentieth
 /// of the radius of the smallest grain; and how far its velocity may be off by the default tolerance: a box seven times as heavy as a brick moves
@@ -67,7 +67,7 @@ struct Slide {
 }
 
 /// The change of the velocity of the box over that at the start, after 1.5 m, and the number of edges that it met.
-fn slide<S: Dimensional + Steps>(slide: &Slide) -> (f64, u64) {
+fn slide<S: Dimensional>(slide: &Slide) -> (f64, u64) {
     let Slide { speed, step, .. } = *slide;
     let (grains, slider) = on_bricks::<S>(slide.brick, slide.side, speed, slide.last);
     let (contact, of_contact) = match slide.restitution > 0.0 {
@@ -110,7 +110,7 @@ fn slide<S: Dimensional + Steps>(slide: &Slide) -> (f64, u64) {
 
 /// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart: the leading edge of the box is below the top of the
 /// next one by what they sank. Without friction it keeps its velocity.
-fn slides_over_free_bricks<S: Dimensional + Steps>(last: bool) {
+fn slides_over_free_bricks<S: Dimensional>(last: bool) {
     for (speed, step, solver) in [
         (0.2, 1e-3, ""),
         (0.5, 1e-3, ""),

@@ -4,7 +4,7 @@
 use crate::extremes::bench::{G, Sketch, place};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 
 /// Radius of the drum and of the grain (m), and the circle of its centre.
 const DRUM: f64 = 0.5;
@@ -49,7 +49,7 @@ struct Swing {
     bottoms: Vec<f64>,
 }
 
-fn swing<S: Dimensional + Steps>(s: &mut Simulation<S>, end: f64) -> Swing {
+fn swing<S: Dimensional>(s: &mut Simulation<S>, end: f64) -> Swing {
     let last = S::D - 1;
     let mut found = Swing {
         out: 0.0,
@@ -78,7 +78,7 @@ fn swing<S: Dimensional + Steps>(s: &mut Simulation<S>, end: f64) -> Swing {
 /// Frictionless, the centre is a pendulum of length R - r: T = 4 sqrt(L/g) K(sin(amplitude/2)). Rolling, the inertia about the contact
 /// takes the place of the mass: T is longer by sqrt(1 + I/(m r^2)). At rest, at the amplitude, rolling takes
 /// mu = tan(amplitude)/(1 + m r^2/I), 0.86 for a disk.
-fn keeps_swinging<S: Dimensional + Steps>(end: f64, step: f64) {
+fn keeps_swinging<S: Dimensional>(end: f64, step: f64) {
     let amplitude: f64 = 1.2;
     let inertia = if S::D == 2 { 0.5 } else { 0.4 };
     for (mu, of_mass) in [(0.0, 1.0), (1.2, 1.0 + inertia)] {

@@ -5,7 +5,7 @@ use fretwork::laws::{BuiltInLaws, SearchPath};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 use std::path::Path;
 
@@ -111,7 +111,7 @@ fn area<S: Dimensional>() -> f64 {
 }
 
 /// Takes steps until the bond breaks: the largest shear that it carried (Pa).
-fn strength<S: Dimensional + Steps>(s: &mut Simulation<S>) -> f64 {
+fn strength<S: Dimensional>(s: &mut Simulation<S>) -> f64 {
     let mut most = 0.0f64;
     while s.state.network.bonds_broken() == 0 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -132,7 +132,7 @@ fn strength<S: Dimensional + Steps>(s: &mut Simulation<S>) -> f64 {
 const SHEAR: &str = r#"damage: "mohr-coulomb-brittle","#;
 
 /// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the step changes on the way.
-fn breaks_at_the_envelope<S: Dimensional + Steps>() {
+fn breaks_at_the_envelope<S: Dimensional>() {
     let force = format!("Constant({:e})", -PRESSURE * area::<S>());
     let expected = COHESION + FRICTION * PRESSURE;
     let step = 1e-5;

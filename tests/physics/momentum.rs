@@ -5,7 +5,7 @@ use fretwork::laws::Kind;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::{built_in, search_path};
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::path::Path;
 
 fn built<S: Dimensional>(text: &str) -> Simulation<S> {
@@ -32,7 +32,7 @@ fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
 
 /// Takes steps, in some of which contacts act; returns how far momentum drifted, over the sums of the sizes at the start. The ledger says the
 /// same.
-fn drift<S: Steps>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
+fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     let (linear, angular, sizes) = momentum(s);
     let mut acted = 0;
     for _ in 0..steps {
@@ -94,7 +94,7 @@ fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation
 /// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is kept to rounding. Rigid balls, which come
 /// together by 8e-4 of their radius in a step, act on their surfaces, which are apart by what the step leaves of their gap: what they lose is less than
 /// that over their radius.
-fn every_law<S: Dimensional + Steps>() {
+fn every_law<S: Dimensional>() {
     let laws = built_in();
     let mut count = 0;
     for (kind, name) in laws.names() {
@@ -145,7 +145,7 @@ fn every_law_keeps_the_momentum_of_an_isolated_cluster_in_space() {
 }
 
 /// Two balls on a bond over a gap that turn about each other twice: neither is anything lost, nor does a turn as a whole shear the bond.
-fn turning_pair<S: Dimensional + Steps>(gap: f64, bond: &str) {
+fn turning_pair<S: Dimensional>(gap: f64, bond: &str) {
     let (radius, rate) = (0.01, 20.0);
     let half = radius * (1.0 + 0.5 * gap);
     let grain = |side: f64| {

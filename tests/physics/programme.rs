@@ -5,7 +5,7 @@ use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,7 +56,7 @@ fn refused(lines: &str, said: &str) {
     assert!(error.contains(said), "{error}");
 }
 
-fn steps<S: Steps>(s: &mut Simulation<S>, n: usize) {
+fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     for _ in 0..n {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -4,7 +4,7 @@
 use super::grains::Folder;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use std::process::Command;
 
 /// Time of the deposit and steps after it.
@@ -108,7 +108,7 @@ fn apart<S: Space>(a: &Simulation<S>, b: &Simulation<S>) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-fn goes_on<S: Dimensional + Steps>(name: &str) {
+fn goes_on<S: Dimensional>(name: &str) {
     let folder = deposit::<S>(name, ELASTIC);
     let (mut one, _) = built::<S>(&folder, &case::<S>(&grains::<S>(), ELASTIC, DEPOSIT));
     for _ in 0..(DEPOSIT / STEP).round() as usize {

@@ -11,7 +11,7 @@ pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 use crate::{Disk, Frame, Link, LinkState, Outline, Paint, ReportError, Scale};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{InDimension, Simulation, Steps};
+use fretwork_core::step::{InDimension, Simulation};
 use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
@@ -57,7 +57,7 @@ pub enum Subject<'a> {
 
 impl Camera {
     /// A view of the whole scene in its current state, or of the window given in the case.
-    pub fn new<S: Steps>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
+    pub fn new<S: Space>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
         let mut camera = Self {
             window: output.window.unwrap_or_default(),
             fixed: output.window.is_some() && S::D == 2,
@@ -96,9 +96,9 @@ impl Camera {
     }
 
     /// Adapts the window to the current scene, unless the case gives one.
-    pub fn follow<S: Steps>(&mut self, simulation: &Simulation<S>) {
+    pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
         if !self.fixed {
-            self.window = Self::whole_of(S::in_dimension(simulation));
+            self.window = Self::whole_of(InDimension::of(simulation));
         }
     }
 
@@ -163,7 +163,7 @@ impl Camera {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn draw<S: Steps>(
+    pub fn draw<S: Space>(
         &self,
         simulation: &Simulation<S>,
         subject: Subject<'_>,
@@ -175,14 +175,14 @@ impl Camera {
     }
 
     /// What a picture of a subject shows, to be drawn later, by any thread.
-    pub fn frame<S: Steps>(
+    pub fn frame<S: Space>(
         &self,
         simulation: &Simulation<S>,
         subject: Subject<'_>,
         title: &str,
         caption: Vec<String>,
     ) -> Frame {
-        self.frame_of(S::in_dimension(simulation), subject, title, caption)
+        self.frame_of(InDimension::of(simulation), subject, title, caption)
     }
 
     // As `whole_of`.

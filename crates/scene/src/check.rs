@@ -7,10 +7,11 @@ use super::phases::PhaseSpec;
 use super::processes;
 use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Kind;
+use fretwork_core::step::Simulation;
 use fretwork_core::step::control::Until;
 use fretwork_core::step::coupling::Coupling;
-use fretwork_core::step::{Simulation, Steps};
 
 /// Most materials and most interfaces of a case.
 const MOST: usize = 10_000;
@@ -425,12 +426,12 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
 ///
 /// # Errors
 /// The pair with the largest overlap.
-pub(super) fn overlaps<S: Steps>(
+pub(super) fn overlaps<S: Space>(
     simulation: &mut Simulation<S>,
     smallest: f64,
     origins: &[Origin],
 ) -> Result<(), ValidationError> {
-    S::detect(simulation);
+    simulation.detect();
     let s = simulation;
     let worst = s
         .state

@@ -5,7 +5,7 @@
 use fretwork_core::contact::{ContactId, ContactNames};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::laws::{BuiltInLaws, SearchPath};
-use fretwork_core::step::{Simulation, State, Steps};
+use fretwork_core::step::{Simulation, State};
 use fretwork_scene::{Scene, load};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,7 +51,7 @@ fn solid(scene: Scene) -> Simulation<Dim3> {
     }
 }
 
-fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
+fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
     for _ in 0..count {
         s.step().unwrap();
     }
@@ -98,7 +98,7 @@ fn boxes() -> Vec<String> {
 }
 
 /// The scene with its grains listed backwards, under the identities they had.
-fn backwards<S: Steps>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
+fn backwards<S: Space>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
     let ids: Vec<u64> = s.state.bodies.id.clone();
     let grain: Vec<usize> = (0..s.state.bodies.len())
         .filter(|b| !s.state.bodies.driven.iter().any(|d| d.body as usize == *b))
@@ -110,7 +110,7 @@ fn backwards<S: Steps>(mut s: Simulation<S>, grains: usize) -> Simulation<S> {
     s
 }
 
-fn same_names<S: Steps>(mut one: Simulation<S>, mut other: Simulation<S>) -> usize {
+fn same_names<S: Space>(mut one: Simulation<S>, mut other: Simulation<S>) -> usize {
     steps(&mut one, 20);
     steps(&mut other, 20);
     let (a, b) = (named(&one), named(&other));

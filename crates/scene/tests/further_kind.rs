@@ -10,7 +10,7 @@ use fretwork_core::laws::commit::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};
 use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, Loaded, SearchPath};
-use fretwork_core::step::{Simulation, Steps};
+use fretwork_core::step::Simulation;
 use fretwork_scene::{Scene, load};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -109,7 +109,7 @@ fn path() -> SearchPath {
 
 /// All bits of the state after so many steps, and the largest difference between the record and the host's own account, as
 /// a share of the largest work.
-fn run<S: Steps>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
+fn run<S: Space>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
     for _ in 0..steps {
         s.step().unwrap();
     }

@@ -6,7 +6,7 @@ use super::{meshes, shapes};
 use fretwork_core::fields::{Field, FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::laws::Kind;
-use fretwork_core::step::{InDimension, Simulation, Steps};
+use fretwork_core::step::{InDimension, Simulation};
 use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
 use fretwork_scene::build::Loaded;
@@ -219,13 +219,13 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn append<S: Steps>(
+pub fn append<S: Space>(
     results: &mut Results,
     s: &Simulation<S>,
     loaded: &Loaded,
     values: Vec<Vec<f64>>,
 ) -> Result<(), ResultsError> {
-    append_known(results, S::in_dimension(s), loaded, values)
+    append_known(results, InDimension::of(s), loaded, values)
 }
 
 // Without a type parameter it is compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).

@@ -3,7 +3,7 @@
 use super::verdict::{Cause, Expected, Row, Verdict};
 use fretwork::geometry::space::{Space, VectorLike};
 use fretwork::record::Missed;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 
 /// Statistics and warnings of a run.
 #[derive(Default)]
@@ -21,12 +21,12 @@ pub struct Ran {
 }
 
 /// Makes `steps` steps.
-pub fn go<S: Steps>(s: &mut Simulation<S>, steps: u64) -> Ran {
+pub fn go<S: Space>(s: &mut Simulation<S>, steps: u64) -> Ran {
     watch(s, steps, |_| ())
 }
 
 /// Makes `steps` steps and calls a function with the state after each.
-pub fn watch<S: Steps>(
+pub fn watch<S: Space>(
     s: &mut Simulation<S>,
     steps: u64,
     mut look: impl FnMut(&Simulation<S>),

@@ -9,10 +9,10 @@ use crate::experiments::runs::offer::{Offer, measure_names};
 use crate::experiments::runs::stored::summary;
 use crate::experiments::trade::TradeError;
 use crate::experiments::trade::output::Output;
+use crate::geometry::space::Space;
 use crate::scene::build::Built;
 use crate::scene::most_steps::most_steps;
 use crate::scene::{Loaded, Scene};
-use crate::step::Steps;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -79,7 +79,7 @@ pub fn budget(args: &TradeArgs, loaded: &Loaded, scene: Scene) -> Result<(), Fai
     }
 }
 
-fn budget_of<S: Steps>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
+fn budget_of<S: Space>(args: &TradeArgs, loaded: &Loaded, built: Built<S>) -> Result<(), Failure> {
     let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     let trial = Trial::of(built.simulation, steps);

@@ -14,7 +14,6 @@ use crate::record::statistics::Table;
 use crate::record::summary::Summary;
 use crate::record::warnings;
 use crate::step::StepReport;
-use crate::step::Steps;
 use cpu_time::ProcessTime;
 use fretwork_observe::Observers;
 use fretwork_store::folder_lock::FolderLock;
@@ -76,7 +75,7 @@ impl<S: Space> UnsavedOutputs<S> {
     }
 }
 
-impl<S: Steps> Recorder<'_, S> {
+impl<S: Space> Recorder<'_, S> {
     /// A step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
         let begun = Instant::now();

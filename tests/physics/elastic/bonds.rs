@@ -3,6 +3,7 @@
 
 use super::*;
 use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
+use fretwork::geometry::space::Space;
 
 /// Stiff against the bonds, and without contraction across the pull, so that all bonds open alike.
 const STIFF: Elasticity = Elasticity {
@@ -101,7 +102,7 @@ fn bonds<S: Space>(s: &Simulation<S>) -> Vec<(f64, bool)> {
 
 /// Pulls a part along an axis until long after bonds are to break: the peak of its force is the strength times the area, what was released the energy
 /// times the area, and no bond is left.
-fn pulled<S: Dimensional + Steps>(
+fn pulled<S: Dimensional>(
     what: &str,
     mut s: Simulation<S>,
     (system, part, axis): (usize, &str, usize),
@@ -142,7 +143,7 @@ const COUPLINGS: [(&str, [f64; 2]); 3] = [
     ),
 ];
 
-fn a_block<S: Dimensional + Steps>() {
+fn a_block<S: Dimensional>() {
     for (coupling, tolerances) in COUPLINGS {
         let mut s = glue::<S>(0.0, coupling);
         let system = put_block(&mut s);
@@ -166,7 +167,7 @@ fn a_block_is_pulled_off_a_plane_in_space() {
 }
 
 /// A half-space that repeats opens uniformly, normal to its surface and along it; of one that does not the rim is pulled more.
-fn off_a_plane<S: Dimensional + Steps>(infinite: f64) {
+fn off_a_plane<S: Dimensional>(infinite: f64) {
     let up = S::D - 1;
     let (coupling, tolerances) = COUPLINGS[0];
     for (reach, axis) in [
@@ -225,7 +226,7 @@ fn growing(n: u32) -> Vec<f64> {
 
 /// A bond at a point of a mesh stands for its share of the surface, half of each cell beside it in the plane, so that the areas add up to the
 /// surface: graded meshes tear at the strength times the area, on a plane and on the mesh of another body.
-fn graded_blocks<S: Dimensional + Steps>(n: u32) {
+fn graded_blocks<S: Dimensional>(n: u32) {
     let (coupling, tolerances) = COUPLINGS[0];
     let up = S::D - 1;
     let axes: Vec<Option<Dof>> = pull::<S>(up).into_iter().map(Some).collect();

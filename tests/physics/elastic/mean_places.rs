@@ -2,6 +2,7 @@
 
 use super::wear::{agree, case};
 use super::*;
+use fretwork::geometry::space::Space;
 use fretwork_observe::nearest_places::NearestPlaces;
 use fretwork_observe::tractions::{SurfaceState, Zone};
 
@@ -201,7 +202,7 @@ fn a_point_faces_as_many_facets_as_there_are() {
 
 /// A soft block on a stiff one of the same width, both free at one side, pressed by 0.35 % of its modulus: it grows by a per mille or two more than the
 /// stiff one, and the points at that edge leave the surface. Their facets stay on it, and carry what they did.
-fn beyond_the_end<S: Dimensional + Steps>() {
+fn beyond_the_end<S: Dimensional>() {
     let up = S::D - 1;
     let (half, size, pressure): (f64, f64, f64) = (4e-3, 8e-4, 3.5e3);
     let force = -pressure * (2.0 * half).powi(up as i32);

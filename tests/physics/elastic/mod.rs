@@ -38,7 +38,7 @@ use fretwork::elastic::{
 };
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 
 /// Steel of the field's benchmarks.
 const STEEL: Elasticity = Elasticity {
@@ -102,7 +102,7 @@ fn add<S: Deformable>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
     s.add_system(system)
 }
 
-fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
+fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged, "{:?}", report.solver);

@@ -4,7 +4,7 @@
 use super::bench::{G, Sketch, ball, floor, grains, place};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 
 fn still() -> Sketch {
     Sketch {
@@ -18,7 +18,7 @@ fn built<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
+fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -4,8 +4,7 @@
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::form::{ContactForm, Elastic, Problem};
 use fretwork::solve::local::solver::Method;
-use fretwork::solve::{AutoState, MomentForm, Options};
-use fretwork::step::Steps;
+use fretwork::solve::{AutoState, MomentForm, Options, solve};
 
 /// Pairs of bodies, more than a register of lanes holds.
 const PAIRS: usize = 21;
@@ -180,7 +179,7 @@ fn off<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, k: usize) -> f64 {
     (pn - pressed).abs() + (pt - limited).norm()
 }
 
-fn every_method<S: Steps>(answer: Answer, moves: Moves, central: bool, moment: bool) {
+fn every_method<S: Space>(answer: Answer, moves: Moves, central: bool, moment: bool) {
     for method in Method::ALL.iter().copied() {
         let name = method.name();
         // What a method does not serve is refused before.
@@ -204,7 +203,7 @@ fn every_method<S: Steps>(answer: Answer, moves: Moves, central: bool, moment: b
             method,
             ..Options::default()
         };
-        let report = S::solve(
+        let report = solve(
             &mut problem,
             &forms,
             &moments,
@@ -241,7 +240,7 @@ fn every_method<S: Steps>(answer: Answer, moves: Moves, central: bool, moment: b
     }
 }
 
-fn everything<S: Steps>() {
+fn everything<S: Space>() {
     for answer in [Answer::Spring, Answer::Bond, Answer::Both, Answer::Cohesion] {
         for central in [true, false] {
             every_method::<S>(answer, Moves::Not, central, false);
@@ -265,7 +264,7 @@ fn springs_bonds_and_friction_between_held_bodies_in_space() {
 /// Bodies that can only turn, or only move along an axis: the laws hold at the velocities that the solver finds.
 #[test]
 fn contacts_of_bodies_that_are_held_in_part() {
-    fn of<S: Steps>() {
+    fn of<S: Space>() {
         every_method::<S>(Answer::Spring, Moves::Turns, true, false);
         every_method::<S>(Answer::Bond, Moves::Turns, true, false);
         every_method::<S>(Answer::Spring, Moves::Along, false, false);

@@ -11,7 +11,6 @@ use crate::extremes::bench::{G, Sketch, ball, floor, grains, place, plane, volum
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::Steps;
 use fretwork::step::{Simulation, State};
 use spring::{Spring, Touching};
 
@@ -35,7 +34,7 @@ fn at<S: Space>(x: f64, up: f64) -> S::Vector {
     place
 }
 
-fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
+fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(
@@ -48,7 +47,7 @@ fn go<S: Steps>(s: &mut Simulation<S>, steps: usize) {
 
 /// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger closes and bits are equal all the
 /// same.
-fn falls<S: Steps>(s: &mut Simulation<S>, steps: usize) {
+fn falls<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

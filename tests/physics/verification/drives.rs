@@ -1,12 +1,12 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
 
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Loaded, load};
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::PathBuf;
@@ -63,7 +63,7 @@ fn driven<S: Dimensional>(dof: &str, drive: &str, theta: f64, more: &str) -> Sim
     ))
 }
 
-fn step<S: Steps>(s: &mut Simulation<S>) {
+fn step<S: Space>(s: &mut Simulation<S>) {
     s.step().unwrap_or_else(|e| panic!("{e}"));
 }
 
@@ -136,7 +136,7 @@ const DRIVES: [(&str, Way, f64); 9] = [
 ];
 
 /// Furthest from its way, over the steps of 0.15 s; the ledger closes at each.
-fn off<S: Steps>(mut s: Simulation<S>, way: Way, at: impl Fn(&Simulation<S>) -> f64) -> f64 {
+fn off<S: Space>(mut s: Simulation<S>, way: Way, at: impl Fn(&Simulation<S>) -> f64) -> f64 {
     let mut worst = at(&s).abs();
     for _ in 0..150 {
         step(&mut s);

@@ -2,16 +2,16 @@
 
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
-use fretwork::geometry::space::Dim2;
+use fretwork::geometry::space::{Dim2, Space};
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
+use fretwork::step::Simulation;
 use fretwork::step::coupling::Coupling;
-use fretwork::step::{Simulation, Steps};
 use fretwork_observe::error_estimate::{Change, ErrorEstimate, Repeats};
 use std::path::Path;
 
 /// Steps of a simulation of which some are repeated with other settings, and of one of which none are.
-fn leave_no_trace<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32) {
+fn leave_no_trace<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     let (mut whole, mut repeated) = (one.simulation, other.simulation);
     for s in [&mut whole, &mut repeated] {
         // Recession is a process of the scene; it declares that it can be repeated.
@@ -40,7 +40,7 @@ fn leave_no_trace<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32
     assert!(all(&whole) == all(&repeated), "the steps after it differ");
 }
 
-fn parameters<S: Steps>(s: &Simulation<S>) -> Vec<Vec<f64>> {
+fn parameters<S: Space>(s: &Simulation<S>) -> Vec<Vec<f64>> {
     let laws = s.laws.iter().flat_map(|l| l.loaded());
     laws.map(|l| l.parameters.clone()).collect()
 }

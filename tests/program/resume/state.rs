@@ -1,11 +1,10 @@
 //! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
 
-use fretwork::geometry::space::Dim2;
+use fretwork::geometry::space::{Dim2, Space};
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
 use fretwork::solve::local::solver::Method;
-use fretwork::step::Steps;
 use fretwork::step::{Simulation, State};
 use std::path::Path;
 
@@ -18,17 +17,17 @@ pub fn built(case: &str, sets: &[&str]) -> Scene {
 }
 
 /// All that a simulation holds, as text: numbers are printed so that they read back as they are.
-pub fn all<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
+pub fn all<S: Space>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }
 
-pub fn steps<S: Steps>(s: &mut Simulation<S>, count: u32) {
+pub fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
     for _ in 0..count {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }
 }
 
-pub fn goes_on<S: Steps>([one, other]: [Built<S>; 2], before: u32, after: u32) {
+pub fn goes_on<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     let (mut whole, mut resumed) = (one.simulation, other.simulation);
     steps(&mut whole, before);
     let bytes = all(&whole);
@@ -157,7 +156,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
         _ => panic!("the case is of the plane"),
     };
     // Twice the weight in each step: what the step before found does not help.
-    fn step<S: Steps>(s: &mut Simulation<S>) {
+    fn step<S: Space>(s: &mut Simulation<S>) {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.converged, "{:?}", report.solver);
         assert_eq!(report.solver.used, Method::Interior);

@@ -1,6 +1,6 @@
 //! Repeating steps from a saved state: steps with other options, after which all is as before.
 
-use super::{Options, ProcessState, Simulation, State, Steps};
+use super::{Options, ProcessState, Simulation, State};
 use crate::code::CodeError;
 use crate::geometry::space::Space;
 use crate::laws::Interface;
@@ -67,14 +67,14 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-impl<S: Steps> Simulation<S> {
+impl<S: Space> Simulation<S> {
     /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
     /// the next step gives the same bits as without the trial.
     ///
     /// # Errors
     /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
     pub fn repeat<R>(&mut self, trial: impl FnOnce(&mut Self) -> R) -> Result<R, RepeatError> {
-        let saved = S::save(self)?;
+        let saved = self.save()?;
         let result = trial(self);
         self.put_back(saved)?;
         Ok(result)
@@ -88,12 +88,23 @@ impl<S: Steps> Simulation<S> {
         &mut self,
         trial: impl FnOnce(&mut Self) -> Result<R, E>,
     ) -> Result<Result<R, E>, RepeatError> {
-        let saved = S::save(self)?;
+        let saved = self.save()?;
         let result = trial(self);
         if result.is_err() {
             self.put_back(saved)?;
         }
         Ok(result)
+    }
+
+    /// Copies all that steps may change.
+    fn save(&self) -> Result<Saved<S>, RepeatError> {
+        self.repeatable()?;
+        Ok(Saved {
+            processes: self.save_processes()?,
+            state: self.state.clone(),
+            options: self.options,
+            laws: self.laws.clone(),
+        })
     }
 
     fn put_back(&mut self, saved: Saved<S>) -> Result<(), RepeatError> {
@@ -110,17 +121,6 @@ impl<S: Steps> Simulation<S> {
         self.processes.truncate(saved.processes.len());
         Ok(self.restore_processes(&saved.processes)?)
     }
-}
-
-/// See [`Steps::save`].
-pub(super) fn save<S: Space>(s: &Simulation<S>) -> Result<Saved<S>, RepeatError> {
-    s.repeatable()?;
-    Ok(Saved {
-        processes: s.save_processes()?,
-        state: s.state.clone(),
-        options: s.options,
-        laws: s.laws.clone(),
-    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Many steps, watched and stopped by the caller.
 
-use super::{Simulation, StepError, StepReport, Steps};
+use super::{Simulation, StepError, StepReport};
+use crate::geometry::space::Space;
 use std::ops::ControlFlow;
 
-impl<S: Steps> Simulation<S> {
+impl<S: Space> Simulation<S> {
     /// Steps until a time (s) is reached, and hands the state and the report to `after` at the end of every step, which
     /// stops the run by [`ControlFlow::Break`]; so does who wants to end with the phases of a case, see [`Simulation::finished`]. It comes back whether and why it was stopped; the simulation can go on.
     ///

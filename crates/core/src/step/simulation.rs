@@ -4,7 +4,7 @@ use super::control::Phase;
 use super::fields::Fields;
 use super::process::Process;
 use super::workspace::Workspace;
-use super::{Options, State, Steps};
+use super::{Options, State};
 use crate::bodies::Bodies;
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, Network};
@@ -40,7 +40,7 @@ pub struct Simulation<S: Space> {
     pub(super) workspace: Workspace<S>,
 }
 
-impl<S: Steps> Simulation<S> {
+impl<S: Space> Simulation<S> {
     /// Builds a scene at rest at time zero.
     pub fn new(
         bodies: Bodies<S>,
@@ -66,7 +66,7 @@ impl<S: Steps> Simulation<S> {
             heat: None,
             expansion: None,
             state: State::at_rest(bodies, network),
-            fields: S::fields(),
+            fields: Fields::default(),
             processes: Vec::new(),
             workspace: Workspace::default(),
         }

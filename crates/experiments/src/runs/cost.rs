@@ -3,8 +3,8 @@
 
 use super::duration::seconds;
 use cpu_time::ThreadTime;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
-use fretwork_core::step::Steps;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
@@ -54,7 +54,7 @@ pub struct RunTime {
 impl Trial {
     /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the time is up,
     /// so that even the largest scene does not block the program.
-    pub fn of<S: Steps>(mut simulation: Simulation<S>, steps: u64) -> Self {
+    pub fn of<S: Space>(mut simulation: Simulation<S>, steps: u64) -> Self {
         let (sender, receiver) = channel::<Result<Timed, String>>();
         let deformable = !simulation.state.systems.is_empty();
         let watched = steps.min(STEPS);

@@ -4,8 +4,8 @@ use super::StudyError;
 use super::plan::{Plan, Point};
 use crate::load;
 use crate::runs::cost::{RunTime, Trial};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::SearchPath;
-use fretwork_core::step::Steps;
 use fretwork_scene::build::Built;
 use fretwork_scene::most_steps::most_steps;
 use fretwork_scene::{Loaded, Scene};
@@ -96,7 +96,7 @@ impl Forecast {
     }
 }
 
-fn trial<S: Steps>(loaded: &Loaded, built: Built<S>) -> Option<RunTime> {
+fn trial<S: Space>(loaded: &Loaded, built: Built<S>) -> Option<RunTime> {
     let steps = most_steps(&loaded.case);
     let grains = built.simulation.state.bodies.grains().count();
     Trial::of(built.simulation, steps).run_time(steps, grains, S::D)

@@ -1,7 +1,8 @@
 //! What finer settings change in the forces of contacts: the next step is made again in quarters, and with a hundredth of the tolerance.
 
 use crate::error_estimate::{FINER, cost, shorten, tighten};
-use fretwork_core::step::{ContactForces, RepeatError, Simulation, Steps};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::{ContactForces, RepeatError, Simulation};
 
 /// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
 const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
@@ -18,7 +19,7 @@ pub(super) struct ForceChanges {
 }
 
 /// One way of making the next step.
-struct Made<S: Steps> {
+struct Made<S: Space> {
     forces: ContactForces<S>,
     cost: f64,
     iterations: u32,
@@ -26,7 +27,7 @@ struct Made<S: Steps> {
 }
 
 /// Makes the next step in so many parts; `None` where it fails.
-fn made<S: Steps>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
+fn made<S: Space>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
     let (mut spent, mut iterations, mut converged) = (0.0, 0, true);
     for _ in 0..parts {
         let report = s.step().ok()?;
@@ -46,7 +47,7 @@ fn made<S: Steps>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
 ///
 /// # Errors
 /// A process could not be put back: the run cannot go on.
-pub(super) fn repeat_step<S: Steps>(
+pub(super) fn repeat_step<S: Space>(
     s: &mut Simulation<S>,
 ) -> Result<(Option<ForceChanges>, [f64; 2]), RepeatError> {
     let Some(base) = s.repeat(|s| made(s, 1))? else {

@@ -7,7 +7,8 @@
 //!
 //! [`StepBounds`]: fretwork_core::step::control::StepBounds
 
-use fretwork_core::step::{ContactForces, Simulation, StepReport, Steps};
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::{ContactForces, Simulation, StepReport};
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
@@ -47,12 +48,12 @@ pub(super) struct Growth {
 
 /// What a step is compared with.
 #[derive(Debug)]
-pub(super) struct Before<S: Steps> {
+pub(super) struct Before<S: Space> {
     pub forces: ContactForces<S>,
     damage: f64,
 }
 
-impl<S: Steps> Before<S> {
+impl<S: Space> Before<S> {
     pub fn of(s: &Simulation<S>) -> Self {
         Self {
             forces: s.contact_forces(),
@@ -62,7 +63,7 @@ impl<S: Steps> Before<S> {
 }
 
 /// Sum of the damage of all bonds.
-fn damage<S: Steps>(s: &Simulation<S>) -> f64 {
+fn damage<S: Space>(s: &Simulation<S>) -> f64 {
     let made = s.state.network.bonds_made();
     if made == 0 {
         return 0.0;
@@ -71,7 +72,7 @@ fn damage<S: Steps>(s: &Simulation<S>) -> f64 {
 }
 
 impl Growth {
-    pub fn new<S: Steps>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
+    pub fn new<S: Space>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
         let most = spec.largest(case.time.step) / case.time.step;
         // A largest step that is a multiple up to rounding is reached. The waves of deformable bodies are not seen by what is looked at here.
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
@@ -98,7 +99,7 @@ impl Growth {
     }
 
     /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than `most`.
-    pub fn next<S: Steps>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
+    pub fn next<S: Space>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
         self.event = false;
         if self.most == 1 {
             return 1;
@@ -116,12 +117,12 @@ impl Growth {
     }
 
     /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or may grow after it.
-    pub fn watches<S: Steps>(&self, s: &Simulation<S>, count: u32) -> bool {
+    pub fn watches<S: Space>(&self, s: &Simulation<S>, count: u32) -> bool {
         count > 1 || (self.most > 1 && s.largest_displacement() <= self.allowed)
     }
 
     /// Takes in a step of `count` steps of the case; false where it is to be repeated with fewer.
-    pub fn holds<S: Steps>(
+    pub fn holds<S: Space>(
         &mut self,
         s: &Simulation<S>,
         before: Option<&Before<S>>,

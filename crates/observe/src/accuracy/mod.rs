@@ -14,8 +14,9 @@ pub use report::{AccuracyReport, ChosenSettings, SettingChange};
 
 use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
 use fretwork_core::bodies::Dof;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
-use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport, Steps};
+use fretwork_core::step::{RepeatError, Simulation, StepError, StepReport};
 use fretwork_scene::case::{AccuracySpec, AccurateResult, Case};
 use fretwork_scene::processes::FrictionTest;
 use growth::{Before, Growth};
@@ -85,7 +86,7 @@ enum Quantity {
 
 impl Quantity {
     /// What a case asks for.
-    fn asked<S: Steps>(of: AccurateResult, case: &Case, s: &Simulation<S>) -> Self {
+    fn asked<S: Space>(of: AccurateResult, case: &Case, s: &Simulation<S>) -> Self {
         match of {
             AccurateResult::Friction if FrictionTest::of(case, s).is_some() => Self::Friction,
             AccurateResult::Friction if !driven(case, s) => Self::Forces,
@@ -127,7 +128,7 @@ pub struct StepParts {
 
 impl AccuracyControl {
     /// Of a run of a case that asks for an accuracy.
-    pub fn new<S: Steps>(case: &Case, s: &Simulation<S>) -> Option<Self> {
+    pub fn new<S: Space>(case: &Case, s: &Simulation<S>) -> Option<Self> {
         let spec = case.accuracy.as_ref()?;
         let test = FrictionTest::of(case, s);
         let start = test.map_or(0.0, |t| t.clock.start / case.time.step);
@@ -175,7 +176,7 @@ impl AccuracyControl {
     ///
     /// # Errors
     /// Steps cannot be repeated, or a process could not be put back.
-    pub fn begin_step<S: Steps>(
+    pub fn begin_step<S: Space>(
         &mut self,
         s: &mut Simulation<S>,
         [done, total]: [u64; 2],
@@ -209,7 +210,7 @@ impl AccuracyControl {
     }
 
     /// Steps of the case that the next step spans.
-    fn count<S: Steps>(&mut self, s: &Simulation<S>, [done, total]: [u64; 2], most: u64) -> u32 {
+    fn count<S: Space>(&mut self, s: &Simulation<S>, [done, total]: [u64; 2], most: u64) -> u32 {
         match self.level() {
             0 => (self.growth).next(s, self.coarsest[0], most.min(total - done)),
             _ => 1,
@@ -221,7 +222,7 @@ impl AccuracyControl {
     ///
     /// # Errors
     /// The step's own error, also that of a law that asks for less than the smallest step; steps cannot be repeated.
-    pub fn part<S: Steps>(
+    pub fn part<S: Space>(
         &mut self,
         s: &mut Simulation<S>,
         parts: &mut StepParts,
@@ -288,7 +289,7 @@ impl AccuracyControl {
     }
 
     /// Goes on in a simulation that was restored with its state: impulses are those of the step in force.
-    pub fn resume<S: Steps>(&mut self, s: &mut Simulation<S>) {
+    pub fn resume<S: Space>(&mut self, s: &mut Simulation<S>) {
         let last = self.growth.last();
         let parts = f64::from(1u32 << self.level());
         s.options.scheme.h = self.coarsest[0] / parts * f64::from(last);
@@ -297,7 +298,7 @@ impl AccuracyControl {
     }
 
     /// Sets the step, which spans `count` of the case or is a part of one, tolerance and correction.
-    fn set<S: Steps>(&mut self, s: &mut Simulation<S>, count: u32) {
+    fn set<S: Space>(&mut self, s: &mut Simulation<S>, count: u32) {
         let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
         s.span_steps(h / parts, count);
@@ -314,7 +315,7 @@ impl AccuracyControl {
     }
 
     /// Repeats a stretch, and decides.
-    fn measure<S: Steps>(&mut self, s: &mut Simulation<S>, done: u64) -> Result<(), RepeatError> {
+    fn measure<S: Space>(&mut self, s: &mut Simulation<S>, done: u64) -> Result<(), RepeatError> {
         let stretch = RepeatedStretch {
             length: LENGTH,
             body: self.body,
@@ -349,14 +350,14 @@ impl AccuracyControl {
 
     /// Whether a step is repeated for its forces: as often as the effort permits, since every step tells as much, and not the first ones,
     /// which are solved from nothing.
-    fn repeats_for_forces<S: Steps>(&self, s: &Simulation<S>) -> bool {
+    fn repeats_for_forces<S: Space>(&self, s: &Simulation<S>) -> bool {
         let [run, repeats] = self.cost;
         let each = run / self.parts.max(1) as f64;
         s.state.steps > 3 && repeats + FORCES_COST * each <= self.effort * run
     }
 
     /// Repeats a step for its forces, and decides.
-    fn measure_forces<S: Steps>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
+    fn measure_forces<S: Space>(&mut self, s: &mut Simulation<S>) -> Result<(), RepeatError> {
         let (changes, [cost, _]) = forces::repeat_step(s)?;
         self.cost[1] += cost;
         let Some(changes) = changes else {
@@ -392,7 +393,7 @@ impl AccuracyControl {
         Ok(())
     }
 
-    fn decide<S: Steps>(&mut self, place: &Place, s: &Simulation<S>) {
+    fn decide<S: Space>(&mut self, place: &Place, s: &Simulation<S>) {
         let allowed = 0.5 * self.share;
         let pair = |fine: &Increments| Pair {
             coarse: self.of.of(&place.base),
@@ -449,7 +450,7 @@ pub enum PartError {
 }
 
 /// Whether anything moves or loads a case but gravity that does not change.
-fn driven<S: Steps>(case: &Case, s: &Simulation<S>) -> bool {
+fn driven<S: Space>(case: &Case, s: &Simulation<S>) -> bool {
     let dofs = s.state.bodies.driven.iter().flat_map(|d| &d.dofs);
     case.gravity_drive.is_some()
         || !case.phases.is_empty()

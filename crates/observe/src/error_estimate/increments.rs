@@ -2,7 +2,7 @@
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
-use fretwork_core::step::{Simulation, StepError, StepReport, Steps};
+use fretwork_core::step::{Simulation, StepError, StepReport};
 use serde::{Deserialize, Serialize};
 
 /// Growth of the results over a stretch of steps (per metre of depth in 2D).
@@ -59,7 +59,7 @@ impl Stretch {
     ///
     /// # Errors
     /// A step failed.
-    pub fn of<S: Steps>(
+    pub fn of<S: Space>(
         s: &mut Simulation<S>,
         [length, parts]: [u32; 2],
         body: Option<&RubbedBody>,

@@ -15,7 +15,7 @@ pub use report::{Effects, Repeats, Shares};
 pub(crate) use change::Pair;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
-use fretwork_core::step::{RepeatError, Simulation, StepReport, Steps};
+use fretwork_core::step::{RepeatError, Simulation, StepReport};
 use fretwork_scene::case::Case;
 use fretwork_scene::processes::FrictionTest;
 pub(crate) use increments::Increments;
@@ -100,7 +100,7 @@ impl ErrorEstimate {
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn before_step<S: Steps>(
+    pub fn before_step<S: Space>(
         &mut self,
         s: &mut Simulation<S>,
         step: u64,

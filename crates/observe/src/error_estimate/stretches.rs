@@ -6,7 +6,7 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::RubbedBody;
 use fretwork_core::step::coupling::Coupling;
-use fretwork_core::step::{RepeatError, Simulation, Steps};
+use fretwork_core::step::{RepeatError, Simulation};
 
 /// The tight tolerance is the tolerance over this number.
 const TIGHTER: f64 = 100.0;
@@ -30,7 +30,7 @@ impl RepeatedStretch {
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
-    pub fn at<S: Steps>(
+    pub fn at<S: Space>(
         &self,
         s: &mut Simulation<S>,
     ) -> Result<(Option<Place>, [f64; 2]), RepeatError> {

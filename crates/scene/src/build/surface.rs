@@ -16,7 +16,6 @@ use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_core::laws::SearchPath;
-use fretwork_core::step::Steps;
 use fretwork_elastic::Deformable;
 use nalgebra::Vector2;
 
@@ -26,7 +25,7 @@ const MAX_POINTS: usize = 1_000_000;
 const MAX_TERMS: f64 = 2e8;
 
 /// Operations that differ between dimensions, and shapes that exist in only one of them.
-pub trait Dimensional: Steps + Deposits + Deformable {
+pub trait Dimensional: Deposits + Deformable {
     /// Builds a scene of this dimension, see [`Loaded::build_in`].
     ///
     /// # Errors

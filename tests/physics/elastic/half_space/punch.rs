@@ -65,7 +65,7 @@ fn a_flat_punch_has_a_third_of_its_load_in_the_middle() {
 
 /// What rests dissipates nothing: springs with dashpots under a flat side, and under a disk. With contacts on the highest cells alone these changed from step to step, and damping and
 /// time integration grew without end and cancelled.
-fn rests<S: Dimensional + Steps>(round: bool) {
+fn rests<S: Dimensional>(round: bool) {
     let law = r#""hertz-mindlin", parameters: (contact: {"mu": 0.3, "restitution": 0.1})"#;
     let mut s = punch::<S>(law, round);
     go(&mut s, 1000);

@@ -1,7 +1,7 @@
 //! A grain on a parallel bond, which bends and twists: on stiff ground as on rigid ground.
 
 use super::*;
-use fretwork::geometry::space::Dim3;
+use fretwork::geometry::space::{Dim3, Space};
 
 /// Stiffness of the bonds (Pa/m).
 const K: f64 = 1e9;
@@ -50,7 +50,7 @@ pub fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
 
 /// The rotation of a grain at rest whose weight pulls along the ground, with steps far longer than its period (rad): about -z in the plane, about y
 /// in space.
-fn bent<S: Dimensional + Steps>(ground: Ground, young: f64) -> (f64, f64) {
+fn bent<S: Dimensional>(ground: Ground, young: f64) -> (f64, f64) {
     // Away from the sides of facets: a contact with the next one has no bond.
     let mut s = ground.under::<S>(
         &bonded::<S>(1.0, 1.0, 0.0, &[1e-3, 2e-3, 0.0][..S::D]),
@@ -70,7 +70,7 @@ fn bent<S: Dimensional + Steps>(ground: Ground, young: f64) -> (f64, f64) {
     (turned, weight * R / (K * bending))
 }
 
-fn bends<S: Dimensional + Steps>(grounds: &[Ground]) {
+fn bends<S: Dimensional>(grounds: &[Ground]) {
     let (rigid, expected) = bent::<S>(Ground::Rigid, 1.0);
     println!("{}D, rigid: {rigid:e} of {expected:e} rad", S::D);
     near(expected, rigid, 1e-6);

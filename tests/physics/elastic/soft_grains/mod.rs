@@ -18,6 +18,7 @@ mod spin;
 
 use super::*;
 use fretwork::contact::StepSizeDiagnostics;
+use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::load;
@@ -248,6 +249,6 @@ fn deepest<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 /// All numbers of the state.
-fn bits<S: Steps>(s: &Simulation<S>) -> Vec<u8> {
+fn bits<S: Space>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }

@@ -5,7 +5,7 @@
 use super::bench::{Sketch, place, up, volume};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::build::Dimensional;
-use fretwork::step::{Simulation, Steps};
+use fretwork::step::Simulation;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
@@ -92,7 +92,7 @@ impl Wall {
     }
 
     /// Lets the surface of a worn wall recede by this share of its depth, uneven by a tenth of it.
-    fn recede<S: Steps>(&self, s: &mut Simulation<S>, share: f64) {
+    fn recede<S: Space>(&self, s: &mut Simulation<S>, share: f64) {
         let Made::Worn(depth) = self.made else { return };
         for surface in &mut s.shapes.surfaces {
             let surface = surface.shape.receding_mut().expect("one that recedes");
@@ -105,7 +105,7 @@ impl Wall {
 
     /// Height of the centre of a grain above the wall (m); infinite beside it. Of a wall that is not flat, or does not stay so, it is that
     /// above the nearest vertex and what a centre may be behind that.
-    fn height<S: Steps>(&self, s: &Simulation<S>, grain: usize) -> f64 {
+    fn height<S: Space>(&self, s: &Simulation<S>, grain: usize) -> f64 {
         let last = S::D - 1;
         let bodies = &s.state.bodies;
         let at = bodies.position[grain];
@@ -247,7 +247,7 @@ impl Throw {
     }
 
     /// Throws the grain, and returns whether it is held, or the end that the run is silent about. Balls that are seen are held.
-    fn run<S: Dimensional + Steps>(
+    fn run<S: Dimensional>(
         &self,
         name: &str,
         grain: Grain,
@@ -307,7 +307,7 @@ impl Throw {
 
 /// Throws each grain at each wall, `times` times at each speed. What meets before the first detection may be told, and what
 /// turns a corner into the wall; all others are held.
-fn throw_all<S: Dimensional + Steps>(
+fn throw_all<S: Dimensional>(
     grains: &[(&str, Grain)],
     soft: Option<f64>,
     walls: &[Wall],
