@@ -69,7 +69,7 @@ impl Momentum {
         [self.linear, self.angular].map(|v| v[0].hypot(v[1]).hypot(v[2]))
     }
 
-    /// The same over the largest sums of the sizes of momenta; zero where nothing moved.
+    /// The drift, linear and angular, over the largest sums of the sizes of momenta; zero where nothing moved.
     pub fn relative(&self) -> [f64; 2] {
         let drift = self.drift();
         [0, 1].map(|k| match self.scale[k] > 0.0 {

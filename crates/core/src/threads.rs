@@ -49,7 +49,7 @@ pub fn map_chunks<T: Sync, R: Send>(
     })
 }
 
-/// As [`map_chunks`], of the ranges of indices below `items`.
+/// Returns what `of` gives for each range of `size` indices below `items`, in their order.
 pub fn map_ranges<R: Send>(
     divide: bool,
     items: usize,
@@ -82,7 +82,8 @@ pub fn map_chunks_mut<T: Send, R: Send>(
     }
 }
 
-/// As [`map_chunks_mut`], of two lists of the same length.
+/// Returns what `of` gives for each pair of chunks of `size` items of two lists of the same length, which it may change and
+/// gets with the index of the first; in the order of the chunks.
 pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     divide: bool,
     size: usize,

@@ -65,7 +65,7 @@ impl<S: Deformable> ElasticBody<S> {
     /// A body at rest and without load.
     ///
     /// # Errors
-    /// See [`BodyError`].
+    /// A material, a support or a contactor is not possible; [`BodyError`] lists the reasons.
     pub fn new(spec: BodySpec<S>) -> Result<Self, BodyError> {
         let BodySpec {
             name,

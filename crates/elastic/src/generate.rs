@@ -37,7 +37,7 @@ pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
 /// A [`block`] whose points are moved before its cells are cut.
 ///
 /// # Errors
-/// As for a block, and points or elements that the map makes invalid.
+/// Fewer than two coordinates along an axis, coordinates that do not rise, or points or elements that the map makes invalid.
 pub fn mapped_block<S: Space>(
     coordinates: &[Vec<f64>],
     map: impl Fn(&S::Vector) -> S::Vector,

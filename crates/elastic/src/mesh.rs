@@ -71,7 +71,7 @@ impl<S: Space> Mesh<S> {
     /// each of their facets, in any order.
     ///
     /// # Errors
-    /// See [`MeshError`].
+    /// The mesh has no elements, or one of the faults that [`MeshError`] lists.
     pub fn new(
         points: Vec<S::Vector>,
         elements: Vec<u32>,
@@ -200,7 +200,7 @@ impl<S: Space> Mesh<S> {
         out
     }
 
-    /// The same mesh moved (m).
+    /// Returns the mesh moved by a vector (m).
     #[must_use]
     pub fn moved(mut self, by: &S::Vector) -> Self {
         for point in &mut self.points {

@@ -41,9 +41,9 @@ pub struct Response {
 
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// See [`Corotational`].
+    /// Large rotations and small strains, in the frame that turns with each element.
     Corotational(Corotational),
-    /// See [`NeoHookean`].
+    /// Large strains of a compressible neo-Hookean material.
     NeoHookean(NeoHookean),
 }
 

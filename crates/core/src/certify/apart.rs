@@ -58,7 +58,7 @@ impl Named {
 /// process becomes a line of the certificate.
 ///
 /// # Errors
-/// As [`certify`]; and if the process cannot be started.
+/// The law cannot be prepared with its partners, or the process cannot be started.
 pub fn certify_apart(
     plugin: &Plugin,
     parameters: &[f64],

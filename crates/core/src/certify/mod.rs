@@ -168,7 +168,7 @@ pub fn certify(
 /// known, such as the shipped ones.
 ///
 /// # Errors
-/// As [`certify`].
+/// The law cannot be prepared with its partners.
 pub fn certify_parameters(
     plugin: &Plugin,
     parameters: &[f64],

@@ -9,7 +9,7 @@ pub const RADIUS: f64 = 1e-5;
 /// Compressive pressure for laws that need one (Pa).
 pub const PRESSURE: f64 = 1e6;
 
-/// See the module.
+/// A law with its partners on the bench.
 pub struct Rig {
     pub bench: Bench,
     law: Interface,

@@ -70,7 +70,8 @@ pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<Closes
     touches_within(facets, centre, reach, 0.0, out);
 }
 
-/// The same; a place that is nearer to a corner than this share of an edge is at the corner.
+/// Finds the points where the surface is locally nearest to a ball, as [`touches`] does. A point that is nearer to a
+/// corner than the share `at_corner` of an edge is moved to the corner.
 pub fn touches_within(
     facets: &[Facet<V>],
     centre: &V,

@@ -82,7 +82,7 @@ impl Polyline {
     /// Builds a closed chain around a solid from its corners (m), clockwise.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// Too few, coincident or non-finite points.
     pub fn closed(mut corners: Vec<Vector2<f64>>) -> Result<Self, ProfileError> {
         let vertices = corners.clone();
         corners.extend(corners.first().copied());

@@ -51,8 +51,8 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// The same in a contact with a normal towards it, in the axes of its body. The vertex at a corner stands for a part of either
-    /// side, of which one touches.
+    /// Its radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it, in the axes of its body)
+    /// is known. The vertex at a corner stands for a part of either side, of which one touches.
     pub fn radius_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
         if self.area == S::Vector::zero() {
             return self.contact_radius(lengths);

@@ -82,7 +82,7 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// The same columns in all rows, between the given coordinates along two or three axes (m), which must rise.
+    /// A grid with the same columns in all rows, between the given coordinates along two or three axes (m), which must rise.
     ///
     /// # Errors
     /// Fewer than two coordinates along an axis, or another number of axes.
@@ -105,7 +105,8 @@ impl Grid {
     /// height of the row. One that is left over, of an odd number, joins in the next row in which it and its neighbour are narrow enough.
     ///
     /// # Errors
-    /// As for [`Grid::new`]; a side that is none; no row that is high enough; more than `most` points of cells.
+    /// Fewer than two coordinates along an axis, or another number of axes; an unknown side; no row that is high enough;
+    /// more than `most` points of cells.
     pub fn coarsened(
         lines: &[Vec<f64>],
         coarsening: &Coarsening,
@@ -232,7 +233,7 @@ impl Grid {
         &self.sets[self.rows[row]]
     }
 
-    /// The same of the points below row k, which are those above row k - 1.
+    /// Where the columns of the points between rows k - 1 and k end, along each axis but that of the rows.
     pub(super) fn plane(&self, k: usize) -> &[Vec<usize>] {
         let below = self.rows.get(k.wrapping_sub(1));
         let around = below.into_iter().chain(self.rows.get(k));

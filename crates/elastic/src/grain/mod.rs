@@ -82,7 +82,7 @@ struct Model<S: Space> {
     /// Moments of inertia in the frame, and their inverse (kg m^2).
     inertia: S::Tensor,
     inverse: S::Tensor,
-    /// The same where moments differ by axis.
+    /// The moments of inertia where they differ by axis.
     tensor: Option<Tensor<S>>,
     /// The displacement of a mode of the shape at an amplitude of 1 (m).
     scale: f64,
@@ -111,7 +111,7 @@ struct Middle<S: Space> {
     rotation: S::Rotation,
     /// Its angular velocity there from the start of the step, which contacts see (rad/s).
     spin: S::Spin,
-    /// The same at the end of the step without contacts (rad/s).
+    /// Its angular velocity at the end of the step without contacts (rad/s).
     free: S::Spin,
 }
 

@@ -26,7 +26,7 @@ pub struct GrainShape<S: Space> {
     rates: Vec<f64>,
     /// By mode its displacements: of all points in the order of the mesh, axis by axis.
     modes: Vec<f64>,
-    /// The same by mode at the vertices alone, and by axis of a vertex over all modes.
+    /// Displacements of the vertices alone: by mode, and by axis of a vertex over all modes.
     by_mode: Vec<f64>,
     by_vertex: Vec<f64>,
 }

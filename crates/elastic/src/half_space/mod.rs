@@ -147,7 +147,7 @@ impl<S: Deformable> HalfSpace<S> {
     /// A half-space at rest and without load.
     ///
     /// # Errors
-    /// See [`HalfSpaceError`].
+    /// A dimension, a material or a setting is not possible; [`HalfSpaceError`] lists them.
     pub fn new(spec: HalfSpaceSpec<S>) -> Result<Self, HalfSpaceError> {
         check(&spec)?;
         let HalfSpaceSpec { grid, material, .. } = spec;

@@ -56,7 +56,7 @@ const SHORT: [[f64; 3]; 10] = [
     [3.40, 4.12, 5.20],
 ];
 
-/// The same for the inverse ratio, of patches that are long along the rolling.
+/// Kalker's coefficients C11 for the inverse ratio, of patches that are long along the rolling.
 const LONG: [[f64; 3]; 10] = [
     [10.7, 11.7, 12.9],
     [6.96, 7.78, 8.82],

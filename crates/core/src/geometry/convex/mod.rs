@@ -140,10 +140,10 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     #[must_use]
     fn turned(&self, rotation: &S::Rotation) -> Self;
 
-    /// As [`Core::turned`], in the place of another core, whose buffers are used again.
+    /// Writes the core of a rotated body into `out`, whose buffers are used again.
     fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);
 
-    /// The core with all distances from its centre times a factor, in the place of another core of the same corners.
+    /// Writes the core with all distances from its centre multiplied by `factor` into `out`, a core of the same corners.
     fn scale_into(&self, factor: f64, out: &mut Self);
 
     /// Finds contact points with another core, in the order of their features. `self` is the candidate, with

@@ -230,7 +230,8 @@ fn beside<S: Space>(
     (length > ALIKE * way.norm()).then(|| across * (1.0 / length))
 }
 
-/// The same for a ball, the candidate, and a convex core.
+/// Keeps a ball (the candidate) apart from a convex core that it passes within the step: moves the contact to the plane
+/// between both.
 pub fn keep_ball_apart<S: Space>(
     core: &S::Core,
     apart: &S::Vector,
@@ -272,8 +273,8 @@ pub fn keep_ball_apart<S: Space>(
     }
 }
 
-/// The same for a core at `at` in the frame of a surface, whose points it passes: a plane keeps it apart from the faces around a
-/// point, if they lie behind it.
+/// Keeps a core, centred at `at` in the frame of a surface, apart from the points of the surface that it passes within the
+/// step: by a plane through each point, if the faces around that point lie behind the plane.
 pub fn keep_apart_from_surface<S: Space>(
     core: &S::Core,
     surface: &dyn Surface<S>,

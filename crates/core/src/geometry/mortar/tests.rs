@@ -171,7 +171,7 @@ fn a_uniform_pressure_stays_uniform() {
     }
 }
 
-/// The same in space, on triangles that cross in any way.
+/// A uniform pressure between two planes of triangles, which cross in any way, stays uniform.
 #[test]
 fn a_uniform_pressure_stays_uniform_in_space() {
     let few = grid(&[0.0, 0.3, 0.5, 0.9, 1.6]);

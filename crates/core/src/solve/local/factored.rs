@@ -10,7 +10,7 @@ struct Factored {
     starts: Vec<usize>,
 }
 
-/// See [`super::form::Delassus::shifted`].
+/// Factorises W plus a diagonal shift, W given by its blocks; none where it is singular.
 pub fn factor<'a, const D: usize>(
     w: &BlockMatrix<D>,
     shift: &Shift<D>,

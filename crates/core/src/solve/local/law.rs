@@ -40,7 +40,7 @@ pub enum Law {
     },
     /// u = 0, p unbounded: a bond, whose compliance is part of W.
     Free,
-    /// As `Free`, but in tension only: p_n <= 0.
+    /// A bond in tension only: u = 0 where p_n <= 0, and p = 0 otherwise.
     Pull,
     /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, where P is the normal impulse of block
     /// `of`.
