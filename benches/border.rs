@@ -1,14 +1,16 @@
-//! Cost of the plugin interface: the same law compiled in and loaded, and its share of a fretting step.
+//! Cost of the plugin interface: the same law in a loop and behind the interface, and its share of a fretting step.
 //!
-//! `cargo bench --bench border`. Compiled in, the damage law of Monerie, Acary and Cangemi runs in a loop over
-//! the columns; loaded, the same loop runs behind the C interface in its library. One thread.
+//! `cargo bench --bench border`. In a loop, the damage law of Monerie, Acary and Cangemi runs in a loop over
+//! the columns; called as a run calls it, the same loop runs behind the C
+//! interface. One thread.
 
-use fretwork::laws::{Call, Kind, SearchPath};
+use fretwork::laws::{Call, Kind};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork_abi::FwBatch;
-use fretwork_damage_mac::Mac;
 use fretwork_law::{DamageLaw, Intact, Site};
+use fretwork_laws::damage::mac::Mac;
 use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
@@ -27,7 +29,7 @@ fn least(mut work: impl FnMut(), repeats: usize) -> f64 {
 }
 
 fn main() {
-    let path = SearchPath::new(&[]);
+    let path = search_path();
     let plugin = path
         .find(Kind::DAMAGE, "mac")
         .unwrap_or_else(|e| panic!("{e}"));
@@ -40,7 +42,7 @@ fn main() {
     };
     println!(
         "{:>8} {:>16} {:>16} {:>14}",
-        "contacts", "compiled ns/c", "loaded ns/c", "border ns/call"
+        "contacts", "compiled ns/c", "called ns/c", "border ns/call"
     );
     let mut call = 0.0;
     for n in [1usize, 10, 100, 1000, 10_000, 100_000] {
@@ -65,7 +67,7 @@ fn main() {
                         degradation: 2.0,
                         ..Intact::default()
                     };
-                    out[k] = law.grow(&site, &intact, &[], &mut []);
+                    out[k] = law.grow(&site, &intact, &mut []);
                 }
                 black_box(&mut out);
             },
@@ -118,7 +120,7 @@ fn share(call: f64) {
     );
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut s: Simulation<fretwork::geometry::space::Dim2> = loaded
-        .build_in(&SearchPath::new(&[]))
+        .build_in(&search_path())
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;
     while s.state.time < 0.07 {

@@ -16,8 +16,8 @@
 use cpu_time::ThreadTime;
 use fretwork::bodies::{DynamicalSystem, SystemStep};
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector2;
 use std::fmt::Write;
@@ -286,7 +286,7 @@ fn build(first: First, coulomb: bool) -> Scene {
     let text = case(first, coulomb, &folder);
     let loaded = load_text("layer", &text, &folder, &[]);
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut scene = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     scene.options.solver.parallel = number("THREADS", 1.0) > 1.0;
     scene

@@ -13,11 +13,11 @@ use fretwork::geometry::convex::polyhedron::Polyhedron;
 use fretwork::geometry::convex::{ContactTolerances, Core};
 use fretwork::geometry::periodic::Periodic;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
 use fretwork::scene::sample::deposit::Corners;
 use fretwork::scene::sample::voronoi_space::tiling;
+use fretwork::shipped::search_path;
 use fretwork::solve::Problem;
 use fretwork::step::Simulation;
 use nalgebra::{UnitQuaternion, Vector3};
@@ -97,7 +97,7 @@ fn trial<S: Dimensional>(case: &str, feature: &Feature) -> Trial<S> {
     let path = format!("{}/cases/benchmarks/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = feature.1.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let mut simulation = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     // The load crosses the packing first; a frictionless one would flow for long.
     simulation.options.solver.max_iterations = 200;

@@ -9,8 +9,8 @@
 //! too, so that all are launched several times. On one thread, as the heat of a step is solved.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
@@ -219,7 +219,7 @@ fn serve(asked: &[String]) {
     let first = first.parse::<u32>().unwrap_or_else(|e| panic!("{e}"));
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.options.solver.parallel = false;
     let grains = s.state.bodies.grains().count();

@@ -6,9 +6,9 @@
 //! processor time, as for LMGC90; the parts of a step are measured as shares of wall-clock time. A word selects
 //! the scenes whose names contain it; `STEPS` sets the number of steps of the later window.
 
+use fretwork::shipped::search_path;
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
-use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
 use fretwork::step::Simulation;
 use std::path::Path;
@@ -106,7 +106,7 @@ fn main() {
         )
         .unwrap_or_else(|e| panic!("{e}"));
         let scene = loaded
-            .build(&SearchPath::new(&[]))
+            .build(&search_path())
             .unwrap_or_else(|e| panic!("{e}"));
         match scene {
             Scene::Dim2(b) => bench(name, b.simulation, &windows),

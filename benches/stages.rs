@@ -11,9 +11,9 @@
 //! Times are wall-clock times but for `cpu ms`, processor time of all threads, which other work on the machine affects
 //! less. `sweeps` tells whether two revisions do the same. `benches/before_after.sh` compares two revisions by this bench.
 
+use fretwork::shipped::search_path;
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
-use fretwork::laws::SearchPath;
 use fretwork::scene::{Case, Scene, load, processes};
 use fretwork::step::Simulation;
 use std::path::Path;
@@ -128,7 +128,7 @@ fn run(case: &str, stages: &[Stage], wanted: Option<&str>, threads: usize) {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
     let scene = loaded
-        .build(&SearchPath::new(&[]))
+        .build(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     match scene {
         Scene::Dim2(b) => time(b.simulation, &loaded.case, stages, wanted, threads),

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 pub fn built_in() -> BuiltInLaws {
     static LAWS: OnceLock<BuiltInLaws> = OnceLock::new();
     LAWS.get_or_init(|| {
-        let tables = fretwork_shipped::plugins();
-        // SAFETY: the crate compiles the shipped laws with `plugin_table!` of this workspace.
+        let tables = fretwork_laws::plugins();
+        // SAFETY: the crate compiles the shipped laws with `plugin_table!`, and they live as long as the program.
         unsafe { BuiltInLaws::from_tables(tables) }
     })
     .clone()

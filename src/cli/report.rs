@@ -4,6 +4,7 @@ use super::Failure;
 use super::output::{inform, report as complain};
 use crate::laws::{Kind, SearchPath};
 use crate::shipped::built_in;
+use crate::shipped::search_path;
 use clap::Args;
 use fretwork_report::{DEFAULT_BYTES, LawInfo, LawParameter, Options, ReportError};
 use std::path::{Path, PathBuf};
@@ -52,8 +53,7 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
 /// # Errors
 /// A folder without a run, and files that cannot be read or written.
 pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
-    let law =
-        |kind: &str, name: &str| law(&SearchPath::new(&[]).with_built_in(built_in()), kind, name);
+    let law = |kind: &str, name: &str| law(&search_path(), kind, name);
     let make = || fretwork_report::report(folder, &Options { bytes, law: &law });
     // A defect of the page is not one of the run.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).unwrap_or_else(|_| {

@@ -4,12 +4,12 @@ use crate::campaign::Campaign;
 use crate::cases::files;
 use crate::mutate;
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::fclib;
 use fretwork::record::results::{PreviousResults, state};
 use fretwork::scene::{Loaded, load};
+use fretwork::shipped::search_path;
 use fretwork::step::State;
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -155,7 +155,7 @@ fn damaged_shapes() {
         std::fs::write(&begins, with(dimension, state)).unwrap();
         begun.push(begins);
     }
-    let laws = SearchPath::new(&[]);
+    let laws = search_path();
     campaign.run(&folder, damaged("results.h5", seeds), move |_| {
         let built = begun.iter().map(|case| loaded(case).build(&laws).is_ok());
         built.filter(|taken| *taken).count() == 1
@@ -177,7 +177,7 @@ fn damaged_states() {
     };
     let folder = campaign.folder();
     let case = small(&folder);
-    let laws = SearchPath::new(&[]);
+    let laws = search_path();
     let mut built = loaded(&case).build_in::<Dim2>(&laws).unwrap();
     (0..5).for_each(|_| built.simulation.step().map(drop).unwrap());
     let whole = encode(&built.simulation.state).unwrap();

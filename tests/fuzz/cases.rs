@@ -1,5 +1,6 @@
 //! Cases and material files: read, built into a scene, and taken two steps further.
 
+use fretwork::shipped::search_path;
 use crate::campaign::Campaign;
 use crate::mutate;
 use fretwork::geometry::space::Space;
@@ -100,7 +101,7 @@ fn damaged_cases() {
     let folder = campaign.folder();
     furnish(&folder);
     let seeds = texts(&shipped());
-    let laws = SearchPath::new(&[]);
+    let laws = search_path();
     let make = |rng: &mut rand_pcg::Pcg64| {
         let seed = rng.random_range(0..seeds.len());
         (
@@ -131,7 +132,7 @@ fn damaged_materials() {
         .iter()
         .map(|n| std::fs::read_to_string(root().join(format!("materials/{n}.ron"))).unwrap())
         .collect();
-    let laws = SearchPath::new(&[]);
+    let laws = search_path();
     let make = |rng: &mut rand_pcg::Pcg64| {
         let k = rng.random_range(0..names.len());
         (

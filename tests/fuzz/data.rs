@@ -4,7 +4,7 @@
 use crate::campaign::Campaign;
 use crate::cases::{files, furnish, tried};
 use crate::mutate;
-use fretwork::laws::SearchPath;
+use fretwork::shipped::search_path;
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
@@ -45,7 +45,7 @@ fn run(campaign: &Campaign, name: &str, case: &str, seeds: Vec<Vec<u8>>) {
         };
         (name.to_owned(), new)
     };
-    let laws = SearchPath::new(&[]);
+    let laws = search_path();
     campaign.run(&folder, make, move |_| tried(&path, &laws));
 }
 

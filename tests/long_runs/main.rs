@@ -13,13 +13,13 @@ mod counting;
 
 use counting::held;
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::friction::Cycle;
 use fretwork::record::results::PreviousResults;
 use fretwork::record::{RunOptions, run};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 #[global_allocator]
@@ -65,7 +65,7 @@ fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, 
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let sets = [format!("time.end={:e}", 1e-4 * steps as f64)];
     let loaded = load_text("long_run.ron", text, &cases, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out = std::env::temp_dir().join(format!("fretwork-long-{}-{name}", std::process::id()));
     std::fs::remove_dir_all(&out).ok();

@@ -1,8 +1,8 @@
 //! Attraction on more contacts than a law is given at a time.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 const COUNT: usize = 1300;
@@ -35,7 +35,7 @@ fn a_ceiling_holds_every_disk() {
         );
         let loaded = load_text("ceiling.ron", &text, Path::new("."), &[]);
         let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+        let built = loaded.build_in::<Dim2>(&search_path());
         let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
         for _ in 0..40 {
             s.step().unwrap_or_else(|e| panic!("{e}"));

@@ -2,8 +2,8 @@
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Dim2>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }

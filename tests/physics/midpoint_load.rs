@@ -30,7 +30,7 @@ impl Law for Pressed {
 }
 
 impl DamageLaw for Pressed {
-    fn grow(&self, site: &Site, intact: &Intact, _: &[f64], _: &mut [f64]) -> f64 {
+    fn grow(&self, site: &Site, intact: &Intact, _: &mut [f64]) -> f64 {
         let (u, carried) = (intact.opening(), intact.traction_length());
         let strength = self.cohesion + self.friction * site.pressure();
         if carried <= strength {
@@ -44,7 +44,7 @@ impl DamageLaw for Pressed {
 
 fn laws() -> SearchPath {
     fretwork_law::plugin_table!(damage Pressed);
-    let mut tables = fretwork_shipped::plugins();
+    let mut tables = fretwork_laws::plugins();
     tables.push(&TABLE.0);
     // SAFETY: the tables are static.
     let laws = unsafe { BuiltInLaws::from_tables(tables) };

@@ -1,7 +1,7 @@
 //! Conjugate gradients on a step of a real packing: a biaxial compression in motion.
 
-use fretwork::laws::SearchPath;
 use fretwork::scene::{Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::solver::{Limits, Method, solve};
 use std::path::Path;
@@ -22,7 +22,7 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     sets.push(format!("interfaces.grains.parameters.contact.mu={mu}"));
     sets.push(format!("seed={seed}"));
     let loaded = load(Path::new(&case), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let scene = loaded.build(&SearchPath::new(&[]));
+    let scene = loaded.build(&search_path());
     let Scene::Dim2(built) = scene.unwrap_or_else(|e| panic!("{e}")) else {
         panic!("the case is plane");
     };

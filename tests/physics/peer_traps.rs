@@ -3,9 +3,9 @@
 //! that change the results.
 
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -14,7 +14,7 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     loaded
-        .build_in::<S>(&SearchPath::new(&[]))
+        .build_in::<S>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation
 }

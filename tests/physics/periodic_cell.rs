@@ -1,8 +1,8 @@
 //! A shear cell of spheres that is periodic along x and y: what it keeps, and that an image is as good as a grain.
 
 use fretwork::geometry::space::Dim3;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 
@@ -36,7 +36,7 @@ fn cell() -> Simulation<Dim3> {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);
-    let built = loaded.build_in::<Dim3>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim3>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -1,8 +1,8 @@
 //! What changes during a run: gravity, pressures, gates, phases; and drums. Against closed forms.
 
+use fretwork::shipped::search_path;
 use fretwork::bodies::Bodies;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
 use fretwork::step::Simulation;
@@ -38,7 +38,7 @@ fn file(text: &str) -> PathBuf {
 fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
     let path = file(&case(S::D, lines));
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let _ = std::fs::remove_file(path);
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
@@ -47,7 +47,7 @@ fn refused(lines: &str, said: &str) {
     let path = file(&case(2, lines));
     let error = match load(&path, &[]) {
         Err(e) => e.to_string(),
-        Ok(loaded) => match loaded.build(&SearchPath::new(&[])) {
+        Ok(loaded) => match loaded.build(&search_path()) {
             Err(e) => e.to_string(),
             Ok(_) => panic!("accepted: {lines}"),
         },

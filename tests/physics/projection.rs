@@ -1,9 +1,9 @@
 //! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what stays.
 
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::{Vector2, Vector3};
 
@@ -32,7 +32,7 @@ fn built<S: Dimensional>(head: &str) -> Simulation<S> {
     std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -2,8 +2,8 @@
 //! creep to full slip, and the power of its forces against the heat.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 const RADIUS: f64 = 0.46;
@@ -49,7 +49,7 @@ fn roll_until(end: f64, creepage: f64, step: f64, layered: bool) -> Rolling {
         sets.push("grains.1.count=1".to_owned());
     }
     let loaded = load(&case, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.expect("the case has a wheel");
@@ -184,7 +184,7 @@ fn a_foundation_over_an_overlap_is_at_rest() {
         "solver.correction=0.2",
     ];
     let loaded = load(&case, &sets.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     for _ in 0..100 {
         s.step().unwrap_or_else(|e| panic!("{e}"));

@@ -2,11 +2,11 @@
 
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::record::picture::{Camera, Subject};
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -26,7 +26,7 @@ fn case_in<S: Dimensional>(name: &str, sets: &[&str]) -> (Loaded, Built<S>) {
         .map(|s| (*s).to_owned())
         .collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     (loaded, built)
 }
@@ -470,7 +470,7 @@ fn a_first_body_that_is_a_ball_is_named() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
     let loaded = fretwork::scene::load(std::path::Path::new(file), &[]).unwrap();
     let built = loaded
-        .build_in::<fretwork::geometry::space::Dim2>(&SearchPath::new(&[]))
+        .build_in::<fretwork::geometry::space::Dim2>(&search_path())
         .unwrap();
     let s = &built.simulation;
     let named = fretwork::record::picture::named_balls(s, [-5e-3, 5e-3, -1e-3, 4e-3]);

@@ -1,8 +1,8 @@
 //! Solids in space: polyhedra, capsules, clusters and meshes, and inertia that differs by axis.
 
 use fretwork::geometry::space::{Dim3, MatrixLike};
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn scene(case: &str, sets: &[String]) -> Simulation<Dim3> {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Dim3>(&SearchPath::new(&[]))
+        .build_in::<Dim3>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }

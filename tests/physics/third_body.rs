@@ -2,7 +2,6 @@
 //! and energies by place against the ledger.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::laws::SearchPath;
 use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
@@ -11,6 +10,7 @@ use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -88,7 +88,7 @@ struct Seen<S: Space> {
 /// Changes a scene, looks at it once a second later, and reads what is written.
 fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let case = &loaded.case;
     let mut observers = measures::<S>(&case.measures, case.inertia_scaling, case.heat.is_some());
@@ -435,7 +435,7 @@ fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
         .collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built: Built<Dim2> = loaded
-        .build_in(&SearchPath::new(&[]))
+        .build_in(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     let out = own("");
     let options = RunOptions {

@@ -1,7 +1,8 @@
 //! What pages say of the program and what its help says of files, against the program and the files.
 
-use fretwork::laws::{Kind, Place, SearchPath};
+use fretwork::laws::{Kind, Place};
 use fretwork::shipped::built_in;
+use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -101,7 +102,7 @@ fn helps_name_files_that_are_there_and_every_kind_of_law() {
 /// Numbers before these words are numbers of shipped laws.
 #[test]
 fn pages_know_how_many_laws_there_are() {
-    let laws = SearchPath::new(&[]).with_built_in(built_in()).laws();
+    let laws = search_path().laws();
     let own = laws.iter().filter(|law| law.2 == Place::BuiltIn).count();
     let own = own.max(built_in().names().count());
     let listed = answer(&["law", "list"]);

@@ -1,8 +1,8 @@
 //! Cases of grains on a floor, each in a folder of its own.
 
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::PathBuf;
 
 const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
@@ -53,7 +53,7 @@ impl Folder {
     pub fn build<S: Dimensional>(&self, case: &str) -> Result<Built<S>, String> {
         let path = self.write("case.ron", case);
         let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
-        let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+        let built = loaded.build_in::<S>(&search_path());
         built.map_err(|e| e.to_string())
     }
 }

@@ -33,7 +33,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 11] = [
             "ron",
             "ariadne",
             "csv",
-            "fretwork-shipped",
+            "fretwork-laws",
         ],
     ),
     (

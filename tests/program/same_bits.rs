@@ -3,9 +3,9 @@
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::VectorLike;
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Dimensional, Scene};
 use fretwork::scene::{Loaded, load, load_text};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::threads::divide_from;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ fn cases() -> Vec<PathBuf> {
 }
 
 fn built(loaded: &Loaded) -> Scene {
-    let built = loaded.build(&SearchPath::new(&[]));
+    let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}"))
 }
 

@@ -1,9 +1,9 @@
 //! Grains that are made at random or read: from tables, grading curves and other runs.
 
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::Path;
 use std::process::Command;
 
@@ -164,7 +164,7 @@ fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     );
     // The same run in this process.
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let mut first = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let steps = |s: &mut fretwork::step::Simulation<S>, n: u32| {
         for _ in 0..n {

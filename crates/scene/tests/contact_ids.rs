@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 fn path() -> SearchPath {
     // SAFETY: tables of the shipped laws are static.
-    let laws = unsafe { BuiltInLaws::from_tables(fretwork_shipped::plugins()) };
+    let laws = unsafe { BuiltInLaws::from_tables(fretwork_laws::plugins()) };
     SearchPath::new(&[]).with_built_in(laws)
 }
 

@@ -100,7 +100,7 @@ fn table() -> &'static abi::FwPlugin {
 
 fn path() -> SearchPath {
     Kind::register(&RECORD).unwrap();
-    let mut tables = fretwork_shipped::plugins();
+    let mut tables = fretwork_laws::plugins();
     tables.push(table());
     // SAFETY: tables of the shipped laws and the one above are static.
     let laws = unsafe { BuiltInLaws::from_tables(tables) };

@@ -1,6 +1,6 @@
 //! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law is here.
 
-use crate::traits::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
+use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
 use core::cell::{Cell, OnceCell};
 use core::ffi::c_char;
 use core::mem::{MaybeUninit, offset_of};
@@ -130,6 +130,8 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
             ],
             conductivity: at(b.conductivity, k),
             resistivity: at(b.resistivity, k),
+            slip: at(b.slip, k),
+            friction_work: at(b.friction_work, k),
             h: b.h,
             theta: b.theta,
             time: b.time,
@@ -164,12 +166,12 @@ fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32
     STATUS_ERROR
 }
 
-/// Runs `each` over the contacts of a batch, with the law and the internal variables. It returns
-/// the name of an output that is not finite. New internal variables are stored in a `COMMIT` only.
+/// Runs `each` over the contacts of a batch, with the law and the internal variables, which it may
+/// change in a `COMMIT`; only there they are stored. It returns the name of an output that is not finite.
 fn over<L: Law, const COMMIT: bool>(
     raw: *const FwBatch,
     message: *mut FwMessage,
-    each: impl Fn(&L, &FwBatch, usize, &Site, &[f64], &mut [f64]) -> Option<&'static str>,
+    each: impl Fn(&L, &FwBatch, usize, &Site, &mut [f64]) -> Option<&'static str>,
 ) -> i32 {
     const { assert!(L::VARIABLES.len() <= MOST_VARIABLES) };
     guarded(message, |contact| {
@@ -193,11 +195,11 @@ fn over<L: Law, const COMMIT: bool>(
             return STATUS_ERROR;
         }
         let law = L::read(values);
-        let variables = L::VARIABLES.len();
         let mut state = [0.0; MOST_VARIABLES];
+        let state = &mut state[..L::VARIABLES.len()];
         for k in 0..batch.n {
             contact.set(k as i64);
-            for (v, value) in state.iter_mut().enumerate().take(variables) {
+            for (v, value) in state.iter_mut().enumerate() {
                 // SAFETY: one column per variable of the schema, or null.
                 *value = unsafe {
                     match batch.state.is_null() {
@@ -206,22 +208,13 @@ fn over<L: Law, const COMMIT: bool>(
                     }
                 };
             }
-            let mut next = state;
             // SAFETY: k < n.
             let here = unsafe { site(&batch, k) };
-            let wrong = each(
-                &law,
-                &batch,
-                k,
-                &here,
-                &state[..variables],
-                &mut next[..variables],
-            );
-            if let Some(what) = wrong {
+            if let Some(what) = each(&law, &batch, k, &here, state) {
                 return not_finite(message, &batch, k, what);
             }
             if COMMIT {
-                for (v, value) in next.iter().enumerate().take(variables) {
+                for (v, value) in state.iter().enumerate() {
                     if !value.is_finite() {
                         let name = L::VARIABLES[v].name.to_str().unwrap_or("state_next");
                         return not_finite(message, &batch, k, name);
@@ -313,7 +306,7 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
         return STATUS_ERROR;
     }
     let damping = OnceCell::new();
-    over::<L, false>(batch, message, |law, b, k, site, state, _| {
+    over::<L, false>(batch, message, |law, b, k, site, state| {
         let f = law.friction(site, state);
         let friction = give!(
             b,
@@ -354,8 +347,8 @@ pub unsafe extern "C" fn contact_commit<L: ContactLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, _, _, site, state, next| {
-        law.commit(site, state, next);
+    over::<L, true>(batch, message, |law, _, _, site, state| {
+        law.commit(site, state);
         None
     })
 }
@@ -368,7 +361,7 @@ pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, false>(batch, message, |law, b, k, site, state, _| {
+    over::<L, false>(batch, message, |law, b, k, site, state| {
         let t = law.traction(site, state);
         give!(
             b,
@@ -399,7 +392,7 @@ pub unsafe extern "C" fn cohesion_energy<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, false>(batch, message, |law, b, k, site, state, _| {
+    over::<L, false>(batch, message, |law, b, k, site, state| {
         give!(b, k, out_energy = law.energy(site, state))
     })
 }
@@ -412,8 +405,8 @@ pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state, next| {
-        give!(b, k, out_damage = law.commit(site, state, next))
+    over::<L, true>(batch, message, |law, b, k, site, state| {
+        give!(b, k, out_damage = law.commit(site, state))
     })
 }
 
@@ -425,7 +418,7 @@ pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state, next| {
+    over::<L, true>(batch, message, |law, b, k, site, state| {
         // SAFETY: k < n.
         let intact = unsafe {
             Intact {
@@ -439,7 +432,7 @@ pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
                 degradation: b.degradation,
             }
         };
-        give!(b, k, out_damage = law.grow(site, &intact, state, next))
+        give!(b, k, out_damage = law.grow(site, &intact, state))
     })
 }
 
@@ -451,10 +444,8 @@ pub unsafe extern "C" fn wear_commit<L: WearLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state, next| {
-        // SAFETY: k < n.
-        let (slip, work) = unsafe { (at(b.slip, k), at(b.friction_work, k)) };
-        give!(b, k, out_volume = law.volume(site, slip, work, state, next))
+    over::<L, true>(batch, message, |law, b, k, site, state| {
+        give!(b, k, out_volume = law.volume(site, state))
     })
 }
 
@@ -466,10 +457,8 @@ pub unsafe extern "C" fn transport_commit<L: TransportLaw>(
     batch: *const FwBatch,
     message: *mut FwMessage,
 ) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state, next| {
-        // SAFETY: k < n.
-        let (slip, work) = unsafe { (at(b.slip, k), at(b.friction_work, k)) };
-        let conductance = law.conductance(site, slip, work, state, next);
+    over::<L, true>(batch, message, |law, b, k, site, state| {
+        let conductance = law.conductance(site, state);
         give!(
             b,
             k,

@@ -1,39 +1,20 @@
-//! Write a Fretwork interface law in safe Rust.
-//!
-//! A law is a struct of parameters (see [`parameters!`]) and one of the traits [`ContactLaw`],
-//! [`CohesionLaw`], [`DamageLaw`], [`WearLaw`], [`TransportLaw`], written for a single contact. The macro [`export!`]
-//! exports it as a plugin: batches, columns, panics and messages are handled here.
-//!
-//! ```
-//! use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
-//!
-//! parameters! {
-//!     /// Coulomb friction.
-//!     pub struct Coulomb {
-//!         mu: "" = 0.3, 0.0, f64::INFINITY, "friction coefficient";
-//!     }
-//! }
-//!
-//! impl Law for Coulomb {
-//!     const NAME: &'static str = "coulomb";
-//!     const DOC: &'static str = "friction proportional to the normal force";
-//!     const REFERENCE: &'static str = "C. A. Coulomb, Theorie des machines simples (1785)";
-//! }
-//!
-//! impl ContactLaw for Coulomb {
-//!     fn friction(&self, _site: &Site, _state: &[f64]) -> Friction {
-//!         Friction { mu: self.mu, ..Friction::default() }
-//!     }
-//! }
-//! ```
+#![doc = include_str!("../README.md")]
 
 pub mod border;
+mod intact;
+mod output;
+mod site;
+mod spring;
 pub mod table;
 pub mod testing;
 mod traits;
 
 pub use fretwork_abi as abi;
+pub use intact::Intact;
+pub use output::{Conductance, Friction, Traction, bounded};
+pub use site::Site;
+pub use spring::{Spring, damping_ratio};
 pub use traits::{
-    CohesionLaw, Conductance, ContactLaw, DamageLaw, Friction, Intact, Law, Parameters, Site,
-    Spring, Traction, TransportLaw, Variable, WearLaw, bounded, damping_ratio, ramp,
+    CohesionLaw, ContactLaw, DamageLaw, Law, Parameters, TransportLaw, Variable, WearLaw, ramp,
+    require,
 };

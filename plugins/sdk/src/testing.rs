@@ -2,8 +2,61 @@
 //!
 //! They panic with the values that violate a requirement. `fretwork law certify` tests more, from outside.
 
-use crate::{CohesionLaw, DamageLaw, Intact, Site};
+use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Parameters, Site, WearLaw};
 use std::fmt::Debug;
+
+/// The law with the default of every parameter, with the minimum, and with the maximum.
+fn extremes<L: Parameters>() -> [L; 3] {
+    [0, 1, 2].map(|end| {
+        let values = L::FIELDS
+            .iter()
+            .map(|f| [f.default, f.minimum, f.maximum][end]);
+        L::read(&values.collect::<Vec<f64>>())
+    })
+}
+
+/// A bond under a damage law, led from one opening to the next.
+#[derive(Clone, Debug)]
+pub struct Bond<'a, L> {
+    law: &'a L,
+    state: Vec<f64>,
+    /// What the law sees of the contact; its damage is that of the bond.
+    pub site: Site,
+}
+
+impl<'a, L: DamageLaw> Bond<'a, L> {
+    /// A new bond with this damage, in steps of 1 ms.
+    pub fn new(law: &'a L, damage: f64) -> Self {
+        let site = Site {
+            damage,
+            h: 1e-3,
+            ..Site::default()
+        };
+        let state = L::VARIABLES.iter().map(|v| v.initial).collect();
+        Self { law, state, site }
+    }
+
+    /// Leads the bond to an opening and returns its damage there.
+    pub fn lead(&mut self, intact: &Intact) -> f64 {
+        self.site.damage = self.law.grow(&self.site, intact, &mut self.state);
+        self.site.damage
+    }
+
+    /// The internal variables.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+}
+
+/// The undamaged bond of a stiffness (Pa/m), opened by `u` (m) along its normal, whose energy falls with (1 - D)^m.
+pub fn opened(stiffness: f64, u: f64, m: f64) -> Intact {
+    Intact {
+        energy: 0.5 * stiffness * u * u,
+        traction: [stiffness * u, 0.0, 0.0],
+        degradation: m,
+        ..Intact::default()
+    }
+}
 
 /// For any finite bond and the minimum, default and maximum of every parameter: D in \[D_i, 1\], variables finite.
 ///
@@ -12,11 +65,7 @@ use std::fmt::Debug;
 pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     let sizes = [0.0, 1e-300, 1e-12, 1e-3, 1.0, 1e5, 1e6, 1e30, 1e300];
     let damages = [0.0, 0.4, 1.0 - 1e-16, 1.0];
-    for end in 0..3 {
-        let values = L::FIELDS
-            .iter()
-            .map(|f| [f.default, f.minimum, f.maximum][end]);
-        let law = L::read(&values.collect::<Vec<f64>>());
+    for law in extremes::<L>() {
         for case in 0..9 * 9 * 9 * 4 * 4 {
             let (energy, t, s) = (sizes[case % 9], sizes[case / 9 % 9], sizes[case / 81 % 9]);
             let intact = Intact {
@@ -30,45 +79,41 @@ pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
                 h: s,
                 ..Site::default()
             };
-            let state = vec![s; L::VARIABLES.len()];
-            let mut next = state.clone();
-            let d = law.grow(&site, &intact, &state, &mut next);
+            let mut state = vec![s; L::VARIABLES.len()];
+            let d = law.grow(&site, &intact, &mut state);
             assert!(d >= site.damage && d <= 1.0, "{law:?} {intact:?} {s}: {d}");
-            assert!(next.iter().all(|x| x.is_finite()), "{law:?} {intact:?}");
+            assert!(state.iter().all(|x| x.is_finite()), "{law:?} {intact:?}");
         }
     }
 }
 
-/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for a bond of 1e12 Pa/m.
+/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for bonds of 1e12 and 1e14 Pa/m.
 ///
 /// # Panics
 /// If it decreases, leaves \[0, 1\], or the path causes no damage.
-pub fn damage_never_falls<L: DamageLaw>(law: &L) {
-    let (mut seed, mut u) = (1u64, 0.0f64);
-    for m in [0.5, 1.0, 2.0] {
-        let (mut d, mut state) = (0.0, vec![0.0; L::VARIABLES.len()]);
+pub fn damage_never_falls<L: DamageLaw + Default + Debug>() {
+    let law = L::default();
+    for (k, m) in [1e12, 1e14]
+        .into_iter()
+        .flat_map(|k| [0.5, 1.0, 2.0].map(|m| (k, m)))
+    {
+        let (mut seed, mut u) = (1u64, 0.0f64);
+        let mut bond = Bond::new(&law, 0.0);
         for _ in 0..2000 {
             seed = seed
                 .wrapping_mul(6364136223846793005)
                 .wrapping_add(1442695040888963407);
             u = (u + ((seed >> 33) as f64 / 2f64.powi(31) - 0.5) * 4e-7).abs();
             let intact = Intact {
-                energy: 0.5e12 * u * u,
-                traction: [-0.6e12 * u, 1e12 * u, 0.0],
-                degradation: m,
-                ..Intact::default()
+                traction: [-0.6 * k * u, k * u, 0.0],
+                ..opened(k, u, m)
             };
-            let site = Site {
-                damage: d,
-                h: 1e-3,
-                ..Site::default()
-            };
-            let mut next = state.clone();
-            let new = law.grow(&site, &intact, &state, &mut next);
-            assert!(new >= d && new <= 1.0, "{m} {u}: {new} after {d}");
-            (d, state) = (new, next);
+            let d = bond.site.damage;
+            let new = bond.lead(&intact);
+            assert!(new >= d && new <= 1.0, "{law:?} {m} {u}: {new} after {d}");
         }
-        assert!(d > 0.0, "the path does damage");
+        let damaged = bond.site.damage > 0.0 || k < 1e14;
+        assert!(damaged, "{law:?}: the path does no damage");
     }
 }
 
@@ -83,26 +128,27 @@ pub struct Pull {
     pub damage: f64,
 }
 
+impl Pull {
+    /// The bond is broken, and its area is this energy (J/m^2) within 1e-4 of it.
+    ///
+    /// # Panics
+    /// If this does not hold.
+    pub fn took(&self, energy: f64) {
+        assert!((self.area / energy - 1.0).abs() < 1e-4, "{self:?}");
+        assert_eq!(self.damage, 1.0);
+    }
+}
+
 /// A bond of stiffness `k` (Pa/m) and exponent `m`, opened to `reach` (m) by `steps` equal steps along
 /// \[0.6, 0, 0.8\].
 pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pull {
-    let mut state = vec![0.0; L::VARIABLES.len()];
-    let mut next = state.clone();
-    open(reach, steps, |u, d| {
+    let mut bond = Bond::new(law, 0.0);
+    open(reach, steps, |u, _| {
         let t = k * u;
-        let intact = Intact {
-            energy: 0.5 * t * u,
+        let d = bond.lead(&Intact {
             traction: [0.6 * t, 0.0, 0.8 * t],
-            degradation: m,
-            ..Intact::default()
-        };
-        let site = Site {
-            damage: d,
-            ..Site::default()
-        };
-        next.copy_from_slice(&state);
-        let d = law.grow(&site, &intact, &state, &mut next);
-        state.copy_from_slice(&next);
+            ..opened(k, u, m)
+        });
         (d, (1.0 - d).powf(m) * t)
     })
 }
@@ -115,7 +161,7 @@ pub fn pull_breaking<L: CohesionLaw>(law: &L, direction: [f64; 3], reach: f64, s
             damage: d,
             ..Site::default()
         };
-        let d = law.commit(&site, &[], &mut []);
+        let d = law.commit(&site, &mut []);
         let t = law.traction(&Site { damage: d, ..site }, &[]).traction;
         (d, t.iter().zip(direction).map(|(t, x)| t * x).sum())
     })
@@ -135,12 +181,14 @@ fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> P
     out
 }
 
-/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy.
+/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy. An attraction over an
+/// area that overflows its stress is finite.
 ///
 /// # Panics
-/// If this does not hold.
-pub fn bond_stays_finite<L: CohesionLaw>(law: &L) {
+/// If this does not hold, or the force is not attractive.
+pub fn cohesion_stays_finite<L: CohesionLaw + Default + Debug>() {
     for damage in [0.0, 0.3, 1.0] {
+        let (law, state) = (L::default(), vec![1.0; L::VARIABLES.len()]);
         let site = Site {
             opening: [1e300, -1e300, 1e300],
             rotation: [1e300; 3],
@@ -149,24 +197,71 @@ pub fn bond_stays_finite<L: CohesionLaw>(law: &L) {
             damage,
             ..Site::default()
         };
-        let (t, e) = (law.traction(&site, &[]), law.energy(&site, &[]));
-        assert!(e.is_finite() && t.traction.iter().chain(&t.moment).all(|x| x.is_finite()));
-        assert!(damage < 1.0 || (e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3]));
+        let (t, e) = (law.traction(&site, &state), law.energy(&site, &state));
+        let finite = t.traction.iter().chain(&t.moment).all(|x| x.is_finite());
+        assert!(e.is_finite() && finite, "{law:?} {t:?} {e}");
+        let nothing = e == 0.0 && t.traction == [0.0; 3] && t.moment == [0.0; 3];
+        assert!(damage < 1.0 || nothing, "{law:?} {t:?} {e}");
+    }
+    if L::DEGRADATION == 0.0 {
+        let [first, _, last] = extremes::<L>();
+        for law in [first, last] {
+            let site = Site {
+                area: 1e-300,
+                radius: 1e300,
+                dimension: 3,
+                ..Site::default()
+            };
+            let state = vec![1.0; L::VARIABLES.len()];
+            let t = law.traction(&site, &state).tension_strength;
+            assert!(t.is_finite() && t > 0.0, "{law:?} {t}");
+        }
     }
 }
 
-/// An attraction over an area that overflows its stress is finite.
+/// Friction at any velocity and radius is finite and not negative.
 ///
 /// # Panics
-/// If this does not hold, or the force is not attractive.
-pub fn attraction_stays_finite<L: CohesionLaw>(law: &L) {
-    let site = Site {
-        area: 1e-300,
-        radius: 1e300,
-        dimension: 3,
-        ..Site::default()
-    };
-    let state = vec![1.0; L::VARIABLES.len()];
-    let t = law.traction(&site, &state).tension_strength;
-    assert!(t.is_finite() && t > 0.0, "{t}");
+/// If it is not.
+pub fn friction_stays_finite<L: ContactLaw + Default + Debug>() {
+    let (law, state) = (L::default(), vec![0.0; L::VARIABLES.len()]);
+    for v in [0.0, 1e-320, -1e-320, -1e300, f64::MAX, f64::MIN] {
+        for radius in [0.0, 1e-320, -1e300, f64::MAX] {
+            let site = Site {
+                velocity: [v; 3],
+                radius,
+                ..Site::default()
+            };
+            let f = law.friction(&site, &state);
+            let values = [
+                f.mu,
+                f.restitution_n,
+                f.restitution_t,
+                f.rolling,
+                f.spinning,
+            ];
+            let good = values.iter().all(|x| x.is_finite() && *x >= 0.0);
+            assert!(good, "{law:?} {v} {radius}: {f:?}");
+        }
+    }
+}
+
+/// The volume at any area, time step, slip and work is finite and not negative.
+///
+/// # Panics
+/// If it is not.
+pub fn wear_stays_finite<L: WearLaw + Default + Debug>() {
+    let law = L::default();
+    let values = [0.0, 1e-320, -1.0, 1e300, f64::MAX];
+    for case in 0..5 * 5 * 5 {
+        let site = Site {
+            damage: 1.0,
+            area: values[case % 5],
+            h: values[case / 5 % 5],
+            friction_work: values[case / 25],
+            ..Site::default()
+        };
+        let v = law.volume(&site, &mut vec![1.0; L::VARIABLES.len()]);
+        assert!(v.is_finite() && v >= 0.0, "{law:?} {site:?}: {v}");
+    }
 }

@@ -25,13 +25,8 @@ impl Law for Toy {
     const NAME: &'static str = "toy";
     const DOC: &'static str = "for tests";
     const REFERENCE: &'static str = "none";
-    const VARIABLES: &'static [Variable] = &[Variable {
-        name: c"slid",
-        unit: c"m",
-        doc: c"slip so far",
-        initial: 0.0,
-        output: true,
-    }];
+    const VARIABLES: &'static [Variable] =
+        &[Variable::new(c"slid", c"m", c"slip so far").written()];
     fn validate(&self) -> Result<(), String> {
         match self.mode == 3.0 {
             true => Err("mode 3 is refused: é".into()),
@@ -51,8 +46,8 @@ impl ContactLaw for Toy {
 }
 
 impl DamageLaw for Toy {
-    fn grow(&self, site: &Site, _: &Intact, state: &[f64], next: &mut [f64]) -> f64 {
-        next[0] = state[0] + 1.0;
+    fn grow(&self, site: &Site, _: &Intact, state: &mut [f64]) -> f64 {
+        state[0] += 1.0;
         let here = site.gap == 2.0;
         assert!(!(self.mode == 2.0 && here), "no law for gap {}", site.gap);
         if self.mode == 1.0 && here {
@@ -64,9 +59,9 @@ impl DamageLaw for Toy {
 }
 
 impl WearLaw for Toy {
-    fn volume(&self, _: &Site, slip: f64, work: f64, _: &[f64], next: &mut [f64]) -> f64 {
-        next[0] = f64::INFINITY;
-        slip * work
+    fn volume(&self, site: &Site, state: &mut [f64]) -> f64 {
+        state[0] = f64::INFINITY;
+        site.slip * site.friction_work
     }
 }
 

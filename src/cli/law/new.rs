@@ -35,37 +35,21 @@ enum Language {
 
 const HEADER: &str = include_str!("../../../plugins/abi/include/fretwork.h");
 const MODULE: &str = include_str!("templates/fretwork.f90");
+macro_rules! sources {
+    ($($package:literal, $folder:literal: $($file:literal)*;)*) => {
+        &[$($((
+            concat!($package, "/", $file),
+            include_str!(concat!("../../../plugins/", $folder, "/", $file)),
+        )),*),*]
+    };
+}
+
 /// Sources of the SDK and the ABI, so that a law builds without the repository.
-const CRATES: [(&str, &str); 7] = [
-    (
-        "fretwork-abi/src/lib.rs",
-        include_str!("../../../plugins/abi/src/lib.rs"),
-    ),
-    (
-        "fretwork-law/src/lib.rs",
-        include_str!("../../../plugins/sdk/src/lib.rs"),
-    ),
-    (
-        "fretwork-law/src/border.rs",
-        include_str!("../../../plugins/sdk/src/border.rs"),
-    ),
-    (
-        "fretwork-law/src/table.rs",
-        include_str!("../../../plugins/sdk/src/table.rs"),
-    ),
-    (
-        "fretwork-law/src/testing.rs",
-        include_str!("../../../plugins/sdk/src/testing.rs"),
-    ),
-    (
-        "fretwork-law/src/traits.rs",
-        include_str!("../../../plugins/sdk/src/traits.rs"),
-    ),
-    (
-        "fretwork-abi/Cargo.toml",
-        "[package]\nname = \"fretwork-abi\"\nversion = \"@VERSION@\"\nedition = \"2024\"\nlicense = \"MIT OR Apache-2.0\"\n",
-    ),
-];
+const CRATES: &[(&str, &str)] = sources! {
+    "fretwork-abi", "abi": "src/lib.rs";
+    "fretwork-law", "sdk": "README.md" "src/lib.rs" "src/border.rs" "src/intact.rs" "src/output.rs" "src/site.rs"
+        "src/spring.rs" "src/table.rs" "src/testing.rs" "src/traits.rs";
+};
 
 pub fn new(args: &NewArgs) -> Result<(), Failure> {
     let Some((kind, templates)) =
@@ -186,6 +170,11 @@ impl NewLaw {
                 env!("CARGO_PKG_VERSION")
             )
         };
+        write(
+            folder,
+            "fretwork-abi/Cargo.toml",
+            &package("fretwork-abi", ""),
+        )?;
         let uses_abi = "[dependencies]\nfretwork-abi = { path = \"../fretwork-abi\" }\n";
         let sdk = package("fretwork-law", uses_abi);
         write(folder, "fretwork-law/Cargo.toml", &sdk)?;

@@ -86,15 +86,15 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 ///
 /// ```no_run
 /// use fretwork::geometry::space::Dim2;
-/// use fretwork::laws::SearchPath;
 /// use fretwork::record::{Run, RunOptions};
 /// use fretwork::scene::load;
+/// use fretwork::shipped::search_path;
 /// use std::ops::ControlFlow;
 /// use std::path::Path;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let loaded = load(Path::new("cases/block_tower.ron"), &[])?;
-/// let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]))?;
+/// let built = loaded.build_in::<Dim2>(&search_path())?;
 /// let options = RunOptions { out: "results/tower".into(), threads: 1 };
 /// let summary = Run::new(&loaded, built, &options).execute(&mut |progress| {
 ///     if progress.damage_ratio > 0.5 {

@@ -6,9 +6,9 @@ mod plane;
 mod plate;
 mod space;
 
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -17,7 +17,7 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -1,8 +1,8 @@
 //! What a ball is to a grain that deforms: its area counts once, however many points it touches, and its mass is that of the case.
 
 use super::*;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 /// A rigid disk of 5 mm that is pulled off a square of 20 mm, which is rigid with no elements.
@@ -28,7 +28,7 @@ fn pulled(elements: usize) -> Simulation<Dim2> {
     );
     let loaded = load_text("pulled_off.ron", &text, Path::new("."), &[]);
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     go(&mut s, 20);
     s
@@ -61,7 +61,7 @@ fn a_ball_that_deforms_has_its_mass() {
 )"#;
     let loaded = load_text("disk.ron", text, Path::new("."), &[]);
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let disk = std::f64::consts::PI * 0.005 * 0.005;
     near(1200.0 * disk, s.state.systems.get(0).unwrap().mass(), 1e-12);

@@ -1,8 +1,8 @@
 //! Cases of `cases/verification/elastic/` against the closed forms that they name.
 
 use super::*;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 /// The steel of the cases (`contact_steel`), and its modulus without lateral strain (Pa).
@@ -14,7 +14,7 @@ const DENSITY: f64 = 7800.0;
 fn case(name: &str) -> Simulation<Dim2> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/elastic");
     let loaded = load(&folder.join(format!("{name}.ron")), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

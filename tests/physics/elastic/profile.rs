@@ -1,8 +1,8 @@
 //! Blocks with a profile on a side.
 
 use super::*;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::f64::consts::PI;
 use std::path::Path;
 
@@ -15,7 +15,7 @@ fn a_wavy_block_is_pressed_as_westergaard_says() {
         env!("CARGO_MANIFEST_DIR")
     );
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let s = &mut built.unwrap_or_else(|e| panic!("{e}")).simulation;
     go(s, 12);
     let (length, size) = (1e-3, 1.5625e-5);

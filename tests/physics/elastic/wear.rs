@@ -1,8 +1,8 @@
 //! Wear of deformable bodies: what is gone is what Archard's law says, and the pressure falls as the scar widens.
 
 use super::*;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::Path;
 
 /// k of Archard's law and mu in the case (1/Pa, 1).
@@ -16,7 +16,7 @@ pub fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(&file, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -1,11 +1,11 @@
 //! The extremes that take seconds: each ends as it declares, met, or reported with its cause and what to change. The whole
 //! table: `cargo run --release --example extremes`.
 
-#[path = "../../../examples/extremes/bench/mod.rs"]
+#[path = "../../../validation/programs/extremes/bench/mod.rs"]
 pub(crate) mod bench;
 mod pairs;
 mod passing;
-#[path = "../../../examples/extremes/rows/mod.rs"]
+#[path = "../../../validation/programs/extremes/rows/mod.rs"]
 mod rows;
 
 use bench::{Cause, HELD, Verdict, told};

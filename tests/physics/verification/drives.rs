@@ -1,7 +1,7 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
 
+use fretwork::shipped::search_path;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::build::Dimensional;
@@ -47,7 +47,7 @@ fn loaded(dimension: usize, lines: &str) -> Loaded {
 }
 
 fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
-    let built = loaded(S::D, lines).build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded(S::D, lines).build_in::<S>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
@@ -473,7 +473,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let ran = |frequency: f64| {
         let loaded = case(frequency);
-        let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+        let built = loaded.build_in::<Dim2>(&search_path());
         let built = built.unwrap_or_else(|e| panic!("{e}"));
         let name = format!("fretwork-drives-{}-{frequency}", std::process::id());
         let out = std::env::temp_dir().join(name);

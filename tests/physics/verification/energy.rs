@@ -2,9 +2,9 @@
 
 use super::Table;
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -28,7 +28,7 @@ fn ledger(table: &mut Table) {
     ];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Dim2>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: out.clone(),
@@ -62,7 +62,7 @@ fn pulled(table: &mut Table) {
     );
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Dim2>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: out.clone(),
@@ -86,7 +86,7 @@ fn three_dimensions(table: &mut Table) {
     let sets = ["time.end=0.07".to_owned()];
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let mut s: Simulation<Dim3> = loaded
-        .build_in(&SearchPath::new(&[]))
+        .build_in(&search_path())
         .unwrap_or_else(|e| panic!("{e}"))
         .simulation;
     let mut momentum = 0.0f64;

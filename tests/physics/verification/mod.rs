@@ -15,9 +15,9 @@ mod stages;
 mod thermal;
 
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -61,7 +61,7 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<S>(&SearchPath::new(&[]))
+        .build_in::<S>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     built.simulation
 }

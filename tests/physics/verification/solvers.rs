@@ -2,9 +2,9 @@
 
 use super::{G, Table, scene};
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
 use std::path::Path;
@@ -194,7 +194,7 @@ fn refused() {
         let loaded = load(Path::new(&file), &[format!("solver.method={method}")]);
         let error = loaded
             .unwrap_or_else(|e| panic!("{e}"))
-            .build(&SearchPath::new(&[]))
+            .build(&search_path())
             .expect_err("is refused")
             .to_string();
         assert!(error.contains(word), "{error}");

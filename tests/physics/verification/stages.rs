@@ -2,10 +2,10 @@
 
 use super::{Table, plane, until};
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::record::biaxial::Biaxial;
 use fretwork::record::stress::love_weber;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 
@@ -117,7 +117,7 @@ fn biaxial(table: &mut Table) {
     let root = env!("CARGO_MANIFEST_DIR");
     let file = format!("{root}/cases/verification/biaxial.ron");
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let spec = loaded
         .case

@@ -1,10 +1,10 @@
 //! The mass ledger of whole runs, against what the scene makes happen.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::record::Summary;
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
 
 fn folder(name: &str) -> PathBuf {
@@ -21,7 +21,7 @@ fn summary(case: &str, sets: &[&str]) -> Summary {
         .collect();
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded
-        .build_in::<Dim2>(&SearchPath::new(&[]))
+        .build_in::<Dim2>(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
     let options = RunOptions {
         out: folder(case.rsplit('/').next().unwrap()),
@@ -86,7 +86,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     ]
     .map(str::to_owned);
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);

@@ -1,10 +1,10 @@
 //! Jumps over cycles, against runs that compute every cycle.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::record::jump::JumpSummary;
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
 
 /// Runs a case into a folder of its own; its summary, and the depths of the scar of `flat` if there is one (m).
@@ -17,7 +17,7 @@ fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
     ];
     all.extend(sets.iter().map(|s| (*s).to_owned()));
     let loaded = load(&path, &all).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out: PathBuf =
         std::env::temp_dir().join(format!("fretwork-jump-{name}-{}", std::process::id()));

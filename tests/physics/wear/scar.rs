@@ -1,9 +1,9 @@
 //! Surfaces that wear: what the laws book is what is gone, and contacts follow.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::laws::SearchPath;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::wear::{Form, shape};
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn case(name: &str) -> PathBuf {
 fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(&case(name), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.state.network.dissipation = Some(Vec::new());
     s
@@ -297,7 +297,7 @@ fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
     let file = format!("{}/cases/fretting_scar.ron", env!("CARGO_MANIFEST_DIR"));
     let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"].map(str::to_owned);
     let loaded = fretwork::scene::load(std::path::Path::new(&file), &sets).unwrap();
-    let path = fretwork::laws::SearchPath::new(&[]);
+    let path = search_path();
     let mut s = loaded.build_in::<Dim2>(&path).unwrap().simulation;
     let (mut volume, mut given) = (0.0, 0);
     while s.state.time < 0.1 {

@@ -1,9 +1,9 @@
 //! What wear leaves on disk, and how a run ends that wore a surface through.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::laws::SearchPath;
 use fretwork::scene::load;
 use fretwork::scene::standard::{self, Cut};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -49,7 +49,7 @@ fn run(out: &Folder, sets: &[&str]) -> Output {
 
 fn build(sets: &[String]) -> Simulation<Dim2> {
     let loaded = load(&worn_slide(), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim2>(&search_path());
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 

@@ -1,10 +1,10 @@
 //! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off its grip.
 
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::process::circuit::Circuit;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{circuit, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::collections::HashSet;
 use std::path::Path;
@@ -55,7 +55,7 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
     ]
     .map(str::to_owned);
     let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<S>(&search_path());
     let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);

@@ -2,12 +2,12 @@
 
 use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::laws::SearchPath;
 use fretwork::record::Observed;
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::{Summary, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
+use fretwork::shipped::search_path;
 use std::collections::BTreeSet;
 
 /// What stands between backticks in the page.
@@ -55,7 +55,7 @@ fn every_column_of_the_shipped_cases_is_documented() {
     ] {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build(&SearchPath::new(&[]));
+        let built = loaded.build(&search_path());
         let missing = match built.unwrap_or_else(|e| panic!("{e}")) {
             Scene::Dim2(built) => missing(&loaded, &built, &page),
             Scene::Dim3(built) => missing(&loaded, &built, &page),

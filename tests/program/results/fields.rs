@@ -3,10 +3,10 @@
 use super::folder;
 use fretwork::fields::{Field, id_fields};
 use fretwork::geometry::space::Space;
-use fretwork::laws::SearchPath;
 use fretwork::record::{RunOptions, run};
 use fretwork::scene::build::{Dimensional, Loaded};
 use fretwork::scene::{Built, Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use hdf5::H5File;
 use std::path::Path;
@@ -79,7 +79,7 @@ fn a_registered_field_is_in_the_results() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &["output.frames=0".to_owned()]).unwrap();
     let out = folder("fields");
-    match loaded.build(&SearchPath::new(&[])).unwrap() {
+    match loaded.build(&search_path()).unwrap() {
         Scene::Dim2(built) => ran(&loaded, *built, &out),
         Scene::Dim3(built) => ran(&loaded, *built, &out),
     }

@@ -5,11 +5,11 @@ use super::documented::{field_tables, undocumented};
 use super::folder;
 use fretwork::fields::{FieldList, Fields, orientation};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::laws::SearchPath;
 use fretwork::record::mesh_fields::{MeshField, of_bodies, of_grains, of_surfaces};
 use fretwork::record::{Observed, RunOptions, run, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
+use fretwork::shipped::search_path;
 use hdf5::H5File;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -62,7 +62,7 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
         "output.shear=1.0".to_owned(),
     ];
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let search = SearchPath::new(&[]);
+    let search = search_path();
     match loaded.build(&search).unwrap_or_else(|e| panic!("{e}")) {
         Scene::Dim2(built) => statistics_agree(&loaded, *built, out),
         Scene::Dim3(built) => statistics_agree(&loaded, *built, out),

@@ -2,8 +2,9 @@
 
 use super::common::Folder;
 use super::state::goes_on;
-use fretwork::laws::{Kind, SearchPath};
+use fretwork::laws::Kind;
 use fretwork::scene::{Scene, load};
+use fretwork::shipped::search_path;
 use fretwork_abi::FLAG_TEMPERATURE;
 
 /// A row of balls drawn to and fro over another one, with loose ones on it; x is along the rows.
@@ -50,7 +51,7 @@ fn case(dimension: usize, laws: &str, heated: bool) -> String {
 /// Goes on with a law in a dimension; whether the law is of it.
 fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let bond = "contact: \"coulomb\", cohesion: \"elastic-bond\"";
-    let plugin = SearchPath::new(&[]).find(kind, name);
+    let plugin = search_path().find(kind, name);
     let plugin = plugin.unwrap_or_else(|e| panic!("{e}"));
     let heated = kind == Kind::TRANSPORT || plugin.flags & FLAG_TEMPERATURE != 0;
     let conducts = if heated {
@@ -77,7 +78,7 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let file = folder.0.join("case.ron");
     std::fs::write(&file, case(dimension, &laws, heated)).unwrap();
     let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
-    let built = || loaded.build(&SearchPath::new(&[]));
+    let built = || loaded.build(&search_path());
     match [built(), built()] {
         [Ok(Scene::Dim2(a)), Ok(Scene::Dim2(b))] => goes_on([*a, *b], 70, 70),
         [Ok(Scene::Dim3(a)), Ok(Scene::Dim3(b))] => goes_on([*a, *b], 70, 70),
@@ -90,7 +91,7 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
 
 #[test]
 fn every_law_goes_on_with_the_same_bits() {
-    let laws = SearchPath::new(&[]).available();
+    let laws = search_path().laws();
     assert!(laws.len() >= 36, "{} laws", laws.len());
     for (kind, name, _) in laws {
         let served = [2, 3].map(|d| goes_on_with(kind, &name, d));

@@ -3,7 +3,6 @@
 
 use super::common::{Folder, marked, same};
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
-use fretwork::laws::SearchPath;
 use fretwork::process::{Process, ProcessError};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::code::{CodeError, decode, encode};
@@ -12,6 +11,7 @@ use fretwork::record::results::PreviousResults;
 use fretwork::record::statistics::{Column, Table};
 use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, Summary, stopped};
 use fretwork::scene::{Built, Loaded, load};
+use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -109,7 +109,7 @@ const SETS: [&str; 2] = ["output.checkpoint=Never", "output.frames=2"];
 fn cradle() -> (Loaded, Built<Dim3>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim3>(&SearchPath::new(&[]));
+    let built = loaded.build_in::<Dim3>(&search_path());
     let mut built = built.unwrap_or_else(|e| panic!("{e}"));
     built.simulation.add_process(Push {
         body: 2,

@@ -1,9 +1,9 @@
 //! Repeated steps: they leave no trace in a run, and what they say of its error is right where it is known.
 
+use fretwork::shipped::search_path;
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
 use fretwork::geometry::space::{Dim2, Space};
-use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
 use fretwork::step::Simulation;
 use fretwork::step::coupling::Coupling;
@@ -127,7 +127,7 @@ fn slide_to_a_stop(length: u32) {
     let mut sets = sets.map(str::to_owned).to_vec();
     sets.push(format!("uncertainty.steps={length}"));
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&SearchPath::new(&[])).unwrap();
+    let built = loaded.build_in::<Dim2>(&search_path()).unwrap();
     let mut s = built.simulation;
     let block = s.state.bodies.len() - 1;
     s.state.bodies.velocity[block].x = v;

@@ -1,9 +1,9 @@
 //! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
 
 use fretwork::geometry::space::{Dim2, Space};
-use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::{Built, Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::{Simulation, State};
 use std::path::Path;
@@ -12,7 +12,7 @@ pub fn built(case: &str, sets: &[&str]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let scene = loaded.build(&SearchPath::new(&[]));
+    let scene = loaded.build(&search_path());
     scene.unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -151,7 +151,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     let path = folder.0.join("case.ron");
     std::fs::write(&path, case).unwrap();
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let build = || match loaded.build(&SearchPath::new(&[])) {
+    let build = || match loaded.build(&search_path()) {
         Ok(Scene::Dim2(built)) => built.simulation,
         _ => panic!("the case is of the plane"),
     };

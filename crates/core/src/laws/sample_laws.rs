@@ -100,27 +100,16 @@ impl Law for Sticky {
     const NAME: &'static str = "sticky";
     const DOC: &'static str = "a shear cohesion";
     const REFERENCE: &'static str = "a test";
-    const VARIABLES: &'static [Variable] = &[Variable {
-        name: c"nothing",
-        unit: c"",
-        doc: c"kept, and not used",
-        initial: 7.0,
-        output: false,
-    }];
+    const VARIABLES: &'static [Variable] =
+        &[Variable::new(c"nothing", c"", c"kept, and not used").starting_at(7.0)];
 }
 
 impl CohesionLaw for Sticky {
-    const DEGRADATION: f64 = 0.0;
-
     fn traction(&self, _: &Site, _: &[f64]) -> Traction {
         Traction {
             shear_cohesion: self.strength,
             ..Traction::default()
         }
-    }
-
-    fn energy(&self, _: &Site, _: &[f64]) -> f64 {
-        0.0
     }
 }
 
@@ -135,27 +124,14 @@ impl Law for Growing {
     const NAME: &'static str = "growing";
     const DOC: &'static str = "a conductance that grows with time";
     const REFERENCE: &'static str = "a test";
-    const VARIABLES: &'static [Variable] = &[Variable {
-        name: c"time",
-        unit: c"s",
-        doc: c"time so far",
-        initial: 0.0,
-        output: false,
-    }];
+    const VARIABLES: &'static [Variable] = &[Variable::new(c"time", c"s", c"time so far")];
 }
 
 impl TransportLaw for Growing {
-    fn conductance(
-        &self,
-        site: &Site,
-        _slip: f64,
-        _work: f64,
-        state: &[f64],
-        next: &mut [f64],
-    ) -> Conductance {
-        next[0] = state[0] + site.h;
+    fn conductance(&self, site: &Site, state: &mut [f64]) -> Conductance {
+        state[0] += site.h;
         Conductance {
-            thermal: self.per_time * next[0],
+            thermal: self.per_time * state[0],
             electric: 0.0,
         }
     }
@@ -175,14 +151,7 @@ impl Law for Constant {
 }
 
 impl TransportLaw for Constant {
-    fn conductance(
-        &self,
-        _: &Site,
-        _slip: f64,
-        _work: f64,
-        _: &[f64],
-        _: &mut [f64],
-    ) -> Conductance {
+    fn conductance(&self, _: &Site, _: &mut [f64]) -> Conductance {
         Conductance {
             thermal: self.conductance,
             electric: 0.0,

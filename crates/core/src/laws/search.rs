@@ -14,8 +14,8 @@ pub const VARIABLE: &str = "FRETWORK_PLUGIN_PATH";
 #[derive(Clone, Debug)]
 pub struct SearchPath {
     folders: Vec<PathBuf>,
-    /// Number of the program's own folders at the start of the list.
-    shipped: usize,
+    /// Number of folders at the start of the list that belong to the program.
+    beside: usize,
     built_in: BuiltInLaws,
     trusting: bool,
 }
@@ -45,18 +45,17 @@ pub fn file_name(kind: Kind, name: &str) -> String {
 }
 
 impl SearchPath {
-    /// Builds the search path: the shipped folders beside the program, then `extra`, then those of the
-    /// environment variable.
+    /// Builds the search path: the program's own folders, then `extra`, then those of the environment variable.
     pub fn new(extra: &[PathBuf]) -> Self {
-        let mut folders = shipped();
-        let shipped = folders.len();
+        let mut folders = beside_program();
+        let beside = folders.len();
         folders.extend_from_slice(extra);
         if let Some(value) = std::env::var_os(VARIABLE) {
             folders.extend(std::env::split_paths(&value).filter(|p| !p.as_os_str().is_empty()));
         }
         Self {
             folders,
-            shipped,
+            beside,
             built_in: BuiltInLaws::default(),
             trusting: false,
         }
@@ -85,8 +84,8 @@ impl SearchPath {
         &self.folders
     }
 
-    /// Opens the law of this kind and name: the first found in the folders beside the program, then the
-    /// built-in laws, then the other folders. A library therefore cannot replace a shipped law.
+    /// Opens the law of this kind and name: a built-in one, or that of the first folder that has its library.
+    /// A library therefore cannot replace a built-in law.
     ///
     /// # Errors
     /// No such law (with the most similar name), or an unusable library.
@@ -125,24 +124,11 @@ impl SearchPath {
         if !name_is_valid(name) {
             return None;
         }
-        let (own, others) = self.folders.split_at(self.shipped);
-        let library = |folders: &[PathBuf]| {
-            let mut files = folders.iter().map(|f| f.join(file_name(kind, name)));
-            files.find(|p| p.is_file()).map(Place::Library)
-        };
-        let built_in = || {
-            let known = self.built_in.names().any(|law| law == (kind, name));
-            known.then_some(Place::BuiltIn)
-        };
-        // Others may write to the folder of a program: what they put there replaces no law of the program itself.
-        let (trusted, doubted) = match library(own) {
-            Some(Place::Library(path)) if self.doubt(&path).is_some() => {
-                (None, Some(Place::Library(path)))
-            }
-            found => (found, None),
-        };
-        let found = trusted.or_else(built_in).or(doubted);
-        found.or_else(|| library(others))
+        if self.built_in.names().any(|law| law == (kind, name)) {
+            return Some(Place::BuiltIn);
+        }
+        let mut files = self.folders.iter().map(|f| f.join(file_name(kind, name)));
+        files.find(|p| p.is_file()).map(Place::Library)
     }
 
     fn linked_in(&self, kind: Kind, name: &str, pin: Option<&str>) -> Result<Plugin, LawError> {
@@ -191,7 +177,7 @@ impl SearchPath {
 
     fn own(&self, library: &Path) -> bool {
         let folder = library.parent();
-        folder.is_some_and(|p| self.folders[..self.shipped].iter().any(|f| f == p))
+        folder.is_some_and(|p| self.folders[..self.beside].iter().any(|f| f == p))
     }
 
     /// Returns why a library should not be opened, if there is a reason.
@@ -230,35 +216,23 @@ impl SearchPath {
                 out.push((kind, name, place));
             }
         };
-        for (number, folder) in self.folders.iter().enumerate() {
-            if number == self.shipped {
-                self.built_in
-                    .names()
-                    .for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
-            }
+        for (kind, name) in self.built_in.names() {
+            add(kind, name.to_owned(), Place::BuiltIn);
+        }
+        for folder in &self.folders {
             let Ok(entries) = std::fs::read_dir(folder) else {
                 continue;
             };
             for path in entries.flatten().map(|e| e.path()) {
                 if let Some((kind, name)) = parse(&path)
                     && path.is_file()
-                    && !(number < self.shipped && self.replaces_built_in(kind, &name, &path))
                 {
                     add(kind, name, Place::Library(path));
                 }
             }
         }
-        self.built_in
-            .names()
-            .for_each(|(k, n)| add(k, n.to_owned(), Place::BuiltIn));
         out.sort();
         out
-    }
-
-    /// Whether a doubtful library beside the program has the name of a law of the program itself.
-    fn replaces_built_in(&self, kind: Kind, name: &str, library: &Path) -> bool {
-        let known = self.built_in.names().any(|law| law == (kind, name));
-        known && self.doubt(library).is_some()
     }
 
     /// Lists the laws that are libraries.
@@ -272,12 +246,16 @@ impl SearchPath {
 
     /// Describes where laws are searched for, in order.
     pub fn looked(&self) -> String {
-        let folder = |f: &PathBuf| f.display().to_string();
-        let (own, others) = self.folders.split_at(self.shipped);
-        let own = own.iter().filter(|f| f.is_dir()).map(folder);
-        let any = self.built_in.names().next().is_some();
-        let built_in = any.then(|| "the program itself".to_owned());
-        let places = own.chain(built_in).chain(others.iter().map(folder));
+        let built_in = self
+            .built_in
+            .names()
+            .next()
+            .map(|_| "the program itself".to_owned());
+        let folders = self.folders.iter().enumerate();
+        let folders = folders.filter(|(number, f)| *number >= self.beside || f.is_dir());
+        let places = built_in
+            .into_iter()
+            .chain(folders.map(|(_, f)| f.display().to_string()));
         places.collect::<Vec<_>>().join(", ")
     }
 
@@ -324,28 +302,17 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
     })
 }
 
-/// Returns the folders of shipped laws: where cargo puts libraries, beside the program, and where an
-/// installation would.
-fn shipped() -> Vec<PathBuf> {
-    let Some(here) = crate::program::file()
-        .ok()
-        .and_then(|p| p.parent().map(Path::to_owned))
-    else {
+/// Returns the folders that belong to the program: its own, and the one that an installation has for laws.
+fn beside_program() -> Vec<PathBuf> {
+    let Ok(program) = crate::program::file() else {
         return Vec::new();
     };
-    // Every build of cargo renews the libraries in `deps`, and those beside the program only where they are built themselves.
-    let mut out = vec![here.join("deps"), here.clone()];
-    // Cargo's examples and tests are in, or beside, the folder of the libraries.
-    let of_cargo = here
-        .file_name()
-        .is_some_and(|n| n == "deps" || n == "examples");
-    if let Some(above) = here.parent().filter(|_| of_cargo) {
-        out.push(above.join("deps"));
-    }
-    if let Some(above) = here.parent().filter(|_| here.ends_with("bin")) {
-        out.push(above.join("lib").join("fretwork"));
-    }
-    out
+    let Some(here) = program.parent() else {
+        return Vec::new();
+    };
+    let installed = here.parent().filter(|_| here.ends_with("bin"));
+    let installed = installed.map(|above| above.join("lib").join("fretwork"));
+    std::iter::once(here.to_owned()).chain(installed).collect()
 }
 
 #[cfg(test)]

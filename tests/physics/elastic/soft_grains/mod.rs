@@ -19,9 +19,9 @@ mod spin;
 use super::*;
 use fretwork::contact::StepSizeDiagnostics;
 use fretwork::geometry::space::Space;
-use fretwork::laws::SearchPath;
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::State;
 use nalgebra::Vector2;
 use std::f64::consts::PI;
@@ -140,7 +140,7 @@ impl Soft {
         let path = folder.join("case.ron");
         std::fs::write(&path, self.text(S::D)).unwrap();
         let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build_in::<S>(&SearchPath::new(&[]));
+        let built = loaded.build_in::<S>(&search_path());
         let _ = std::fs::remove_dir_all(&folder);
         built.unwrap_or_else(|e| panic!("{e}")).simulation
     }

@@ -1,0 +1,174 @@
+//! Bonds that open along straight lines between mode I and mode II: their largest traction lies on the envelope of their reference, and what it
+//! takes to separate them is the energy of the reference for that mode.
+
+use crate::cohesion::{
+    camanho_davila::CamanhoDavila, tvergaard_hutchinson::TvergaardHutchinson,
+    xu_needleman::XuNeedleman,
+};
+use crate::damage::{
+    exponential_softening::ExponentialSoftening, linear_softening::LinearSoftening, mac::Mac,
+    trapezoidal::Trapezoidal,
+};
+use fretwork_law::{CohesionLaw, DamageLaw, Intact, Parameters, Site};
+use std::f64::consts::{E, SQRT_2};
+
+/// Angles from the normal (degrees).
+const ANGLES: [f64; 5] = [0.0, 20.0, 45.0, 70.0, 90.0];
+const STEPS: u32 = 100_000;
+
+/// Largest normal and shear traction at the same moment, by their length (Pa), and the work (J/m^2).
+#[derive(Default)]
+struct Pulled {
+    peak: [f64; 2],
+    work: f64,
+}
+
+/// Opens a bond along a line at an angle; `at` gives the traction, normal and shear, at an opening in these directions.
+fn pull(angle: f64, reach: f64, mut at: impl FnMut([f64; 2]) -> [f64; 2]) -> Pulled {
+    let (s, c) = angle.to_radians().sin_cos();
+    let (mut out, mut last) = (Pulled::default(), [0.0; 2]);
+    for k in 1..=STEPS {
+        let u = reach * f64::from(k) / f64::from(STEPS);
+        let t = at([c * u, s * u]);
+        out.work += 0.5 * ((last[0] + t[0]) * c + (last[1] + t[1]) * s) * reach / f64::from(STEPS);
+        if t[0].hypot(t[1]) > out.peak[0].hypot(out.peak[1]) {
+            out.peak = t;
+        }
+        last = t;
+    }
+    out
+}
+
+/// A cohesion law that breaks by itself.
+fn of_cohesion<L: CohesionLaw + Parameters>(values: &[f64], angle: f64, reach: f64) -> Pulled {
+    let law = L::read(values);
+    let mut site = Site::default();
+    pull(angle, reach, |[n, t]| {
+        site.opening = [n, 0.6 * t, 0.8 * t];
+        site.damage = law.commit(&site, &mut []);
+        let [n, t1, t2] = law.traction(&site, &[]).traction;
+        [n, t1.hypot(t2)]
+    })
+}
+
+/// A damage law on a linear bond whose traction falls with (1 - D)^m.
+fn of_damage<L: DamageLaw + Parameters>(
+    values: &[f64],
+    m: f64,
+    k: [f64; 2],
+    angle: f64,
+    reach: f64,
+) -> Pulled {
+    let law = L::read(values);
+    let mut site = Site {
+        h: 1.0,
+        ..Site::default()
+    };
+    pull(angle, reach, |[n, t]| {
+        let traction = [k[0] * n, k[1] * t];
+        let intact = Intact {
+            energy: 0.5 * (traction[0] * n + traction[1] * t),
+            traction: [traction[0], traction[1], 0.0],
+            degradation: m,
+            ..Intact::default()
+        };
+        site.opening = [n, t, 0.0];
+        site.damage = law.grow(&site, &intact, &mut []);
+        traction.map(|t| (1.0 - site.damage).powf(m) * t)
+    })
+}
+
+fn near(what: &str, angle: f64, found: f64, expected: f64, tolerance: f64) {
+    assert!(
+        (found / expected - 1.0).abs() < tolerance,
+        "{what} at {angle} degrees: {found:e} for {expected:e}"
+    );
+}
+
+#[test]
+fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
+    for angle in ANGLES {
+        let shear = angle.to_radians().sin().powi(2);
+
+        let xu = [2e6, 1e-6, 1.5e-6, 1e-5];
+        let pulled = of_cohesion::<XuNeedleman>(&xu, angle, 4e-5);
+        near("xu-needleman", angle, pulled.work, E * 2e6 * 1e-6, 1e-4);
+
+        let camanho = [1e13, 5e6, 8e6, 10.0, 30.0, 1.8];
+        let pulled = of_cohesion::<CamanhoDavila>(&camanho, angle, 2e-5);
+        let [n, t] = pulled.peak;
+        near(
+            "camanho-davila, envelope",
+            angle,
+            (n / 5e6).hypot(t / 8e6),
+            1.0,
+            1e-3,
+        );
+        near(
+            "camanho-davila",
+            angle,
+            pulled.work,
+            10.0 + 20.0 * shear.powf(1.8),
+            1e-3,
+        );
+
+        let plateau = [1e13, 1e6, 5.0, 0.5];
+        let pulled = of_cohesion::<TvergaardHutchinson>(&plateau, angle, 2e-5);
+        let [n, t] = pulled.peak;
+        near(
+            "tvergaard-hutchinson, envelope",
+            angle,
+            n.hypot(t),
+            1e6,
+            1e-3,
+        );
+        near("tvergaard-hutchinson", angle, pulled.work, 5.0, 1e-3);
+    }
+    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma delta_n/delta_t at delta_t/sqrt(2).
+    let pure = |angle| {
+        let xu = [2e6, 1e-6, 1.5e-6, 1e-5];
+        of_cohesion::<XuNeedleman>(&xu, angle, 2e-5).peak
+    };
+    near("xu-needleman, strength", 0.0, pure(0.0)[0], 2e6, 1e-6);
+    near(
+        "xu-needleman, strength",
+        90.0,
+        pure(90.0)[1],
+        SQRT_2 * E.sqrt() * 2e6 / 1.5,
+        1e-6,
+    );
+}
+
+/// Shear stiffness of half and of three times the normal one: the traction reaches the strength, and the area is the energy.
+#[test]
+fn mixed_mode_of_damage_laws_is_that_of_their_references() {
+    for (angle, ratio) in ANGLES.iter().flat_map(|a| [(*a, 0.5), (*a, 3.0)]) {
+        for m in [1.0, 2.0] {
+            let k = [1e12, ratio * 1e12];
+            let (strength, energy) = (3e5, 0.5);
+            let curves = [
+                (
+                    "linear-softening",
+                    of_damage::<LinearSoftening>(&[strength, energy], m, k, angle, 1e-5),
+                ),
+                (
+                    "exponential-softening",
+                    of_damage::<ExponentialSoftening>(&[strength, energy, 1e-4], m, k, angle, 3e-5),
+                ),
+                (
+                    "trapezoidal",
+                    of_damage::<Trapezoidal>(&[strength, energy, 0.5], m, k, angle, 1e-5),
+                ),
+            ];
+            for (what, Pulled { peak: [n, t], work }) in curves {
+                near(what, angle, n.hypot(t), strength, 2e-3);
+                near(what, angle, work, energy, 2e-3);
+            }
+        }
+        // psi = w/2 at the onset with m = 2; what is stored where it is cut is released too.
+        let k = [1e12, ratio * 1e12];
+        let (w, cut) = (0.1, 1e-3);
+        let Pulled { work, .. } = of_damage::<Mac>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
+        near("mac", angle, work, w * (1.0 - 0.5 * cut), 2e-3);
+    }
+}
