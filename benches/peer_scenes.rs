@@ -6,10 +6,10 @@
 //! processor time, as for LMGC90; the parts of a step are measured as shares of wall-clock time. A word selects
 //! the scenes whose names contain it; `STEPS` sets the number of steps of the later window.
 
-use fretwork::shipped::search_path;
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
 use fretwork::scene::{Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};

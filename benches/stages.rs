@@ -11,10 +11,10 @@
 //! Times are wall-clock times but for `cpu ms`, processor time of all threads, which other work on the machine affects
 //! less. `sweeps` tells whether two revisions do the same. `benches/before_after.sh` compares two revisions by this bench.
 
-use fretwork::shipped::search_path;
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
 use fretwork::scene::{Case, Scene, load, processes};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -1,11 +1,11 @@
 //! Cases and material files: read, built into a scene, and taken two steps further.
 
-use fretwork::shipped::search_path;
 use crate::campaign::Campaign;
 use crate::mutate;
 use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::step::coupling::Coupling;
 use rand::RngExt;
 use std::path::{Path, PathBuf};

@@ -1,10 +1,10 @@
 //! What changes during a run: gravity, pressures, gates, phases; and drums. Against closed forms.
 
-use fretwork::shipped::search_path;
 use fretwork::bodies::Bodies;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 use std::path::PathBuf;

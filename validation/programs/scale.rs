@@ -5,11 +5,11 @@
 //! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth is constant, and with it the
 //! number of iterations that a load needs to propagate across the layer.
 
-use fretwork::shipped::search_path;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
 use std::process::Command;

@@ -1,11 +1,11 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
 
-use fretwork::shipped::search_path;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Loaded, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;

@@ -1,10 +1,10 @@
 //! Repeated steps: they leave no trace in a run, and what they say of its error is right where it is known.
 
-use fretwork::shipped::search_path;
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::scene::{Built, Scene, load};
+use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::step::coupling::Coupling;
 use fretwork_observe::error_estimate::{Change, ErrorEstimate, Repeats};
