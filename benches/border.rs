@@ -1,8 +1,9 @@
-//! Cost of the plugin interface: the same law in a loop and behind the interface, and its share of a fretting step.
+//! Cost of the plugin interface: the same law in a loop and behind the interface, and its share of
+//! a fretting step.
 //!
-//! `cargo bench --bench border`. In a loop, the damage law of Monerie, Acary and Cangemi runs in a loop over
-//! the columns; called as a run calls it, the same loop runs behind the C
-//! interface. One thread.
+//! `cargo bench --bench border`. In a loop, the damage law of Monerie, Acary and Cangemi runs in a
+//! loop over the columns; called as a run calls it, the same loop runs behind the C interface. One
+//! thread.
 
 use fretwork::laws::{Call, Kind};
 use fretwork::scene::load;

@@ -1,17 +1,23 @@
-//! Price of first bodies that deform: a step of a third body between two elastic bodies against the same step between rigid ones.
+//! Price of first bodies that deform: a step of a third body between two elastic bodies against the
+//! same step between rigid ones.
 //!
-//! `cargo bench --bench elastic` builds the same layer six times: 2,016 disks of oxide between two bodies of steel that are pressed
-//! together and sheared, with the step, inertia and solver of `cases/wheel_rail_fretting.ron` and its contact law, without bonds, which
-//! would add the same time to all. The first bodies are rigid profiles of 513 points, 500 of them along the layer; or elastic half-spaces with as many cells; or elastic bodies with
-//! the same points on their surfaces, as deep as the layer is long: once of triangles that grow in both directions
-//! with the depth (read from a file as of a mesh generator; `graded` has two rows of cells of each size, `coarse` one), once as a `Block` that coarsens with the depth (`block`), and once as one whose
-//! columns of cells reach from side to side (`columns`).
-//! Steps of all scenes alternate in one process on one thread; medians of processor time are printed, and for the parts of a step medians
-//! by the clock, which are longer where other processes run.
+//! `cargo bench --bench elastic` builds the same layer six times: 2,016 disks of oxide between two
+//! bodies of steel that are pressed together and sheared, with the step, inertia and solver of
+//! `cases/wheel_rail_fretting.ron` and its contact law, without bonds, which would add the same
+//! time to all. The first bodies are rigid profiles of 513 points, 500 of them along the layer; or
+//! elastic half-spaces with as many cells; or elastic bodies with the same points on their
+//! surfaces, as deep as the layer is long: once of triangles that grow in both directions with the
+//! depth (read from a file as of a mesh generator; `graded` has two rows of cells of each size,
+//! `coarse` one), once as a `Block` that coarsens with the depth (`block`), and once as one whose
+//! columns of cells reach from side to side (`columns`). Steps of all scenes alternate in one
+//! process on one thread; medians of processor time are printed, and for the parts of a step
+//! medians by the clock, which are longer where other processes run.
 //!
-//! Names (`half-space`, `coarse`, `graded`, `block`, `columns`) choose some of the scenes; `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
-//! `cargo bench --bench elastic -- coulomb` has rigid contacts with Coulomb friction in place of springs. `STEPS` is the number of timed
-//! steps (200), `GROWTH` the ratio of the heights of neighbouring rows of a `Block` (1.25).
+//! Names (`half-space`, `coarse`, `graded`, `block`, `columns`) choose some of the scenes;
+//! `PRESS_RIGID`, `PRESS_HALF_SPACE` and `PRESS_ELASTIC` are how far each is pressed (m).
+//! `cargo bench --bench elastic -- coulomb` has rigid contacts with Coulomb friction in place of
+//! springs. `STEPS` is the number of timed steps (200), `GROWTH` the ratio of the heights of
+//! neighbouring rows of a `Block` (1.25).
 
 use cpu_time::ThreadTime;
 use fretwork::bodies::{DynamicalSystem, SystemStep};
@@ -27,7 +33,8 @@ use std::time::{Duration, Instant};
 
 type Scene = Simulation<Dim2>;
 
-/// Length of the layer (m), its height before it is pressed (m), and how far the bodies reach beyond it (m).
+/// Length of the layer (m), its height before it is pressed (m), and how far the bodies reach
+/// beyond it (m).
 const LENGTH: f64 = 4e-4;
 const HEIGHT: f64 = 3.8e-5;
 const BEYOND: f64 = 5e-6;
@@ -64,8 +71,9 @@ impl First {
     }
 }
 
-/// A body below y = 0 (m) as a file of Gmsh: each row of cells has as many columns as the one above or half of them, and each
-/// cell is cut in triangles by its centre. There are so many rows of the finest cells, and of the others of a size. `up` turns it over.
+/// A body below y = 0 (m) as a file of Gmsh: each row of cells has as many columns as the one above
+/// or half of them, and each cell is cut in triangles by its centre. There are so many rows of the
+/// finest cells, and of the others of a size. `up` turns it over.
 fn graded(up: bool, [finest, others]: [usize; 2]) -> String {
     let (mut points, mut triangles): (Vec<[f64; 2]>, Vec<[usize; 3]>) = (Vec::new(), Vec::new());
     let row = |points: &mut Vec<[f64; 2]>, cells: usize, y: f64| -> Vec<usize> {

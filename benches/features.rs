@@ -1,8 +1,9 @@
 //! Cost of each feature that is on; a feature that is off costs nothing.
 //!
-//! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one feature after another
-//! and prints the table of `docs/dev/features.md`. Variants alternate, and the minimum of several rounds is used, to
-//! reduce the influence of other load on the machine. `pieces` times the narrow phase of polyhedra, by pairs.
+//! `cargo bench --bench features` steps the boxes of 5,000 disks and spheres at rest with one
+//! feature after another and prints the table of `docs/dev/features.md`. Variants alternate, and
+//! the minimum of several rounds is used, to reduce the influence of other load on the machine.
+//! `pieces` times the narrow phase of polyhedra, by pairs.
 
 #[path = "../tests/support/features.rs"]
 mod features;
@@ -35,7 +36,8 @@ const UNCOUPLED: Feature = (
 const STEPS: u32 = 10;
 const ROUNDS: usize = 5;
 
-/// A scene under test and the minimum times (s) of a step: total, detection, laws, solver per sweep.
+/// A scene under test and the minimum times (s) of a step: total, detection, laws, solver per
+/// sweep.
 struct Trial<S: Space> {
     name: &'static str,
     simulation: Simulation<S>,
@@ -137,7 +139,8 @@ fn round<S: Space>(t: &mut Trial<S>) {
 /// Two polyhedra, and the position of the centre of the first relative to that of the second (m).
 type Pair = (Polyhedron, Polyhedron, Vector3<f64>);
 
-/// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list only.
+/// What the narrow phase takes a pair: in contact as faces, as edges, and within the neighbour list
+/// only.
 fn pieces() {
     const REACH: f64 = 1e-3;
     let cube = Polyhedron::cuboid([1.0; 3]);

@@ -1,12 +1,14 @@
 //! Cost of heat and current.
 //!
-//! `cargo bench --bench heat` steps the headline case in the middle of its fretting, and boxes of disks of several sizes, without heat, with
-//! heat, and with heat and a current, and prints the shares of a step that these take, as in `docs/heat.md`. The steps without
-//! heat have the bits of a case that has never heard of it. With `-- headline` it does the first alone.
+//! `cargo bench --bench heat` steps the headline case in the middle of its fretting, and boxes of
+//! disks of several sizes, without heat, with heat, and with heat and a current, and prints the
+//! shares of a step that these take, as in `docs/heat.md`. The steps without heat have the bits of
+//! a case that has never heard of it. With `-- headline` it does the first alone.
 //!
-//! Each variant steps in a process of its own. These take turns of ten steps, so that what else the machine does changes all alike: on a
-//! machine that others share the same steps may take 30 % longer a minute later. Where the memory of a process lies changes its times
-//! too, so that all are launched several times. On one thread, as the heat of a step is solved.
+//! Each variant steps in a process of its own. These take turns of ten steps, so that what else the
+//! machine does changes all alike: on a machine that others share the same steps may take 30 %
+//! longer a minute later. Where the memory of a process lies changes its times too, so that all are
+//! launched several times. On one thread, as the heat of a step is solved.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
@@ -16,7 +18,8 @@ use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Instant;
 
-/// What a process that steps one variant is launched with: this word, the case, the steps before those that are timed, and `--set`s.
+/// What a process that steps one variant is launched with: this word, the case, the steps before
+/// those that are timed, and `--set`s.
 const ONE: &str = "--one";
 /// Steps of a turn: a whole number of the rarest steps of heat.
 const TURN: u32 = 10;
@@ -66,7 +69,8 @@ fn headline() {
     );
 }
 
-/// A random packing between two plates, of another size, timed from a first step on at which it has come together.
+/// A random packing between two plates, of another size, timed from a first step on at which it has
+/// come together.
 fn boxes(grains: usize, first: u32, launches: usize) {
     // The lattice takes 2.4e5 grains a square metre.
     let side = (grains as f64 / 2.3e5).sqrt();
@@ -100,7 +104,8 @@ fn boxes(grains: usize, first: u32, launches: usize) {
     );
 }
 
-/// Times steps of a scene without heat, with heat and with current, in turns of a few steps, each from its own state after the first steps.
+/// Times steps of a scene without heat, with heat and with current, in turns of a few steps, each
+/// from its own state after the first steps.
 fn compare(
     scene: &str,
     case: &str,
@@ -119,7 +124,8 @@ fn compare(
         for process in &mut processes {
             process.answer();
         }
-        // Of times that lie beside each other, so that what else the machine does changes all; another variant begins each time.
+        // Of times that lie beside each other, so that what else the machine does changes all;
+        // another variant begins each time.
         let times: Vec<[f64; 5]> = (0..turns as usize)
             .map(|turn| {
                 let mut times = [0.0; 5];
@@ -211,7 +217,8 @@ impl Drop for Stepping {
     }
 }
 
-/// Steps one variant: says when it has made the first steps, and then the time of a step (s), its grains and its contacts after each turn that a line asks for.
+/// Steps one variant: says when it has made the first steps, and then the time of a step (s), its
+/// grains and its contacts after each turn that a line asks for.
 fn serve(asked: &[String]) {
     let [case, first, sets @ ..] = asked else {
         panic!("the case, and the steps before the time");

@@ -1,10 +1,11 @@
 //! Time of steps of four scenes, and of the sweep per contact and iteration, compared with LMGC90.
 //!
-//! `cargo bench --bench peer_scenes` prints, for each scene, the cold first step, solved until it converges; then the
-//! means of two windows of steps: while the scene moves (steps 2 to 61), and later, at rest or in flow; with the
-//! ratios to the times of LMGC90 in the same steps of the same scene (`cases/benchmarks/README.md`). One thread;
-//! processor time, as for LMGC90; the parts of a step are measured as shares of wall-clock time. A word selects
-//! the scenes whose names contain it; `STEPS` sets the number of steps of the later window.
+//! `cargo bench --bench peer_scenes` prints, for each scene, the cold first step, solved until it
+//! converges; then the means of two windows of steps: while the scene moves (steps 2 to 61), and
+//! later, at rest or in flow; with the ratios to the times of LMGC90 in the same steps of the same
+//! scene (`cases/benchmarks/README.md`). One thread; processor time, as for LMGC90; the parts of a
+//! step are measured as shares of wall-clock time. A word selects the scenes whose names contain
+//! it; `STEPS` sets the number of steps of the later window.
 
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
@@ -14,8 +15,9 @@ use fretwork::step::Simulation;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Steps from `first` to `last`, the cold one being 1, and LMGC90's processor time (ms) and iterations per step and its time
-/// of a sweep (ns per contact and iteration) in them: its best of three repetitions.
+/// Steps from `first` to `last`, the cold one being 1, and LMGC90's processor time (ms) and
+/// iterations per step and its time of a sweep (ns per contact and iteration) in them: its best of
+/// three repetitions.
 struct Window {
     name: &'static str,
     first: u32,

@@ -1,15 +1,17 @@
 //! Where the time of a step goes, in stages of some cases.
 //!
-//! `cargo bench --bench stages` steps each case from its start and times its stages: the time of a step and of its parts
-//! (detection, laws, solver, the rest), the sweeps, and the solver's time per contact and sweep. A word selects the stages
-//! whose names contain it, `--threads` the numbers of threads (1 unless given):
+//! `cargo bench --bench stages` steps each case from its start and times its stages: the time of a
+//! step and of its parts (detection, laws, solver, the rest), the sweeps, and the solver's time per
+//! contact and sweep. A word selects the stages whose names contain it, `--threads` the numbers of
+//! threads (1 unless given):
 //!
 //! ```text
 //! cargo bench --bench stages -- fretting --threads 1 2
 //! ```
 //!
-//! Times are wall-clock times but for `cpu ms`, processor time of all threads, which other work on the machine affects
-//! less. `sweeps` tells whether two revisions do the same. `benches/before_after.sh` compares two revisions by this bench.
+//! Times are wall-clock times but for `cpu ms`, processor time of all threads, which other work on
+//! the machine affects less. `sweeps` tells whether two revisions do the same.
+//! `benches/before_after.sh` compares two revisions by this bench.
 
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;

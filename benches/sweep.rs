@@ -2,10 +2,10 @@
 //!
 //! `cargo bench --bench sweep` builds packings of disks and spheres at rest in a box (lattices with
 //! jitter in which a fraction of the contacts is open, bodies numbered by position as in a run) and
-//! prints the bytes and flops of one update, the bandwidth and the arithmetic rate measured in the same
-//! run over the same footprint, the resulting bound and the ratio of the sweep to it. The sweep on two
-//! threads must give the bits of the sweep on one. Best of many runs, to reduce the influence of
-//! other load. Words of the command line select the problems whose names contain them.
+//! prints the bytes and flops of one update, the bandwidth and the arithmetic rate measured in the
+//! same run over the same footprint, the resulting bound and the ratio of the sweep to it. The
+//! sweep on two threads must give the bits of the sweep on one. Best of many runs, to reduce the
+//! influence of other load. Words of the command line select the problems whose names contain them.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::nlgs::{prepare, sweeps};

@@ -1,4 +1,5 @@
-//! HDF5 files: contact problems of FCLIB, results of a run; and the bytes of a state, as a checkpoint has them.
+//! HDF5 files: contact problems of FCLIB, results of a run; and the bytes of a state, as a
+//! checkpoint has them.
 
 use crate::campaign::Campaign;
 use crate::cases::files;

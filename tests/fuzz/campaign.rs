@@ -1,4 +1,5 @@
-//! A campaign: damaged inputs of one kind, each read on a thread of its own, under a clock and a count of bytes.
+//! A campaign: damaged inputs of one kind, each read on a thread of its own, under a clock and a
+//! count of bytes.
 
 use crate::memory::peak;
 use cpu_time::ProcessTime;
@@ -10,7 +11,8 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What one input may take (s, of the processor: a busy machine makes no hang): a hang is what takes longer,
+/// What one input may take (s, of the processor: a busy machine makes no hang): a hang is what
+/// takes longer,
 const SECONDS: Duration = Duration::from_secs(10);
 /// or waits for so long (s).
 const WAITS: Duration = Duration::from_secs(300);
@@ -101,8 +103,8 @@ impl Campaign {
 
     /// Runs it: `make` gives the name and the bytes of an input, `read` says whether it was taken.
     ///
-    /// An input that fails is kept beside the folder's others as `NUMBER-name`, and `last-name` is the one that was read when the
-    /// process was ended from outside.
+    /// An input that fails is kept beside the folder's others as `NUMBER-name`, and `last-name` is
+    /// the one that was read when the process was ended from outside.
     pub fn run(
         &self,
         folder: &Path,

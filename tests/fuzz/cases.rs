@@ -61,7 +61,8 @@ pub fn furnish(folder: &Path) {
     }
 }
 
-/// Two steps, with limits on iterations of this test: those of a case may be as many as its writer likes.
+/// Two steps, with limits on iterations of this test: those of a case may be as many as its writer
+/// likes.
 fn steps<S: Space>(mut built: Built<S>) {
     let s = &mut built.simulation;
     s.options.solver.max_iterations = s.options.solver.max_iterations.min(20);

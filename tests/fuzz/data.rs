@@ -1,5 +1,5 @@
-//! Files that a case names: profiles, meshes, tables of grains, grading curves, scenes in plain text. Each is read through
-//! a small case around it.
+//! Files that a case names: profiles, meshes, tables of grains, grading curves, scenes in plain
+//! text. Each is read through a small case around it.
 
 use crate::campaign::Campaign;
 use crate::cases::{files, furnish, tried};

@@ -254,7 +254,8 @@ fn place(bytes: &[u8], rng: &mut Pcg64) -> usize {
         }
     }
     if rng.random_range(0..2) == 0 {
-        // Heads of objects have no signature in older files; most of what is not zero is one, or data.
+        // Heads of objects have no signature in older files; most of what is not zero is one, or
+        // data.
         let from = rng.random_range(0..bytes.len());
         return (from..bytes.len()).find(|k| bytes[*k] != 0).unwrap_or(from);
     }

@@ -1,4 +1,5 @@
-//! A long run holds no more memory than a short one, and its checkpoint is no larger: counted to the byte.
+//! A long run holds no more memory than a short one, and its checkpoint is no larger: counted to
+//! the byte.
 //!
 //! `FRETWORK_LONG=N` makes it N steps long.
 
@@ -25,10 +26,12 @@ use std::path::Path;
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
 
-/// What the number of contacts at the moment, rows on their way to the disk and the file's index may change (bytes).
+/// What the number of contacts at the moment, rows on their way to the disk and the file's index
+/// may change (bytes).
 const SLACK: usize = 64 << 10;
 
-/// Grains on a floor that holds some of them by bonds, rubbed to and fro by a lid: 100 steps a cycle.
+/// Grains on a floor that holds some of them by bonds, rubbed to and fro by a lid: 100 steps a
+/// cycle.
 const RUBBED: &str = r#"(
     name: "rubbed for long", dimension: 2,
     time: (step: 1e-4, end: 2.0), gravity: [0.0, -9.81], periodic: (x: 0.02),
@@ -95,8 +98,8 @@ fn most(seen: &[usize], steps: usize) -> usize {
     seen[steps - 1000..steps].iter().copied().max().unwrap()
 }
 
-/// What the cycles' list may take: a cycle of it is written out in the end, so that each must be kept. The list doubles
-/// its room when it is full.
+/// What the cycles' list may take: a cycle of it is written out in the end, so that each must be
+/// kept. The list doubles its room when it is full.
 fn of_cycles(steps: usize) -> usize {
     (steps / 100).next_power_of_two() * size_of::<Cycle>()
 }

@@ -1,5 +1,5 @@
-//! The fretting layer of angular grains with elastic contacts, in a window of a fifth: its steps are solved to any tolerance, and say what they
-//! get wrong.
+//! The fretting layer of angular grains with elastic contacts, in a window of a fifth: its steps
+//! are solved to any tolerance, and say what they get wrong.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
@@ -61,8 +61,9 @@ fn elastic_contacts_are_solved_to_any_tolerance_while_they_slip() {
     }
 }
 
-/// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case, with velocities that are wrong: the heat of the
-/// residuals says so: it is above the half of that of slip which the norm `Power` permits, and below which it stays with springs.
+/// With a tenth of the inertia rigid contacts reach the tolerance of the rigid fretting case, with
+/// velocities that are wrong: the heat of the residuals says so: it is above the half of that of
+/// slip which the norm `Power` permits, and below which it stays with springs.
 #[test]
 fn the_parts_of_the_error_tell_loose_velocities() {
     let law = |interface: &str| format!("interfaces.{interface}.contact=coulomb");
@@ -87,8 +88,9 @@ fn the_parts_of_the_error_tell_loose_velocities() {
     assert!(elastic <= 0.5 && rigid > 0.5, "{elastic} and {rigid}");
 }
 
-/// Contact points of polygons, and pairs that meet within a step, are found by several threads: more than 256 pairs, with bonds, under a wheel that falls
-/// by the size of a grain a step at first.
+/// Contact points of polygons, and pairs that meet within a step, are found by several threads:
+/// more than 256 pairs, with bonds, under a wheel that falls by the size of a grain a step at
+/// first.
 #[test]
 fn threads_do_not_change_a_bit_of_a_layer_of_polygons() {
     let bits = |threads: usize| {

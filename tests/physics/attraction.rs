@@ -8,7 +8,8 @@ use std::path::Path;
 const COUNT: usize = 1300;
 const RADIUS: f64 = 1e-3;
 
-/// Disks below a ceiling, each alone, which holds each by twice its weight: all stay, and those are let go whose attraction is too small.
+/// Disks below a ceiling, each alone, which holds each by twice its weight: all stay, and those are
+/// let go whose attraction is too small.
 #[test]
 fn a_ceiling_holds_every_disk() {
     for (share, held) in [(2.0, true), (0.5, false)] {

@@ -11,7 +11,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of the grip (m/s).
+/// Of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of the grip
+/// (m/s).
 const W: f64 = 0.1;
 const U0: f64 = 3.162_277_660_168_379_5e-7;
 const SPEED: f64 = 0.045;
@@ -56,7 +57,8 @@ fn run<S: Dimensional + Observed>(loaded: &Loaded) -> Summary {
     done.unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Pulls one bond in steps of an opening (m) until it is long broken, with damage law and coupling as given.
+/// Pulls one bond in steps of an opening (m) until it is long broken, with damage law and coupling
+/// as given.
 fn pulled(case: &str, opening: f64, sets: &[&str]) -> (BondEnergies, Summary) {
     let step = opening / SPEED;
     let mut all = vec![
@@ -104,9 +106,10 @@ impl Used {
     }
 }
 
-/// Released over w by a MAC bond (b = 0) that is opened in steps of d u_0 and breaks below `broken`: beta = (u_0/u)^2 from u_0 on. The stored
-/// energy is beta^2 C u^2/2; a step lowers it at its start to what it is with the damage used in the impulse, and at its end to
-/// what it is with the new one.
+/// Released over w by a MAC bond (b = 0) that is opened in steps of d u_0 and breaks below
+/// `broken`: beta = (u_0/u)^2 from u_0 on. The stored energy is beta^2 C u^2/2; a step lowers it at
+/// its start to what it is with the damage used in the impulse, and at its end to what it is with
+/// the new one.
 fn overshoot(d: f64, broken: f64, used: Used) -> f64 {
     overshoot_from(0.0, d, broken, used)
 }
@@ -130,8 +133,9 @@ fn overshoot_from(start: f64, d: f64, broken: f64, used: Used) -> f64 {
 
 const CUT: &str = "interfaces.grain.parameters.damage.beta_broken=1e-3";
 
-/// In modes I, II and mixed a slow pull releases what the law declares, w less the tail of beta_broken/2, with an error of the first
-/// order in the step: d u_0 times 0.66 by the closed form.
+/// In modes I, II and mixed a slow pull releases what the law declares, w less the tail of
+/// beta_broken/2, with an error of the first order in the step: d u_0 times 0.66 by the closed
+/// form.
 #[test]
 fn a_slow_pull_releases_what_the_law_declares() {
     for case in ["bond_mode_1", "bond_mode_2", "bond_mixed"] {
@@ -164,8 +168,8 @@ fn warning(summary: &Summary) -> Option<&String> {
     warnings.find(|w| w.starts_with("BONDS NOT RESOLVED"))
 }
 
-/// In steps of 0.2 to 5 critical openings a bond releases what its overshoot says, with each coupling; the run says that it is not
-/// resolved.
+/// In steps of 0.2 to 5 critical openings a bond releases what its overshoot says, with each
+/// coupling; the run says that it is not resolved.
 #[test]
 fn a_bond_pulled_in_large_steps_releases_what_the_overshoot_says() {
     for criticals in [0.2, 1.0, 2.0, 5.0] {
@@ -187,7 +191,8 @@ fn a_bond_pulled_in_large_steps_releases_what_the_overshoot_says() {
     }
 }
 
-/// A bond that one step takes beyond where it breaks, from no damage, is counted; of a brittle bond this is no fault of the step.
+/// A bond that one step takes beyond where it breaks, from no damage, is counted; of a brittle bond
+/// this is no fault of the step.
 #[test]
 fn bonds_that_break_within_one_step_are_counted() {
     let wide = [
@@ -267,7 +272,8 @@ fn a_slow_pull_on_the_bench_is_the_fracture_energy() {
     assert!(!bench.fracture_energy_is_constant().unwrap());
 }
 
-/// Begun at its gap of u_0/2, a bond has an energy from the start that its fracture contains: what it releases is still w.
+/// Begun at its gap of u_0/2, a bond has an energy from the start that its fracture contains: what
+/// it releases is still w.
 #[test]
 fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     let gap = 2.0 + 0.5 * U0;
@@ -276,8 +282,8 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     let (bond, _) = pulled("bond_mode_1", 0.01 * U0, &sets);
     let ratio = bond.released_over_declared.unwrap();
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
-    // Beyond u_0, at n u_0, its energy is n^2 w/2 at once, and the tail takes w/(2 n^2): more than the law's, which is no error. The gap is found
-    // in the middle of the first step.
+    // Beyond u_0, at n u_0, its energy is n^2 w/2 at once, and the tail takes w/(2 n^2): more than
+    // the law's, which is no error. The gap is found in the middle of the first step.
     let (n, d) = (2.0, 0.01);
     let place = format!("bodies.1.position=[0.0, {:?}]", 2.0 + n * U0);
     let sets = [
@@ -295,8 +301,8 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
     assert!(!bond.comparable && warning(&summary).is_none());
 }
 
-/// Turns a parallel bond by bending or twist alone until it breaks, in steps of an angle (rad); gives what it released, and what is said of
-/// it.
+/// Turns a parallel bond by bending or twist alone until it breaks, in steps of an angle (rad);
+/// gives what it released, and what is said of it.
 fn turned<S: Dimensional + Observed>(
     motion: &str,
     last: f64,
@@ -344,9 +350,9 @@ fn turned<S: Dimensional + Observed>(
     (found.interfaces[0].clone(), found.warning())
 }
 
-/// A bond that bending or twist breaks stores sigma^2 R/(3 k_n) per depth in 2D, pi sigma^2 R^2/(8 k_n) by bending and
-/// pi tau^2 R^2/(4 k_t) by twist in 3D: less than what opening takes, and no sign of a step that is too large. It is compared with a pull that turns
-/// it as far.
+/// A bond that bending or twist breaks stores sigma^2 R/(3 k_n) per depth in 2D, pi sigma^2 R^2/(8
+/// k_n) by bending and pi tau^2 R^2/(4 k_t) by twist in 3D: less than what opening takes, and no
+/// sign of a step that is too large. It is compared with a pull that turns it as far.
 #[test]
 fn bonds_broken_by_rotation_are_compared_with_what_turns_them() {
     let (stress, stiffness, steps) = (1e6f64, 1e10, 2000);

@@ -28,8 +28,8 @@ fn tried(alert: f64, bonds: &str, rest: &str) -> Result<Simulation<Dim2>, InputE
     Ok(loaded.build_in::<Dim2>(&search_path())?.simulation)
 }
 
-/// Eleven disks in a row whose gaps grow from 0.1 to 1 mm: how many are bonded does not depend on how far contacts are
-/// looked for.
+/// Eleven disks in a row whose gaps grow from 0.1 to 1 mm: how many are bonded does not depend on
+/// how far contacts are looked for.
 #[test]
 fn bonds_are_made_within_their_own_distance() {
     let mut x = 0.0;
@@ -61,8 +61,9 @@ fn bonds_are_made_within_their_own_distance() {
     assert_eq!([5.5e-4, 9.5e-4].map(|alert| made(alert, "")), [5, 9]);
 }
 
-/// Two disks 0.2 mm apart, one of which moves away: the bond pulls with k A d where cement fills the gap, with k A (g + d) where it
-/// begins at the gap, whose energy it has from the start; the ledger closes either way.
+/// Two disks 0.2 mm apart, one of which moves away: the bond pulls with k A d where cement fills
+/// the gap, with k A (g + d) where it begins at the gap, whose energy it has from the start; the
+/// ledger closes either way.
 #[test]
 fn a_bond_begins_filled_or_at_its_gap() {
     let (gap, area, k) = (2e-4, 0.025, 1e9);

@@ -1,5 +1,5 @@
-//! Bonds in a run: every method gives the motion that the sweeps over bodies give, which solve a contact and its
-//! bond at once.
+//! Bonds in a run: every method gives the motion that the sweeps over bodies give, which solve a
+//! contact and its bond at once.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::form::{ContactForm, Elastic, Problem};
@@ -8,9 +8,9 @@ use fretwork::solve::{AutoState, Options, solve};
 
 const RADIUS: f64 = 0.1;
 
-/// A pile of balls in rows of 5, 4, 3 on a floor, pressed down and pushed aside. Every contact is bonded with
-/// `stiff` times the inverse of its W_nn; some bonds only pull. Where `blocks` is set contacts have levers and the
-/// inertia differs by axis.
+/// A pile of balls in rows of 5, 4, 3 on a floor, pressed down and pushed aside. Every contact is
+/// bonded with `stiff` times the inverse of its W_nn; some bonds only pull. Where `blocks` is set
+/// contacts have levers and the inertia differs by axis.
 fn pile<S: Space>(stiff: f64, blocks: bool) -> (Problem<S>, Vec<ContactForm<S>>) {
     let mut problem = Problem::<S>::default();
     let along = |x: f64, y: f64| {
@@ -149,8 +149,8 @@ fn every_method<S: Space>(blocks: bool) {
     for stiff in [0.1, 1.0, 10.0] {
         agree::<S>(stiff, blocks, &methods);
     }
-    // Gradients and the symmetric sweeps hold a bond and its contact as two unknowns, which only those tell apart
-    // well that factorise.
+    // Gradients and the symmetric sweeps hold a bond and its contact as two unknowns, which only
+    // those tell apart well that factorise.
     let factorise = [Method::Newton, Method::Interior];
     agree::<S>(100.0, blocks, &factorise);
 }

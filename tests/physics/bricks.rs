@@ -1,21 +1,23 @@
-//! Free bricks that lie flush are one floor for what slides over them, and an edge that the error of the solver makes of them is reported.
+//! Free bricks that lie flush are one floor for what slides over them, and an edge that the error
+//! of the solver makes of them is reported.
 
 use crate::extremes::bench::{Sketch, floor};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
-/// Width and height of free bricks, and the side of a box that slides over them (m), at the alert distance that a case has without one: a twentieth
-/// of the radius of the smallest grain; and how far its velocity may be off by the default tolerance: a box seven times as heavy as a brick moves
-/// it more.
+/// Width and height of free bricks, and the side of a box that slides over them (m), at the alert
+/// distance that a case has without one: a twentieth of the radius of the smallest grain; and how
+/// far its velocity may be off by the default tolerance: a box seven times as heavy as a brick
+/// moves it more.
 const BRICKS: [([f64; 2], f64, f64, f64); 3] = [
     ([0.2, 0.2], 0.1, 3.5e-3, 1e-3),
     ([0.5, 0.2], 0.1, 3.5e-3, 1e-3),
     ([0.15, 0.06], 0.25, 4e-3, 2e-2),
 ];
 
-/// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed (m/s); `last` tells whether the box is the last
-/// grain or the first.
+/// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed
+/// (m/s); `last` tells whether the box is the last grain or the first.
 fn on_bricks<S: Dimensional>(
     [width, height]: [f64; 2],
     side: f64,
@@ -66,7 +68,8 @@ struct Slide {
     last: bool,
 }
 
-/// The change of the velocity of the box over that at the start, after 1.5 m, and the number of edges that it met.
+/// The change of the velocity of the box over that at the start, after 1.5 m, and the number of
+/// edges that it met.
 fn slide<S: Dimensional>(slide: &Slide) -> (f64, u64) {
     let Slide { speed, step, .. } = *slide;
     let (grains, slider) = on_bricks::<S>(slide.brick, slide.side, speed, slide.last);
@@ -108,8 +111,9 @@ fn slide<S: Dimensional>(slide: &Slide) -> (f64, u64) {
     (changed, edges)
 }
 
-/// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart: the leading edge of the box is below the top of the
-/// next one by what they sank. Without friction it keeps its velocity.
+/// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart:
+/// the leading edge of the box is below the top of the next one by what they sank. Without friction
+/// it keeps its velocity.
 fn slides_over_free_bricks<S: Dimensional>(last: bool) {
     for (speed, step, solver) in [
         (0.2, 1e-3, ""),
@@ -146,7 +150,8 @@ fn free_bricks_are_one_floor() {
     }
 }
 
-/// Where the alert distance is small for the bricks they sink by more than counts as flush, and the box may be stopped by the next one: that is told.
+/// Where the alert distance is small for the bricks they sink by more than counts as flush, and the
+/// box may be stopped by the next one: that is told.
 #[test]
 fn an_edge_of_the_solution_is_told() {
     let mut told = 0;

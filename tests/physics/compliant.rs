@@ -1,4 +1,5 @@
-//! Compliant contacts against closed forms: force, impact, chain, partial slip; energy; every method of the solver.
+//! Compliant contacts against closed forms: force, impact, chain, partial slip; energy; every
+//! method of the solver.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -74,7 +75,8 @@ fn near(got: f64, wanted: f64, share: f64) {
     );
 }
 
-/// A ball at rest under its weight: P = 4/3 E* sqrt(R) d^(3/2); a disk: P = pi/4 E* d (K. L. Johnson, Contact Mechanics, 4.2).
+/// A ball at rest under its weight: P = 4/3 E* sqrt(R) d^(3/2); a disk: P = pi/4 E* d (K. L.
+/// Johnson, Contact Mechanics, 4.2).
 #[test]
 fn a_body_at_rest_has_the_overlap_of_its_weight() {
     let parameters = moduli("restitution: 0.05, mu: 0.3");
@@ -112,8 +114,8 @@ fn a_body_at_rest_has_the_overlap_of_its_weight() {
     );
 }
 
-/// Two equal balls that meet: the time of contact 2.868 (m*^2/(R E*^2 v))^(1/5) (K. L. Johnson, eq. 11.25), and the restitution asked for.
-/// The loss of the scheme is of first order in the step.
+/// Two equal balls that meet: the time of contact 2.868 (m*^2/(R E*^2 v))^(1/5) (K. L. Johnson, eq.
+/// 11.25), and the restitution asked for. The loss of the scheme is of first order in the step.
 #[test]
 fn an_impact_lasts_and_rebounds_as_hertz_says() {
     let impact = |restitution: f64, step: f64| {
@@ -151,8 +153,8 @@ fn an_impact_lasts_and_rebounds_as_hertz_says() {
     }
 }
 
-/// A chain of n balls between walls, pressed together: the lowest frequency is 2 sqrt(k/m) sin(pi/(2 (n + 1))), which is the speed of
-/// sound of long waves, 2 R sqrt(k/m).
+/// A chain of n balls between walls, pressed together: the lowest frequency is 2 sqrt(k/m)
+/// sin(pi/(2 (n + 1))), which is the speed of sound of long waves, 2 R sqrt(k/m).
 #[test]
 fn a_chain_has_the_speed_of_sound_of_its_springs() {
     const N: usize = 20;
@@ -184,7 +186,8 @@ fn a_chain_has_the_speed_of_sound_of_its_springs() {
     let amplitude = |s: &Simulation<Dim3>| -> f64 {
         (0..N).map(|i| s.state.bodies.velocity[i].x * wave(i)).sum()
     };
-    // The velocity of the mode is a cosine: its first zero is a quarter of a period, its second three quarters.
+    // The velocity of the mode is a cosine: its first zero is a quarter of a period, its second
+    // three quarters.
     let (mut zeros, mut last) = (Vec::new(), amplitude(&s));
     while zeros.len() < 2 {
         steps(&mut s, 1);
@@ -198,8 +201,8 @@ fn a_chain_has_the_speed_of_sound_of_its_springs() {
     near(PI / (zeros[1] - zeros[0]), wanted, 1e-3);
 }
 
-/// A ball pressed on a plate that moves to and fro by less than slip needs: the loop of Mindlin and Deresiewicz, K. L. Johnson, eq.
-/// 7.57, with the compliances (2 - nu)/G of both bodies.
+/// A ball pressed on a plate that moves to and fro by less than slip needs: the loop of Mindlin and
+/// Deresiewicz, K. L. Johnson, eq. 7.57, with the compliances (2 - nu)/G of both bodies.
 #[test]
 fn a_tangential_loop_takes_the_energy_of_partial_slip() {
     let (mu, press, radius, nu) = (0.4, 100.0, 0.05, 0.3);
@@ -238,8 +241,8 @@ fn a_tangential_loop_takes_the_energy_of_partial_slip() {
     }
 }
 
-/// A ball pushed along a plate beyond friction moves as over a rigid contact, whatever the stiffness; what the springs hold falls with
-/// 1/k.
+/// A ball pushed along a plate beyond friction moves as over a rigid contact, whatever the
+/// stiffness; what the springs hold falls with 1/k.
 #[test]
 fn stiff_contacts_tend_to_rigid_ones() {
     let pushed = |law: &str, parameters: &str| {
@@ -315,7 +318,8 @@ fn every_method_serves_compliant_contacts() {
     }
 }
 
-/// Two balls that overlap at the start fly apart with the energy of their spring, which is booked as supplied.
+/// Two balls that overlap at the start fly apart with the energy of their spring, which is booked
+/// as supplied.
 #[test]
 fn overlaps_of_the_initial_state_bring_their_energy() {
     let (overlap, k) = (1e-4, 1e6);
@@ -337,7 +341,8 @@ fn overlaps_of_the_initial_state_bring_their_energy() {
     near(s.state.energy.scheme, stored - s.state.energy.kinetic, 1e-2);
 }
 
-/// A stiff Hertz contact finds its equilibrium in large steps too, k h^2/m of 30 to 3e4, and after a kick.
+/// A stiff Hertz contact finds its equilibrium in large steps too, k h^2/m of 30 to 3e4, and after
+/// a kick.
 #[test]
 fn stiff_contacts_come_to_rest_in_large_steps() {
     for step in [2e-4, 1e-3, 5e-3] {
@@ -361,8 +366,8 @@ fn stiff_contacts_come_to_rest_in_large_steps() {
     }
 }
 
-/// A ball hangs below a plate by an attraction of twice its weight, and does not creep along it when gravity is tilted: the spring
-/// carries what the attraction leaves of the weight.
+/// A ball hangs below a plate by an attraction of twice its weight, and does not creep along it
+/// when gravity is tilted: the spring carries what the attraction leaves of the weight.
 #[test]
 fn attraction_presses_a_spring() {
     let (k, angle) = (1e6, 0.1f64);
@@ -392,7 +397,8 @@ fn attraction_presses_a_spring() {
     assert!(speed < 1e-3 * weight / (k * 0.4), "{speed:e}");
 }
 
-/// Moduli come from the materials of the interface, in its order, unless the case gives them; a material without them is refused.
+/// Moduli come from the materials of the interface, in its order, unless the case gives them; a
+/// material without them is refused.
 #[test]
 fn moduli_come_from_the_materials() {
     let moduli = |first: &str, parameters: &str| {
@@ -433,8 +439,8 @@ fn moduli_come_from_the_materials() {
     );
 }
 
-/// Damped bonds in tension only on springs, with damage: they open, close, pull while closed and would push while open. What damping takes
-/// closes the ledger with any step.
+/// Damped bonds in tension only on springs, with damage: they open, close, pull while closed and
+/// would push while open. What damping takes closes the ledger with any step.
 #[test]
 fn damped_bonds_on_springs_keep_the_ledger() {
     for step in [1e-3, 1e-4, 1e-5] {

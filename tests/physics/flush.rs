@@ -1,4 +1,5 @@
-//! Convex shapes side by side are one surface, and what passes another body closer than it moves in a step passes it untouched.
+//! Convex shapes side by side are one surface, and what passes another body closer than it moves in
+//! a step passes it untouched.
 
 use crate::extremes::bench::{G, Sketch};
 use fretwork::geometry::convex::passing::{PairMotion, keep_ball_apart};
@@ -136,7 +137,8 @@ fn a_grain_slides_over_flush_blocks_as_over_one() {
     }
 }
 
-/// What is thrown past the corner of a block, or over it, at a clearance that is less than its displacement in a step.
+/// What is thrown past the corner of a block, or over it, at a clearance that is less than its
+/// displacement in a step.
 fn passes<S: Dimensional>(past: &str) {
     let (v, step) = (1.0, 1e-3);
     for share in [0.01, 0.1, 0.3, 0.7, 0.9] {
@@ -192,8 +194,8 @@ fn what_passes_a_corner_closer_than_it_moves_is_not_touched() {
     ));
 }
 
-/// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts: what holds it up acts upwards alone, whatever
-/// it is over.
+/// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts:
+/// what holds it up acts upwards alone, whatever it is over.
 fn slides_deep<S: Dimensional>(floor: &str, bodies: &str) {
     // They move less than the alert distance in a step.
     let rigid = ("coulomb", String::new(), 5e-4);
@@ -230,7 +232,8 @@ fn slides_deep<S: Dimensional>(floor: &str, bodies: &str) {
                     S::D
                 );
                 println!("{what}");
-                // A box on springs of which there are more over a joint rocks, and its weight has a part along its own faces.
+                // A box on springs of which there are more over a joint rocks, and its weight has a
+                // part along its own faces.
                 let bound = if ball || contact == "coulomb" {
                     1e-8
                 } else {
@@ -252,8 +255,8 @@ fn a_grain_slides_over_flush_blocks_in_which_it_lies_a_little() {
     }
 }
 
-/// The next block is higher by 1 % or 10 % of the height of a box that slides into it, deep in the first one: it is stopped, also where a tread of a
-/// tenth of that is before it.
+/// The next block is higher by 1 % or 10 % of the height of a box that slides into it, deep in the
+/// first one: it is stopped, also where a tread of a tenth of that is before it.
 fn stops_at_a_step<S: Dimensional>() {
     let rigid = ("coulomb", String::new(), 1e-3);
     let springs = [1e6, 1e7].map(|stiffness: f64| {
@@ -328,8 +331,9 @@ const TOLERANCES: ContactTolerances = ContactTolerances {
     held: false,
 };
 
-/// The gap of the lowest corner of `over`, 2.5 m above the middle of `block` and shifted along the plane of its upper face, is among those of the
-/// points on that plane, whichever of both is the candidate.
+/// The gap of the lowest corner of `over`, 2.5 m above the middle of `block` and shifted along the
+/// plane of its upper face, is among those of the points on that plane, whichever of both is the
+/// candidate.
 fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[S::Vector]) {
     let up = S::D - 1;
     let lowest = |heights: &mut dyn Iterator<Item = f64>| heights.fold(f64::INFINITY, f64::min);
@@ -362,7 +366,8 @@ fn lowest_corner_is_found<S: Space>(block: &S::Core, over: &S::Core, corners: &[
     }
 }
 
-/// A body that is turned over the edge of a face is kept above the plane of the face by its lowest corner, which is beside it.
+/// A body that is turned over the edge of a face is kept above the plane of the face by its lowest
+/// corner, which is beside it.
 #[test]
 fn the_points_on_a_plane_have_the_lowest_corner() {
     let block = Polyhedron::cuboid([2.0; 3]);
@@ -379,8 +384,8 @@ fn the_points_on_a_plane_have_the_lowest_corner() {
     lowest_corner_is_found::<Dim2>(&square, &turned, turned.points());
 }
 
-/// The plane that takes the place of the nearest points of a ball and a core that turns leaves more room at the end of the step, over all
-/// corners of the core.
+/// The plane that takes the place of the nearest points of a ball and a core that turns leaves more
+/// room at the end of the step, over all corners of the core.
 #[test]
 fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
     let mut rng = Pcg64::seed_from_u64(31);
@@ -429,7 +434,8 @@ fn a_plane_for_a_ball_leaves_more_room_beside_all_corners() {
     assert!(taken > 100, "{taken}");
 }
 
-/// As low an edge of bodies that stand still is one of the case: it stops a box, and the solution is not blamed.
+/// As low an edge of bodies that stand still is one of the case: it stops a box, and the solution
+/// is not blamed.
 #[test]
 fn an_edge_of_the_case_is_none_of_the_solution() {
     let floor = [

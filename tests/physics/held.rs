@@ -1,4 +1,5 @@
-//! Contacts that hold each other: columns of springs between fixed plates, and stacks of unlike weights.
+//! Contacts that hold each other: columns of springs between fixed plates, and stacks of unlike
+//! weights.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -10,7 +11,8 @@ use std::path::Path;
 /// Gravity (m/s^2).
 const G: f64 = 9.81;
 
-/// A column of grains with springs, squeezed between fixed plates so that each contact overlaps by the same.
+/// A column of grains with springs, squeezed between fixed plates so that each contact overlaps by
+/// the same.
 fn column<S: Dimensional>(grains: usize, law: &str, rest: &str) -> Simulation<S> {
     let at = |z: f64| {
         if S::D == 2 {
@@ -77,8 +79,9 @@ fn stays<S: Dimensional>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
     }
 }
 
-/// All forces are k times the overlap, to the error that the tolerance permits (a hundredth of the work), from the first step on: what
-/// balances each other leaves no velocity by which an error could be measured, and is no error.
+/// All forces are k times the overlap, to the error that the tolerance permits (a hundredth of the
+/// work), from the first step on: what balances each other leaves no velocity by which an error
+/// could be measured, and is no error.
 #[test]
 fn a_column_of_springs_holds_itself() {
     for (grains, stiffness) in [(1, 1e6), (3, 1e6), (3, 1e4), (10, 1e6), (30, 1e5)] {
@@ -108,7 +111,8 @@ struct Standing {
     sweeps: f64,
 }
 
-/// Stacks, 1 m apart, of five cubes of 0.2 m with one of another density on top, a little off their axis.
+/// Stacks, 1 m apart, of five cubes of 0.2 m with one of another density on top, a little off their
+/// axis.
 fn stand(density: f64, stacks: usize, tolerance: f64, time: f64) -> Standing {
     let (mut cubes, mut tops) = (Vec::new(), Vec::new());
     let mass = density * 0.008;
@@ -164,10 +168,12 @@ fn stand(density: f64, stacks: usize, tolerance: f64, time: f64) -> Standing {
     }
 }
 
-/// Blocks at rest stay at the default tolerance, within a fiftieth of their size in five seconds, whatever lies on top, and a tenth of the tolerance
-/// leaves a tenth of that. (Without the part of the error that counts powers of either sign, the top moved by 20 mm under a ratio of 1000.) Stacks
-/// that do not touch each other stand as one alone does: what they get wrong together was shared out among all of their contacts, and sixteen
-/// under a ratio of 1000 fell, with a third of the kinetic energy of a step of free fall after half a second.
+/// Blocks at rest stay at the default tolerance, within a fiftieth of their size in five seconds,
+/// whatever lies on top, and a tenth of the tolerance leaves a tenth of that. (Without the part of
+/// the error that counts powers of either sign, the top moved by 20 mm under a ratio of 1000.)
+/// Stacks that do not touch each other stand as one alone does: what they get wrong together was
+/// shared out among all of their contacts, and sixteen under a ratio of 1000 fell, with a third of
+/// the kinetic energy of a step of free fall after half a second.
 #[test]
 fn light_blocks_carry_heavy_ones() {
     for (ratio, stacks, tolerance, time, bound) in [
@@ -191,8 +197,9 @@ fn light_blocks_carry_heavy_ones() {
     }
 }
 
-/// A ball that attraction holds to a plate in steady motion carries nothing, and costs no sweeps: what rounding and the tolerance leave of its
-/// impulses, beside a ball that is pressed on a floor, is no error of the step. With friction, which the plate's motion along itself needs once.
+/// A ball that attraction holds to a plate in steady motion carries nothing, and costs no sweeps:
+/// what rounding and the tolerance leave of its impulses, beside a ball that is pressed on a floor,
+/// is no error of the step. With friction, which the plate's motion along itself needs once.
 #[test]
 fn a_grain_that_sticks_to_a_moving_plate_is_no_error() {
     let text = r#"(

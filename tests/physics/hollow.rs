@@ -1,5 +1,5 @@
-//! What swings and turns in hollow bodies stays on them: closed forms of the pendulum, of rolling, and of a wall that carries its
-//! grains round.
+//! What swings and turns in hollow bodies stays on them: closed forms of the pendulum, of rolling,
+//! and of a wall that carries its grains round.
 
 use crate::extremes::bench::{G, Sketch, place};
 use fretwork::geometry::space::{Dim2, Dim3};
@@ -11,7 +11,8 @@ const DRUM: f64 = 0.5;
 const GRAIN: f64 = 0.07;
 const ARM: f64 = DRUM - GRAIN;
 
-/// Complete elliptic integral of the first kind of the modulus k, by the arithmetic-geometric mean (Abramowitz and Stegun, 17.6).
+/// Complete elliptic integral of the first kind of the modulus k, by the arithmetic-geometric mean
+/// (Abramowitz and Stegun, 17.6).
 fn elliptic(k: f64) -> f64 {
     let (mut a, mut b) = (1.0f64, (1.0 - k * k).sqrt());
     for _ in 0..10 {
@@ -41,8 +42,9 @@ fn swinging<S: Dimensional>(amplitude: f64, mu: f64, step: f64) -> Simulation<S>
     })
 }
 
-/// Follows a swing: how far the centre leaves its circle, over the grain's radius, how much energy is lost, as a share of that between
-/// amplitude and bottom, and the times at which it is at the bottom.
+/// Follows a swing: how far the centre leaves its circle, over the grain's radius, how much energy
+/// is lost, as a share of that between amplitude and bottom, and the times at which it is at the
+/// bottom.
 struct Swing {
     out: f64,
     lost: f64,
@@ -75,9 +77,10 @@ fn swing<S: Dimensional>(s: &mut Simulation<S>, end: f64) -> Swing {
     found
 }
 
-/// Frictionless, the centre is a pendulum of length R - r: T = 4 sqrt(L/g) K(sin(amplitude/2)). Rolling, the inertia about the contact
-/// takes the place of the mass: T is longer by sqrt(1 + I/(m r^2)). At rest, at the amplitude, rolling takes
-/// mu = tan(amplitude)/(1 + m r^2/I), 0.86 for a disk.
+/// Frictionless, the centre is a pendulum of length R - r: T = 4 sqrt(L/g) K(sin(amplitude/2)).
+/// Rolling, the inertia about the contact takes the place of the mass: T is longer by sqrt(1 + I/(m
+/// r^2)). At rest, at the amplitude, rolling takes mu = tan(amplitude)/(1 + m r^2/I), 0.86 for a
+/// disk.
 fn keeps_swinging<S: Dimensional>(end: f64, step: f64) {
     let amplitude: f64 = 1.2;
     let inertia = if S::D == 2 { 0.5 } else { 0.4 };
@@ -114,7 +117,8 @@ fn a_sphere_swings_in_a_cylinder() {
     keeps_swinging::<Dim3>(20.0, 1e-3);
 }
 
-/// The start of the swing above is 1.2 rad from the bottom. Off the wall, without gravity, it goes round with the speed that it has.
+/// The start of the swing above is 1.2 rad from the bottom. Off the wall, without gravity, it goes
+/// round with the speed that it has.
 #[test]
 fn a_disk_goes_round_a_drum_with_the_speed_that_it_has() {
     let mut s = build::<Dim2>(&Sketch {
@@ -141,8 +145,9 @@ fn a_disk_goes_round_a_drum_with_the_speed_that_it_has() {
     assert!((s.state.bodies.velocity[0].norm() / 2.0 - 1.0).abs() < 1e-5);
 }
 
-/// A box of planes and one of convex shapes that turn: what lies on their walls goes round with them, at m w^2 r. A disk in the middle of a
-/// wall is not stable: rolling, it leaves by exp(w t sqrt(2/3)), so that it is followed for a turn only.
+/// A box of planes and one of convex shapes that turn: what lies on their walls goes round with
+/// them, at m w^2 r. A disk in the middle of a wall is not stable: rolling, it leaves by exp(w t
+/// sqrt(2/3)), so that it is followed for a turn only.
 #[test]
 fn turning_walls_carry_their_grains_round() {
     let (turns, r) = (6.0, 0.02);
@@ -191,8 +196,8 @@ fn turning_walls_carry_their_grains_round() {
     }
 }
 
-/// A disk that slides without friction from the top of a fixed one leaves it where cos = 2/3 of the speed at rest there; until then its
-/// energy is kept.
+/// A disk that slides without friction from the top of a fixed one leaves it where cos = 2/3 of the
+/// speed at rest there; until then its energy is kept.
 #[test]
 fn a_disk_leaves_another_one_at_two_thirds() {
     let start: f64 = 0.02;

@@ -1,5 +1,6 @@
-//! Contacts of bodies whose motion is imposed: springs, bonds and dampers carry what their laws say of the places and velocities that are
-//! given, the drives feel it, and their work is what springs store and friction takes.
+//! Contacts of bodies whose motion is imposed: springs, bonds and dampers carry what their laws say
+//! of the places and velocities that are given, the drives feel it, and their work is what springs
+//! store and friction takes.
 
 use fretwork::bodies::Driven;
 use fretwork::geometry::space::{Dim2, Dim3};
@@ -12,7 +13,8 @@ use std::path::Path;
 
 const RADIUS: f64 = 0.02;
 
-/// A ball over a plate that stays; `dofs` are those of the ball. Interfaces are given with their parameters.
+/// A ball over a plate that stays; `dofs` are those of the ball. Interfaces are given with their
+/// parameters.
 fn ball<S: Dimensional>(interface: &str, step: f64, dofs: &str, more: &str) -> Simulation<S> {
     let (normal, place) = match S::D {
         2 => ("[0.0, 1.0]", format!("[0.0, {RADIUS:?}]")),
@@ -74,8 +76,9 @@ const HERTZ: &str = r#"contact: "hertz-mindlin", parameters: (contact: {
 
 const PUSH: &str = "Displacement(Ramp(from: 0.0, to: -2e-6, start: 0.0, end: 0.01))";
 
-/// F = 4/3 E* sqrt(R) d^(3/2), its work 2/5 F d; a cylinder F = pi/4 E* d, and F d/2 (K. L. Johnson, Contact Mechanics, 4.2). By every
-/// method; when the ball is drawn back the force is gone, and does not pull.
+/// F = 4/3 E* sqrt(R) d^(3/2), its work 2/5 F d; a cylinder F = pi/4 E* d, and F d/2 (K. L.
+/// Johnson, Contact Mechanics, 4.2). By every method; when the ball is drawn back the force is
+/// gone, and does not pull.
 #[test]
 fn an_imposed_indentation_is_that_of_hertz() {
     let (modulus, depth) = (7e10 / (2.0 * (1.0 - 0.33 * 0.33)), 2e-6f64);
@@ -135,7 +138,8 @@ fn an_imposed_drag_has_the_friction_of_its_spring() {
     near(work, mu * k * depth * speed * 0.01 * 2f64.sqrt(), 1e-9);
 }
 
-/// A ball that turns on an axle which is held presses a spring; another is free along one axis alone.
+/// A ball that turns on an axle which is held presses a spring; another is free along one axis
+/// alone.
 #[test]
 fn a_ball_on_an_axle_is_pressed_and_turned() {
     let (k, depth, mu) = (1e6, 1e-5, 0.25);
@@ -196,7 +200,8 @@ fn an_imposed_opening_pulls_a_bond() {
     near(felt(&still).0.x, -1e12 * 1e-7 * a, 1e-3);
 }
 
-/// A body of finite elements whose upper side is in a holder, under a ball that is pushed into it: no point that the ball touches can move.
+/// A body of finite elements whose upper side is in a holder, under a ball that is pushed into it:
+/// no point that the ball touches can move.
 #[test]
 fn a_held_side_of_a_deformable_body_presses_a_spring() {
     let text = r#"(

@@ -18,7 +18,8 @@ fn axes<S: Dimensional>(up: f64) -> Vec<f64> {
 
 /// A bonded layer of grains between a floor and a lid that presses and slides.
 fn layer<S: Dimensional>() -> CaseBuilder<S> {
-    // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and how high they stand.
+    // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and how high they
+    // stand.
     let rise = 4e-3 * 0.75f64.sqrt();
     let (count, top) = if S::D == 2 {
         (36, 4e-3 + 2.0 * rise)

@@ -85,7 +85,8 @@ fn a_block_slides_at_atan_mu_or_topples_at_atan_of_its_shape() {
             let found = s.state.bodies.velocity[0].x / s.state.time;
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
         } else {
-            // About the lower corner: (b^2 + h^2)/3 alpha = g (h sin - b cos)/2, growing little at first.
+            // About the lower corner: (b^2 + h^2)/3 alpha = g (h sin - b cos)/2, growing little at
+            // first.
             let s = run(critical + 0.1, 0.02);
             let expected = -0.5 * G * (h * a.sin() - b * a.cos()) / ((b * b + h * h) / 3.0);
             let found = s.state.bodies.spin[0][0] / s.state.time;
@@ -150,8 +151,8 @@ fn a_tower_carries_its_weight_and_a_leaning_one_falls_where_it_should() {
     }
 }
 
-/// Limit thickness over radius of a semicircular arch; limit analysis of rigid blocks that do not slide, of
-/// which 27 and more approach Milankovitch's 0.1075.
+/// Limit thickness over radius of a semicircular arch; limit analysis of rigid blocks that do not
+/// slide, of which 27 and more approach Milankovitch's 0.1075.
 #[test]
 fn an_arch_stands_above_its_least_thickness_and_falls_below() {
     let curved = [(5, 0.09661), (7, 0.09624), (11, 0.10491), (27, 0.10678)];
@@ -174,7 +175,8 @@ fn an_arch_stands_above_its_least_thickness_and_falls_below() {
 
 #[test]
 fn an_arch_needs_friction() {
-    // 27 straight blocks: mu 0.32 asks for t/R = 0.184, 0.38 for 0.121; below 0.30 none stands up to 0.4.
+    // 27 straight blocks: mu 0.32 asks for t/R = 0.184, 0.38 for 0.121; below 0.30 none stands up
+    // to 0.4.
     for (mu, thickness, falls) in [(0.5, 0.12, false), (0.32, 0.12, true), (0.28, 0.3, true)] {
         let sets = [
             format!("interfaces.joints.parameters.contact.mu={mu}"),

@@ -13,7 +13,8 @@ struct Left {
     released: f64,
 }
 
-/// The bond of the verification cases between disks of radius 1 m, whose upper one moves as given, after `steps` steps of 20 ms in all.
+/// The bond of the verification cases between disks of radius 1 m, whose upper one moves as given,
+/// after `steps` steps of 20 ms in all.
 fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
     let mut sets = vec![
@@ -41,8 +42,8 @@ fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
 /// Three pulls, each further than the one before.
 const PULLS: &str = "(x: Velocity(Constant(0.0)), rz: Fixed, y: Displacement(Table([(0.0, 0.0), (0.004, 6e-6), (0.008, 1e-6), (0.012, 7e-6), (0.016, 1e-6), (0.02, 8e-6)])))";
 
-/// Openings that are given leave nothing to the coupling: damage and internal variables are those of explicit coupling, to the last bit, so that a
-/// prediction leaves no trace in them.
+/// Openings that are given leave nothing to the coupling: damage and internal variables are those
+/// of explicit coupling, to the last bit, so that a prediction leaves no trace in them.
 #[test]
 fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
     let elastic = [
@@ -89,8 +90,8 @@ fn a_prediction_leaves_no_trace_in_the_variables_of_a_law() {
     }
 }
 
-/// A pull with a turn: shear, tension and a bending moment of the same bond. What it releases converges with the second order of the
-/// step, that of explicit coupling with the first.
+/// A pull with a turn: shear, tension and a bending moment of the same bond. What it releases
+/// converges with the second order of the step, that of explicit coupling with the first.
 #[test]
 fn what_a_turned_bond_releases_is_of_the_second_order() {
     let dofs =

@@ -1,4 +1,5 @@
-//! Damage laws that read the load of a contact, at the middle of a step: it is predicted under the impulses of the step before.
+//! Damage laws that read the load of a contact, at the middle of a step: it is predicted under the
+//! impulses of the step before.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::laws::{BuiltInLaws, SearchPath};
@@ -51,7 +52,8 @@ fn laws() -> SearchPath {
     SearchPath::new(&[]).with_built_in(laws)
 }
 
-/// A ball (2D: disk) on a fixed one, pressed by a pressure over the area of their bond and sheared at a velocity (m/s).
+/// A ball (2D: disk) on a fixed one, pressed by a pressure over the area of their bond and sheared
+/// at a velocity (m/s).
 fn sheared<S: Dimensional>(
     damage: &str,
     coupling: &str,
@@ -175,7 +177,8 @@ fn a_bond_under_pressure_breaks_at_the_envelope_in_space() {
     breaks_at_the_envelope::<Dim3>();
 }
 
-/// Energy released while a bond softens from a strength that grows with the pressure, to an opening of 3.1e-5 m.
+/// Energy released while a bond softens from a strength that grows with the pressure, to an opening
+/// of 3.1e-5 m.
 fn released(coupling: &str, pressure: &str, steps: u32) -> f64 {
     let path = laws();
     let step = 3.1e-2 / f64::from(steps);
@@ -187,16 +190,17 @@ fn released(coupling: &str, pressure: &str, steps: u32) -> f64 {
     s.state.energy.fracture
 }
 
-/// Under a constant pressure the coupling keeps its second order. Under one that changes, the load of the step before is behind by a step, and what
-/// is released is off by the first order, by less than that of explicit coupling.
+/// Under a constant pressure the coupling keeps its second order. Under one that changes, the load
+/// of the step before is behind by a step, and what is released is off by the first order, by less
+/// than that of explicit coupling.
 #[test]
 fn the_order_of_the_coupling_under_pressure() {
     let counts = [200, 400, 800];
     let errors = |coupling: &str, pressure: &str, exact: f64| {
         counts.map(|n| released(coupling, pressure, n) / exact - 1.0)
     };
-    // The area under the curve to 3.1e-5 m less what is stored there, with a strength of 0.8 MPa: 14.9875 - 3.4875 J/m^2; the shear turns the normal
-    // by 8e-5, and so changes the load.
+    // The area under the curve to 3.1e-5 m less what is stored there, with a strength of 0.8 MPa:
+    // 14.9875 - 3.4875 J/m^2; the shear turns the normal by 8e-5, and so changes the load.
     let constant = format!("Constant({:e})", -PRESSURE * 0.1);
     let exact = released("Midpoint", &constant, 12_800);
     assert!((exact / 1.15 - 1.0).abs() < 2e-5, "{exact}");

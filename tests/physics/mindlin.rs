@@ -1,5 +1,6 @@
-//! Tangential forces of compliant contacts under loads that change: against an integration annulus by annulus; friction takes energy in
-//! every step, and its bound is that of the force with damping.
+//! Tangential forces of compliant contacts under loads that change: against an integration annulus
+//! by annulus; friction takes energy in every step, and its bound is that of the force with
+//! damping.
 
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
@@ -76,8 +77,9 @@ fn led(law: &str, path: Path3, count: usize) -> Simulation<Dim3> {
     )
 }
 
-/// The tangential force of springs side by side, each followed by itself: at the radius x the pressure 2 E* (d - x^2/R) and the tangential
-/// stiffness 8 G* per width, |q| <= mu p (Cattaneo and Mindlin for any history, as a sum over flat punches: M. Ciavarella, J. Jaeger).
+/// The tangential force of springs side by side, each followed by itself: at the radius x the
+/// pressure 2 E* (d - x^2/R) and the tangential stiffness 8 G* per width, |q| <= mu p (Cattaneo and
+/// Mindlin for any history, as a sum over flat punches: M. Ciavarella, J. Jaeger).
 struct Annuli {
     at: Vec<[f64; 2]>,
     width: f64,
@@ -180,7 +182,8 @@ fn oblique(t: f64) -> [f64; 3] {
     ]
 }
 
-/// Forces along paths of overlap and displacement against the annuli, at a friction of which a part slips, all, and none.
+/// Forces along paths of overlap and displacement against the annuli, at a friction of which a part
+/// slips, all, and none.
 #[test]
 fn forces_follow_any_history_of_load_and_displacement() {
     let paths: [(&str, Path3); 4] = [
@@ -216,8 +219,9 @@ fn forces_follow_any_history_of_load_and_displacement() {
     }
 }
 
-/// T of a contact that sticks falls with the radius of the contact: 6.30 N at 2 um, 6.30/sqrt(2) N at 1 um, and what the springs held of that
-/// part, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction. At mu = 10 the rim slips a little, where the pressure vanishes: the annuli have 1 % less.
+/// T of a contact that sticks falls with the radius of the contact: 6.30 N at 2 um, 6.30/sqrt(2) N
+/// at 1 um, and what the springs held of that part, (1 - 1/sqrt(2)) T^2/(2 k_0), is friction. At
+/// mu = 10 the rim slips a little, where the pressure vanishes: the annuli have 1 % less.
 #[test]
 fn a_lifted_contact_carries_less() {
     const COUNT: usize = 2000;
@@ -246,8 +250,9 @@ fn a_lifted_contact_carries_less() {
     );
 }
 
-/// Wear by slip counts the displacement that is not elastic, delta - T/k_0: under a constant load 4 (D - T_D/k_0) in a loop of amplitude D,
-/// T_D = mu P (1 - (1 - D/D_s)^1.5) (Mindlin and Deresiewicz).
+/// Wear by slip counts the displacement that is not elastic, delta - T/k_0: under a constant load 4
+/// (D - T_D/k_0) in a loop of amplitude D, T_D = mu P (1 - (1 - D/D_s)^1.5) (Mindlin and
+/// Deresiewicz).
 #[test]
 fn wear_counts_the_slip_of_partial_slip() {
     const COUNT: usize = 4000;
@@ -284,8 +289,9 @@ fn wear_counts_the_slip_of_partial_slip() {
     assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
 }
 
-/// A sphere (a disk) that meets a plate and slides throughout: the impulse of friction is mu times that along the normal, by which it
-/// turns, omega = 5 mu (1 + e) v_n/(2 R) (a disk 2 mu (1 + e) v_n/R).
+/// A sphere (a disk) that meets a plate and slides throughout: the impulse of friction is mu times
+/// that along the normal, by which it turns, omega = 5 mu (1 + e) v_n/(2 R) (a disk 2 mu (1 + e)
+/// v_n/R).
 #[test]
 fn friction_is_that_of_the_force_with_its_damping() {
     const MU: f64 = 0.1;
@@ -325,7 +331,8 @@ fn friction_is_that_of_the_force_with_its_damping() {
             (&stiff, thrown::<Dim2>(&stiff, 0.5)),
         ] {
             let (slowed, turned) = found;
-            // Under much damping it sticks for a moment, until its spring has the force of friction.
+            // Under much damping it sticks for a moment, until its spring has the force of
+            // friction.
             let allowed = if e < 0.3 { 0.03 } else { 0.01 };
             assert!((slowed - 1.0).abs() < allowed, "{e} {law}: {slowed}");
             assert!((turned - 1.0).abs() < allowed, "{e} {law}: {turned}");
@@ -333,8 +340,9 @@ fn friction_is_that_of_the_force_with_its_damping() {
     }
 }
 
-/// No compliant law makes energy by friction on a rough path through contact, slip and separation: linear springs take some in every step.
-/// The profile of `hertz-mindlin`, which keeps few corners, gives back little of what it has taken.
+/// No compliant law makes energy by friction on a rough path through contact, slip and separation:
+/// linear springs take some in every step. The profile of `hertz-mindlin`, which keeps few corners,
+/// gives back little of what it has taken.
 #[test]
 fn friction_of_springs_takes_energy() {
     fn rough(t: f64) -> [f64; 3] {

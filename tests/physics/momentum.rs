@@ -30,8 +30,8 @@ fn momentum<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin, [f64; 2]) {
     (linear, angular, sizes)
 }
 
-/// Takes steps, in some of which contacts act; returns how far momentum drifted, over the sums of the sizes at the start. The ledger says the
-/// same.
+/// Takes steps, in some of which contacts act; returns how far momentum drifted, over the sums of
+/// the sizes at the start. The ledger says the same.
 fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     let (linear, angular, sizes) = momentum(s);
     let mut acted = 0;
@@ -55,7 +55,8 @@ fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
     [found[0] / sizes[0], found[1] / sizes[1]]
 }
 
-/// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come together at a rate (1/s), and turn.
+/// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come
+/// together at a rate (1/s), and turn.
 fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
     let places = [
         ([0.0, 0.0, 0.0], 0.010),
@@ -91,9 +92,10 @@ fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation
     ))
 }
 
-/// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is kept to rounding. Rigid balls, which come
-/// together by 8e-4 of their radius in a step, act on their surfaces, which are apart by what the step leaves of their gap: what they lose is less than
-/// that over their radius.
+/// Every shipped law in its slot. Where a bond, a spring or an attraction acts, angular momentum is
+/// kept to rounding. Rigid balls, which come together by 8e-4 of their radius in a step, act on
+/// their surfaces, which are apart by what the step leaves of their gap: what they lose is less
+/// than that over their radius.
 fn every_law<S: Dimensional>() {
     let laws = built_in();
     let mut count = 0;
@@ -144,7 +146,8 @@ fn every_law_keeps_the_momentum_of_an_isolated_cluster_in_space() {
     every_law::<Dim3>();
 }
 
-/// Two balls on a bond over a gap that turn about each other twice: neither is anything lost, nor does a turn as a whole shear the bond.
+/// Two balls on a bond over a gap that turn about each other twice: neither is anything lost, nor
+/// does a turn as a whole shear the bond.
 fn turning_pair<S: Dimensional>(gap: f64, bond: &str) {
     let (radius, rate) = (0.01, 20.0);
     let half = radius * (1.0 + 0.5 * gap);

@@ -37,9 +37,9 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     problems
 }
 
-/// Where sliding contacts fell behind their thresholds, stick and slip alternated in every iteration and the
-/// conjugate gradients were no faster than the plain ones. In the median over several steps: in a single one any of the methods may
-/// stagnate.
+/// Where sliding contacts fell behind their thresholds, stick and slip alternated in every
+/// iteration and the conjugate gradients were no faster than the plain ones. In the median over
+/// several steps: in a single one any of the methods may stagnate.
 #[test]
 fn conjugate_gradients_are_faster_than_sweeps() {
     for mu in ["0", "0.1", "0.4"] {

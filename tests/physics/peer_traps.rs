@@ -1,6 +1,6 @@
 //! Three traps of a peer (LMGC90 on the scenes of `cases/benchmarks/`), which ours must not have:
-//! absolute thresholds, a norm that calls a packing solved before the load has crossed it, and threads
-//! that change the results.
+//! absolute thresholds, a norm that calls a packing solved before the load has crossed it, and
+//! threads that change the results.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -19,8 +19,8 @@ fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
         .simulation
 }
 
-/// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is the same
-/// and every operation only changes exponents.
+/// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is the
+/// same and every operation only changes exponents.
 fn shrink(s: &mut Simulation<Dim2>) {
     let (length, time) = (2f64.powi(-20), 2f64.powi(-10));
     let b = &mut s.state.bodies;
@@ -84,7 +84,8 @@ fn carried(s: &Simulation<Dim2>) -> f64 {
 
 #[test]
 fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
-    // After as many sweeps as the peer's first step took, and no more relaxed, the walls carry 77.7 %.
+    // After as many sweeps as the peer's first step took, and no more relaxed, the walls carry 77.7
+    // %.
     let early = [
         "solver.method=Nlgs",
         "solver.max_iterations=6330",
@@ -109,7 +110,8 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
         carried(&s)
     );
 
-    // A tighter solution is nearer; grains that rattle in their cages fall freely and weigh on nothing.
+    // A tighter solution is nearer; grains that rattle in their cages fall freely and weigh on
+    // nothing.
     let mut s: Simulation<Dim2> = scene(
         "disks_box_5000",
         &["solver.max_iterations=200000", "solver.tolerance=1e-6"],
@@ -148,8 +150,9 @@ fn bits<S: Dimensional>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
     })
 }
 
-/// LMGC90 has broken 255 bonds of the cohesive scene after 251 steps; with its conventions for bonds, its step and its tolerance so
-/// does ours within 4 %: bonds act in the middle of their gaps here, there on the surface of each disk (`cases/benchmarks/README.md`).
+/// LMGC90 has broken 255 bonds of the cohesive scene after 251 steps; with its conventions for
+/// bonds, its step and its tolerance so does ours within 4 %: bonds act in the middle of their gaps
+/// here, there on the surface of each disk (`cases/benchmarks/README.md`).
 #[test]
 fn as_many_bonds_break_as_in_the_peer_with_its_conventions() {
     let mut s = scene::<Dim2>("cohesive_disks_3000_gap", &[]);

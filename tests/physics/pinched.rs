@@ -1,5 +1,5 @@
-//! Bodies held between others by friction alone, where contacts are hyperstatic: Coulomb's bound on the sum of the friction forces says whether
-//! they hang or fall.
+//! Bodies held between others by friction alone, where contacts are hyperstatic: Coulomb's bound on
+//! the sum of the friction forces says whether they hang or fall.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -19,7 +19,8 @@ fn least_friction() -> f64 {
     MASS * G / (2.0 * FORCE)
 }
 
-/// A body between two pads that are pressed together along x; names of the bodies with "held" are watched.
+/// A body between two pads that are pressed together along x; names of the bodies with "held" are
+/// watched.
 struct Pinched {
     bodies: String,
     /// Grains of the scene, as in a case.
@@ -205,8 +206,9 @@ fn flat_shapes() -> Vec<(&'static str, Pinched)> {
 /// Time of the runs (s): a body in free fall would be at 0.39 m/s and 7.8 mm.
 const TIME: f64 = 0.04;
 
-/// With 1.05 times the least friction what is pinched hangs: its displacement is within the error of the solution, at most the
-/// tolerance times some of the velocity p/m that the force of a pad would give it in a step, and that for all of the time.
+/// With 1.05 times the least friction what is pinched hangs: its displacement is within the error
+/// of the solution, at most the tolerance times some of the velocity p/m that the force of a pad
+/// would give it in a step, and that for all of the time.
 #[test]
 fn a_pinched_body_hangs_below_the_capacity_of_its_contacts() {
     let mu = 1.05 * least_friction();
@@ -271,8 +273,9 @@ fn several_solutions_are_reported() {
     assert!(!s.step().unwrap().solver.several);
 }
 
-/// Seventeen pinched capsules that have nothing to do with each other hang, and one does beside balls at rest on a floor, whose contacts are
-/// more than the search takes in one set; the number of solutions is told in the first step, and no set is too large.
+/// Seventeen pinched capsules that have nothing to do with each other hang, and one does beside
+/// balls at rest on a floor, whose contacts are more than the search takes in one set; the number
+/// of solutions is told in the first step, and no set is too large.
 #[test]
 fn what_is_pinched_hangs_whatever_else_there_is() {
     let mu = 1.05 * least_friction();
@@ -310,8 +313,8 @@ fn what_is_pinched_hangs_whatever_else_there_is() {
     }
 }
 
-/// Bodies that slide one by one on a floor are sets of their own: each has one solution, since its load is that of its weight, and the friction of
-/// a step is mu m g h whatever the others do.
+/// Bodies that slide one by one on a floor are sets of their own: each has one solution, since its
+/// load is that of its weight, and the friction of a step is mu m g h whatever the others do.
 #[test]
 fn blocks_that_slide_have_one_solution() {
     let blocks: Vec<String> = (0..20)
@@ -350,8 +353,9 @@ fn blocks_that_slide_have_one_solution() {
     }
 }
 
-/// Where a set is too large to search, a loaded contact of it that begins to slide is told: capsules that two pads hold between plates without gravity,
-/// and drop with it. Not while they hold, nor of fewer, nor of those that the pads hold themselves, whose sets are searched.
+/// Where a set is too large to search, a loaded contact of it that begins to slide is told:
+/// capsules that two pads hold between plates without gravity, and drop with it. Not while they
+/// hold, nor of fewer, nor of those that the pads hold themselves, whose sets are searched.
 #[test]
 fn sets_too_large_to_search_are_told() {
     let level = capsule([0.0, 1.0, 0.0]);
@@ -398,7 +402,8 @@ fn fallen<S: Dimensional>(s: Simulation<S>) -> f64 {
     fallen_but(s, &[])
 }
 
-/// The same of those that are not among these. If they fall it is told, before they are a tenth of a millimetre down.
+/// The same of those that are not among these. If they fall it is told, before they are a tenth of
+/// a millimetre down.
 fn fallen_but<S: Dimensional>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     let driven: Vec<usize> = (s.state.bodies.driven.iter())
         .map(|d| d.body as usize)
@@ -419,8 +424,9 @@ fn fallen_but<S: Dimensional>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     fallen
 }
 
-/// How far the lowest of balls or disks side by side falls in half a second (m), between two pads whose friction carries 1.3 times their weight;
-/// the force of the pads varies by a share of it, 20 times a second.
+/// How far the lowest of balls or disks side by side falls in half a second (m), between two pads
+/// whose friction carries 1.3 times their weight; the force of the pads varies by a share of it, 20
+/// times a second.
 fn debris_falls(dimension: usize, count: i32, solver: &str, varies: f64) -> f64 {
     let pinched = debris(dimension, count, varies);
     match dimension {
@@ -487,8 +493,9 @@ fn debris(dimension: usize, count: i32, varies: f64) -> Pinched {
     }
 }
 
-/// What friction can hold hangs from the first step, in sets of more contacts than those that are searched in every step: a sweep would load the
-/// first of them alone, and sweeps in one order from step to step would have what is left of rounding grow until one slides.
+/// What friction can hold hangs from the first step, in sets of more contacts than those that are
+/// searched in every step: a sweep would load the first of them alone, and sweeps in one order from
+/// step to step would have what is left of rounding grow until one slides.
 #[test]
 fn what_many_contacts_pinch_hangs() {
     for (dimension, count) in [(3, 40), (3, 127), (3, 500), (2, 34), (2, 60), (2, 127)] {
@@ -499,8 +506,9 @@ fn what_many_contacts_pinch_hangs() {
     }
 }
 
-/// Under a force that varies by a tenth, or beside what moves, the errors of a step move hyperstatic impulses until some slide at the default
-/// tolerance, which is told; Newton's method at 1e-6 leaves them.
+/// Under a force that varies by a tenth, or beside what moves, the errors of a step move
+/// hyperstatic impulses until some slide at the default tolerance, which is told; Newton's method
+/// at 1e-6 leaves them.
 #[test]
 fn what_many_contacts_pinch_hangs_or_is_told_to_fall() {
     for (dimension, count) in [(3, 127), (2, 34), (2, 60), (2, 127), (2, 129), (2, 500)] {

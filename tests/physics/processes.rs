@@ -1,5 +1,5 @@
-//! Processes beside a scene that is stepped by hand: what they do between steps survives a saved state and the end, and what
-//! their impulses send bodies through is reported.
+//! Processes beside a scene that is stepped by hand: what they do between steps survives a saved
+//! state and the end, and what their impulses send bodies through is reported.
 
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::process::{Process, ProcessError};
@@ -75,7 +75,8 @@ fn count(s: &Simulation<Dim2>) -> u64 {
     s.process::<Counter>().expect("the counter").0
 }
 
-/// A state that is saved directly after a step goes on with what was due between steps; and the last state is seen at the end.
+/// A state that is saved directly after a step goes on with what was due between steps; and the
+/// last state is seen at the end.
 #[test]
 fn what_is_due_between_steps_is_not_lost() {
     let mut s = two_grains();
@@ -100,7 +101,8 @@ fn what_is_due_between_steps_is_not_lost() {
     }
 }
 
-/// An impulse that sends a grain through another within the move before detection is reported; one that does not is not.
+/// An impulse that sends a grain through another within the move before detection is reported; one
+/// that does not is not.
 #[test]
 fn an_impulse_that_sends_a_grain_through_another_is_reported() {
     for (speed, told) in [(0.5, false), (160.0, true)] {

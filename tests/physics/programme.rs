@@ -74,8 +74,8 @@ fn close(obtained: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// A free grain under a gravity that turns by a right angle in a second: v = g (2/pi) (1, -1), and the ledger
-/// holds the work.
+/// A free grain under a gravity that turns by a right angle in a second: v = g (2/pi) (1, -1), and
+/// the ledger holds the work.
 #[test]
 fn gravity_turns() {
     let mut s = build::<Dim2>(
@@ -131,8 +131,8 @@ fn a_gate_vanishes() {
     assert!(s.state.network.contacts.is_empty());
 }
 
-/// A block is pushed for 0.2 s without friction, then slides freely with a friction of 0.3 until it rests: it
-/// takes v/(mu g), and the path is v^2/(2 mu g).
+/// A block is pushed for 0.2 s without friction, then slides freely with a friction of 0.3 until it
+/// rests: it takes v/(mu g), and the path is v^2/(2 mu g).
 #[test]
 fn phases_hand_the_state_over() {
     let mut s = build::<Dim2>(
@@ -280,8 +280,8 @@ fn a_sphere_swings_in_a_cylinder() {
     close(s.state.bodies.position[0].y, 0.3, 1e-9);
 }
 
-/// A block rubs to and fro under its weight, five cycles of a group of two phases: it ends where it began, and
-/// friction has taken mu m g along the whole path.
+/// A block rubs to and fro under its weight, five cycles of a group of two phases: it ends where it
+/// began, and friction has taken mu m g along the whole path.
 #[test]
 fn a_group_of_phases_is_repeated() {
     let (stroke, cycles) = (0.02, 5);
@@ -321,7 +321,8 @@ fn a_group_of_phases_is_repeated() {
     assert!(s.state.energy.relative_residual() < 1e-9);
 }
 
-/// A floor taps a grain three times: it flies for 2 V/g each time, and the next tap waits until it rests.
+/// A floor taps a grain three times: it flies for 2 V/g each time, and the next tap waits until it
+/// rests.
 #[test]
 fn taps_wait_for_rest() {
     let (v, held) = (0.3, 0.02);

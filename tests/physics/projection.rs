@@ -1,4 +1,5 @@
-//! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what stays.
+//! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what
+//! stays.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -43,7 +44,8 @@ fn close(got: f64, wanted: f64, off: f64) {
     assert!((got - wanted).abs() <= off, "{got:e} is not {wanted:e}");
 }
 
-/// Of two disks with masses 4 : 1 the light one goes four times as far, through a periodic boundary too.
+/// Of two disks with masses 4 : 1 the light one goes four times as far, through a periodic boundary
+/// too.
 #[test]
 fn two_disks_come_apart_by_their_masses_and_stay_at_rest() {
     for (period, shift) in [("", 0.0), ("periodic: (x: 1.0),", 0.95)] {
@@ -95,7 +97,8 @@ fn what_is_within_the_bound_stays() {
     assert!(report.projected.is_some());
 }
 
-/// Two disks sunk into each other and into the floor by d: they rise by d and 2 d, which takes 3 m g d.
+/// Two disks sunk into each other and into the floor by d: they rise by d and 2 d, which takes 3 m
+/// g d.
 #[test]
 fn a_column_is_lifted_and_its_weight_is_booked() {
     let [low, high] = [0.1 - DEPTH, 0.3 - 2.0 * DEPTH];
@@ -131,7 +134,8 @@ fn a_column_is_lifted_and_its_weight_is_booked() {
     assert!(e.residual.abs() < 1e-13 * given, "{:e}", e.residual);
 }
 
-/// A disk between a floor and a lid that a force presses: the lid is lifted against its load, the floor stays.
+/// A disk between a floor and a lid that a force presses: the lid is lifted against its load, the
+/// floor stays.
 #[test]
 fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     const LOAD: f64 = 50.0;
@@ -165,8 +169,8 @@ fn walls_that_are_fixed_stay_and_a_load_is_lifted() {
     assert!(e.residual.abs() < 1e-12 * e.scale, "{:e}", e.residual);
 }
 
-/// Two bonded disks, whose cement fills an overlap, are hit by a third: they keep their distance and their energy, and
-/// move as one.
+/// Two bonded disks, whose cement fills an overlap, are hit by a third: they keep their distance
+/// and their energy, and move as one.
 #[test]
 fn a_bond_that_holds_is_not_pulled_apart() {
     let second = 0.2 - DEPTH;
@@ -213,7 +217,8 @@ fn a_bond_that_holds_is_not_pulled_apart() {
     close(s.state.energy.kinetic, 0.0, 0.0);
 }
 
-/// A cuboid that spins about no axis of its own, a corner in a wall and leaving it: it turns, and no energy comes of it.
+/// A cuboid that spins about no axis of its own, a corner in a wall and leaving it: it turns, and
+/// no energy comes of it.
 #[test]
 fn a_body_whose_inertia_differs_by_axis_keeps_its_energy_as_it_is_turned() {
     let corner = Vector3::new(0.3f64, 0.2, 0.1) * 0.5;

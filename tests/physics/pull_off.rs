@@ -1,9 +1,13 @@
-//! Attraction that depends on the gap: the force at which it lets go and the work of separation, against closed forms, at several steps.
+//! Attraction that depends on the gap: the force at which it lets go and the work of separation,
+//! against closed forms, at several steps.
 //!
-//! JKR: 3 pi w R/2 under a force (K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324 (1971) 301-313); DMT: 2 pi w R, and z_0 times that as work of the
-//! law's force over the gap; van der Waals: A R/(6 z_0^2) and A R/(6 z_0), of parallel cylinders A sqrt(R)/(8 sqrt(2) z_0^(5/2)) and
-//! A sqrt(R)/(12 sqrt(2) z_0^(3/2)) (J. N. Israelachvili, Intermolecular and Surface Forces, chapter 13); linear adhesion: f, and f^2/(2 k); a liquid
-//! bridge: 2 pi gamma (2 R), and 2 pi gamma (2 R) lambda (1 - exp(-d/lambda)) up to the rupture at d = V^(1/3) (V. Richefeu et al., Phys. Rev. E 73 (2006) 051304).
+//! JKR: 3 pi w R/2 under a force (K. L. Johnson, K. Kendall, A. D. Roberts, Proc. R. Soc. A 324
+//! (1971) 301-313); DMT: 2 pi w R, and z_0 times that as work of the law's force over the gap; van
+//! der Waals: A R/(6 z_0^2) and A R/(6 z_0), of parallel cylinders A sqrt(R)/(8 sqrt(2) z_0^(5/2))
+//! and A sqrt(R)/(12 sqrt(2) z_0^(3/2)) (J. N. Israelachvili, Intermolecular and Surface Forces,
+//! chapter 13); linear adhesion: f, and f^2/(2 k); a liquid bridge: 2 pi gamma (2 R), and 2 pi
+//! gamma (2 R) lambda (1 - exp(-d/lambda)) up to the rupture at d = V^(1/3) (V. Richefeu et al.,
+//! Phys. Rev. E 73 (2006) 051304).
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -19,7 +23,8 @@ const COULOMB: &str = r#"contact: "coulomb", parameters: (contact: {"mu": 0.3}"#
 /// Springs as stiff as E* = 100 GPa makes them.
 const HERTZ: &str = r#"contact: "hertz-mindlin", parameters: (contact: {"young_1": 1.82e11, "young_2": 1.82e11, "poisson_1": 0.3, "poisson_2": 0.3, "restitution": 0.5, "mu": 0.3}"#;
 
-/// An attraction with its pull-off force (N; N/m in 2D), work of separation (J) from contact on, and range (m).
+/// An attraction with its pull-off force (N; N/m in 2D), work of separation (J) from contact on,
+/// and range (m).
 struct Attraction {
     law: &'static str,
     parameters: &'static str,
@@ -32,7 +37,8 @@ struct Attraction {
 fn in_space(r: f64) -> Vec<Attraction> {
     let lambda = 0.9 / 2f64.sqrt() * (1e-18 / (2.0 * r)).sqrt();
     let bridge = 2.0 * PI * 0.072 * 2.0 * r;
-    // The neck: 4 P_c (x^(3/2) - x^3) over the approach (a_0^2/R)(x^2 - 2/3 x^(1/2)), from x = (1/6)^(2/3) to (2/3)^(2/3); integrated in closed form.
+    // The neck: 4 P_c (x^(3/2) - x^3) over the approach (a_0^2/R)(x^2 - 2/3 x^(1/2)), from x =
+    // (1/6)^(2/3) to (2/3)^(2/3); integrated in closed form.
     let (w, modulus) = (0.23, 2e9);
     let pull_off = 1.5 * PI * w * r;
     let length = (4.5 * PI * w / modulus / r).cbrt().powi(2) * r;
@@ -168,7 +174,8 @@ fn opened<S: Dimensional>(s: &Simulation<S>) -> f64 {
     s.state.bodies.position[1][S::D - 1] - RADIUS
 }
 
-/// The force at which the ball leaves, under one that grows by half a per mille of what is expected in a step, from eight tenths of it on.
+/// The force at which the ball leaves, under one that grows by half a per mille of what is expected
+/// in a step, from eight tenths of it on.
 fn pull_off<S: Dimensional>(
     contact: &str,
     attraction: &Attraction,
@@ -184,8 +191,9 @@ fn pull_off<S: Dimensional>(
     let mut s = scene::<S>(contact, attraction, on_a_ball, h, &ramp);
     for n in 0..820 {
         step(&mut s);
-        // A neck opens before it lets go. Others let go where they begin to open: the inertia of a ball that has let go delays what opens
-        // after that, by 40 steps of 1 us up to a tenth of the range.
+        // A neck opens before it lets go. Others let go where they begin to open: the inertia of a
+        // ball that has let go delays what opens after that, by 40 steps of 1 us up to a tenth of
+        // the range.
         let held = if attraction.law == "jkr" { 1.1 } else { 1e-3 };
         if opened(&s) > held * attraction.range {
             return from + (to - from) * f64::from((n - 19).max(0)) / 800.0;
@@ -231,7 +239,8 @@ fn compliant_balls_are_pulled_off_at_the_force_of_their_law() {
     compare::<Dim3>(HERTZ, &in_space(RADIUS), false, &[1e-5, 1e-6]);
 }
 
-/// A ball that leaves at a speed has lost the work of separation when it is free, whether a step is a tenth of the range or ten times it.
+/// A ball that leaves at a speed has lost the work of separation when it is free, whether a step is
+/// a tenth of the range or ten times it.
 #[test]
 fn a_ball_that_leaves_loses_the_work_of_separation() {
     fn check<S: Dimensional>(attractions: &[Attraction]) {

@@ -50,7 +50,8 @@ fn rebounds<S: Dimensional>() {
     }
 }
 
-/// A bounce leaves with e times the approach velocity, whatever correction its overlap would get without.
+/// A bounce leaves with e times the approach velocity, whatever correction its overlap would get
+/// without.
 #[test]
 fn a_bounce_takes_the_place_of_the_correction() {
     rebounds::<Dim2>();

@@ -1,5 +1,5 @@
-//! A wheel that rolls on a compliant rail against the closed form of a brush: depth and length of the patch, friction from
-//! creep to full slip, and the power of its forces against the heat.
+//! A wheel that rolls on a compliant rail against the closed form of a brush: depth and length of
+//! the patch, friction from creep to full slip, and the power of its forces against the heat.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::scene::load;
@@ -9,15 +9,16 @@ use std::path::Path;
 const RADIUS: f64 = 0.46;
 const LOAD: f64 = 1.333e7;
 const MU: f64 = 0.4;
-/// Stiffnesses of the skin's crest (Pa/m), those of the case: along the rail shear and bending in series, with the arm of 0.3 mm from the
-/// middle of the gap under a grain, where the bond acts, to its crest.
+/// Stiffnesses of the skin's crest (Pa/m), those of the case: along the rail shear and bending in
+/// series, with the arm of 0.3 mm from the middle of the gap under a grain, where the bond acts, to
+/// its crest.
 const NORMAL: f64 = 1.292e13;
 const TANGENTIAL: f64 = 1.0 / (1.0 / 1.0254e13 + 9e-8 / 4.844e6);
 
 #[derive(Debug, Default)]
 struct Rolling {
-    /// Force along the rail, moment over radius, power of the contact forces, heat of friction, all that is lost and what more
-    /// is stored over v, all over the load.
+    /// Force along the rail, moment over radius, power of the contact forces, heat of friction, all
+    /// that is lost and what more is stored over v, all over the load.
     force: f64,
     moment: f64,
     power: f64,
@@ -98,8 +99,9 @@ fn patch() -> (f64, f64) {
     (a, NORMAL * a * a / (2.0 * RADIUS))
 }
 
-/// Bristles stick from the leading edge on and drag k_t xi x, until that is mu p: Q/(mu P) = 1 - (1 - s)^3, s = k_t xi a/(2 mu p0).
-/// The disk's surface is slower along the rail than its rim, by a^2/(6 R^2) on average.
+/// Bristles stick from the leading edge on and drag k_t xi x, until that is mu p: Q/(mu P) = 1 -
+/// (1 - s)^3, s = k_t xi a/(2 mu p0). The disk's surface is slower along the rail than its rim, by
+/// a^2/(6 R^2) on average.
 fn brush(creepage: f64) -> f64 {
     let (a, p0) = patch();
     let s = TANGENTIAL * (creepage - a * a / (6.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);
@@ -109,7 +111,8 @@ fn brush(creepage: f64) -> f64 {
 #[test]
 fn friction_against_creepage_is_a_brushs() {
     let (a, p0) = patch();
-    // Full slip from 1.17 % on; the brush sticks nearly all over in the first, slips over a quarter in the second.
+    // Full slip from 1.17 % on; the brush sticks nearly all over in the first, slips over a quarter
+    // in the second.
     assert!((2.0 * MU * p0 / (TANGENTIAL * a) - 0.0117).abs() < 1e-4);
     for creepage in [0.0005, 0.003, 0.015] {
         let seen = roll(creepage, 4e-5, false);
@@ -125,8 +128,9 @@ fn friction_against_creepage_is_a_brushs() {
     }
 }
 
-/// In steady rolling the forces' power is creepage times friction, but for what the arc of the wheel and the strained skin
-/// change of it, and it is heat, but for what the scheme damps of the springs: half of it with half the step.
+/// In steady rolling the forces' power is creepage times friction, but for what the arc of the
+/// wheel and the strained skin change of it, and it is heat, but for what the scheme damps of the
+/// springs: half of it with half the step.
 #[test]
 fn creepage_times_friction_is_heat() {
     let missing = [4e-5, 2e-5, 1e-5].map(|step| {
@@ -139,7 +143,8 @@ fn creepage_times_friction_is_heat() {
     assert!(missing[1] < 0.6 * missing[0] && missing[2] < 0.6 * missing[1]);
 }
 
-/// Over three rows of debris friction is far below that of the bare contact, and what the forces put in is lost or stored.
+/// Over three rows of debris friction is far below that of the bare contact, and what the forces
+/// put in is lost or stored.
 #[test]
 fn a_third_body_lowers_friction() {
     let seen = roll_until(0.04, 0.005, 4e-5, true);
@@ -155,9 +160,10 @@ fn bears_a_third_body(seen: &Rolling) {
     assert!(seen.force > 0.0 && seen.force < MU);
 }
 
-/// Over three rows of debris: friction from forces is friction from dissipation, up to what is stored; it is far below that of
-/// the bare contact at a small creepage, as measured curves of contaminated rails are (O. Polach, Wear 258 (2005) 992-1000), and
-/// rises on where the bare contact slips fully, never to the coefficient of the grains.
+/// Over three rows of debris: friction from forces is friction from dissipation, up to what is
+/// stored; it is far below that of the bare contact at a small creepage, as measured curves of
+/// contaminated rails are (O. Polach, Wear 258 (2005) 992-1000), and rises on where the bare
+/// contact slips fully, never to the coefficient of the grains.
 #[test]
 #[ignore = "nightly: three long runs; one shorter one is a_third_body_lowers_friction"]
 fn a_third_body_lowers_and_flattens_the_curve() {
@@ -172,7 +178,8 @@ fn a_third_body_lowers_and_flattens_the_curve() {
     assert!(brush(0.02) == MU && seen[1] < 0.8 * MU);
 }
 
-/// A foundation that is made over an overlap is at rest there: taking overlaps out does not stretch it.
+/// A foundation that is made over an overlap is at rest there: taking overlaps out does not stretch
+/// it.
 #[test]
 fn a_foundation_over_an_overlap_is_at_rest() {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/hanging.ron");

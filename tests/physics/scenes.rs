@@ -64,8 +64,9 @@ fn held(s: &Simulation<Dim2>) -> f64 {
     inside.map(|b| s.state.bodies.mass[b]).sum()
 }
 
-/// While the gate is lowered slowly gate and walls carry the weight together, the walls a good part of it (Janssen). Opened, the silo
-/// discharges at a rate that does not depend on how much it holds, and of Beverloo's size.
+/// While the gate is lowered slowly gate and walls carry the weight together, the walls a good part
+/// of it (Janssen). Opened, the silo discharges at a rate that does not depend on how much it
+/// holds, and of Beverloo's size.
 #[test]
 fn a_silo_saturates_and_drains_at_a_constant_rate() {
     let (_, built) = case("silo", &["grains.0.count=600", "grains.0.high=[0.16,0.5]"]);
@@ -98,7 +99,8 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     }
     assert_eq!(times.len(), parts.len(), "the silo drains");
     let [early, late] = [0, 1].map(|k| 0.2 * all / (times[k + 1] - times[k]));
-    // C rho_bulk sqrt(g) (A - k d)^(3/2) with C = 0.58, k = 1.4, a bulk density of 0.8 that of glass.
+    // C rho_bulk sqrt(g) (A - k d)^(3/2) with C = 0.58, k = 1.4, a bulk density of 0.8 that of
+    // glass.
     let beverloo = 0.58 * 2500.0 * 0.8 * G.sqrt() * (0.064f64 - 1.4 * 0.008).powf(1.5);
     println!("rates {early:.2} and {late:.2} kg/(m s), Beverloo {beverloo:.2}");
     // Each is a flow of 120 grains, which comes in bursts.
@@ -106,10 +108,11 @@ fn a_silo_saturates_and_drains_at_a_constant_rate() {
     assert!((0.5..2.0).contains(&(early / beverloo)));
 }
 
-/// Friction and solid fraction of disks in homogeneous plane shear at one inertial number, against soft-disk simulations with
-/// sheared periodic boundaries (1,600 disks, restitution 0.1, I = rate sqrt(m/p)), which mu = 0.262 + 0.878/(1 + 0.57/I) fits within
-/// 0.002 and phi = 0.813 - 0.304 I; beside it the law of da Cruz et al. (2005), 0.25 + 1.1 I. Momentum: contacts and motion
-/// together carry the pressure that the servo applies.
+/// Friction and solid fraction of disks in homogeneous plane shear at one inertial number, against
+/// soft-disk simulations with sheared periodic boundaries (1,600 disks, restitution 0.1, I = rate
+/// sqrt(m/p)), which mu = 0.262 + 0.878/(1 + 0.57/I) fits within 0.002 and phi = 0.813 - 0.304 I;
+/// beside it the law of da Cruz et al. (2005), 0.25 + 1.1 I. Momentum: contacts and motion together
+/// carry the pressure that the servo applies.
 #[test]
 fn plane_shear_has_the_friction_of_its_inertial_number() {
     let sets = [
@@ -142,8 +145,8 @@ fn plane_shear_has_the_friction_of_its_inertial_number() {
     assert_eq!(phases, ["press", "shear"]);
 }
 
-/// A bed in a turning drum keeps an angle; below its flowing layer it turns with the drum, and on the surface
-/// grains run down.
+/// A bed in a turning drum keeps an angle; below its flowing layer it turns with the drum, and on
+/// the surface grains run down.
 #[test]
 fn a_drum_has_a_steady_slope_over_a_turning_bed() {
     let sets = [
@@ -189,9 +192,10 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
 /// What is not drawn or written in a test.
 const QUIET: [&str; 3] = ["output.frames=0", "output.views=0", "output.figures=false"];
 
-/// Attraction N acts as a pressure of its own, that of its forces by Love and Weber, sum N l/(2 A), or phi z N/(pi d)
-/// for a coordination z (H. Rumpf, Chem. Ing. Tech. 30 (1958) 144, in two dimensions): friction is mu(I) times the sum
-/// of both, as Mohr and Coulomb have it with a cohesion of mu(I) times that pressure.
+/// Attraction N acts as a pressure of its own, that of its forces by Love and Weber, sum N l/(2 A),
+/// or phi z N/(pi d) for a coordination z (H. Rumpf, Chem. Ing. Tech. 30 (1958) 144, in two
+/// dimensions): friction is mu(I) times the sum of both, as Mohr and Coulomb have it with a
+/// cohesion of mu(I) times that pressure.
 #[test]
 #[ignore = "nightly: long statistics; the layer without attraction is plane_shear_has_the_friction_of_its_inertial_number"]
 fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
@@ -247,13 +251,14 @@ fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
     );
     assert!((p / 1000.0 - 1.0).abs() < 0.1, "{p}");
     assert!(attraction > 1000.0, "{attraction}");
-    // An estimate: it has every contact within the range pull, and the friction of the layer unchanged. Without the attraction it would
-    // be a third of this.
+    // An estimate: it has every contact within the range pull, and the friction of the layer
+    // unchanged. Without the attraction it would be a third of this.
     assert!((tau / expected - 1.0).abs() < 0.3, "{tau} and {expected}");
 }
 
-/// End walls that turn with a drum carry the layer between them: in a drum four diameters wide the surface is steeper than
-/// without them; without them it has the angle of the field's drums, 20 to 30 degrees.
+/// End walls that turn with a drum carry the layer between them: in a drum four diameters wide the
+/// surface is steeper than without them; without them it has the angle of the field's drums, 20 to
+/// 30 degrees.
 #[test]
 #[ignore = "nightly: long statistics; a drum without end walls is a_drum_has_a_steady_slope_over_a_turning_bed"]
 fn end_walls_make_a_narrow_drum_steeper() {
@@ -336,8 +341,8 @@ const COARSE: [&str; 4] = [
     "solver.tolerance=1e-4",
 ];
 
-/// A layer that was moved: where its grains were when the second phase began, how far they went, and how far the
-/// block of its base went.
+/// A layer that was moved: where its grains were when the second phase began, how far they went,
+/// and how far the block of its base went.
 struct Moved {
     grains: Vec<(Vector, Vector)>,
     block: Vector,
@@ -374,7 +379,8 @@ impl Moved {
         sum / n
     }
 
-    /// That this is another scene in the mirror x = 0.25 m: in ten columns no more than `most` of the block's way apart.
+    /// That this is another scene in the mirror x = 0.25 m: in ten columns no more than `most` of
+    /// the block's way apart.
     fn mirrors(&self, other: &Self, most: f64) {
         for k in 0..10 {
             let (from, to) = (0.05 * f64::from(k), 0.05 * f64::from(k + 1));
@@ -431,8 +437,8 @@ fn a_fault_in_the_mirror_is_the_fault() {
     Moved::new(mirrored).mirrors(&straight, 0.25);
 }
 
-/// Over the middle of a block that rises the layer rises with it, far from it nothing moves, and the grains in the
-/// mirror do the same in the mirror.
+/// Over the middle of a block that rises the layer rises with it, far from it nothing moves, and
+/// the grains in the mirror do the same in the mirror.
 #[test]
 fn a_fold_lifts_its_layer_with_the_block() {
     let sets = [&QUIET[..], &COARSE].concat();
@@ -464,7 +470,8 @@ fn as_many_balls_leave_a_cradle_as_come() {
     assert!(far.fold(0.0, f64::max) < 1e-12, "{speeds:?}");
 }
 
-/// The cylinder of a fretting test is a ball and bears its name where it is large in the window; the flat has a surface.
+/// The cylinder of a fretting test is a ball and bears its name where it is large in the window;
+/// the flat has a surface.
 #[test]
 fn a_first_body_that_is_a_ball_is_named() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
@@ -479,8 +486,8 @@ fn a_first_body_that_is_a_ball_is_named() {
     assert!(fretwork::record::picture::named_balls(s, [-1.0, 1.0, -1.0, 1.0]).is_empty());
 }
 
-/// Grains that are pressed from tooth to tooth of a rough floor by some hundredths of their radius a step meet each tooth
-/// before they overlap it.
+/// Grains that are pressed from tooth to tooth of a rough floor by some hundredths of their radius
+/// a step meet each tooth before they overlap it.
 #[test]
 fn collapse_on_teeth_sees_its_contacts_in_time() {
     let summary = finished("collapse", &["output.frames=0"], |_| {});

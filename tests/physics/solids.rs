@@ -102,7 +102,8 @@ fn a_rod_that_falls_on_its_end_gets_the_impulse_of_its_lever() {
     let inverse = s.state.bodies.inverse_tensor(0).entry(1, 1);
     assert!((inverse * m * (1.0 + 0.05f64.powi(2)) / 12.0 - 1.0).abs() < 1e-12);
     until(&mut s, 0.1);
-    // Turned about y by 0.4 the end at +x is low; of its two lower corners the one on the lower face.
+    // Turned about y by 0.4 the end at +x is low; of its two lower corners the one on the lower
+    // face.
     let (sin, cos) = 0.4f64.sin_cos();
     let lever = 0.5 * cos - 0.025 * sin;
     let impulse = v / (1.0 / m + lever * lever * inverse);

@@ -1,4 +1,5 @@
-//! Imposed motions that nothing can obey: no finite impulses are a solution, and a run says so with the names of the bodies.
+//! Imposed motions that nothing can obey: no finite impulses are a solution, and a run says so with
+//! the names of the bodies.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
@@ -57,7 +58,8 @@ fn grains(dimension: usize) -> Vec<String> {
     vec![columns(1, 1), columns(2, 1), columns(1, 2), columns(6, 12)]
 }
 
-/// What a run of some steps says of its imposed motions, the largest force on the lid (N), and how many of the steps converged.
+/// What a run of some steps says of its imposed motions, the largest force on the lid (N), and how
+/// many of the steps converged.
 fn told<S: Dimensional>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
     let (mut told, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
     for _ in 0..steps {
@@ -78,7 +80,8 @@ fn cannot_be_obeyed<S: Dimensional>() {
             let (told, force, converged) = told(&mut s, 3);
             let name = format!("{}D, {method}, {list}: {told:?}, {force:e} N", S::D);
             assert_eq!(converged, 0, "{name}");
-            // The interior point may end without any impulses, which says nothing but that the steps did not converge.
+            // The interior point may end without any impulses, which says nothing but that the
+            // steps did not converge.
             if method == "Interior" && force == 0.0 {
                 continue;
             }
@@ -90,8 +93,9 @@ fn cannot_be_obeyed<S: Dimensional>() {
                 "{text}"
             );
             assert!(!text.contains("time.step"), "{text}");
-            // What the forces come to has no meaning, which is what the run says. A sweep stops all grains at the speed of the lid and sets
-            // them off again: it adds m v at most, twice that where it is relaxed beyond one, and each step starts from the last.
+            // What the forces come to has no meaning, which is what the run says. A sweep stops all
+            // grains at the speed of the lid and sets them off again: it adds m v at most, twice
+            // that where it is relaxed beyond one, and each step starts from the last.
             let bodies = &s.state.bodies;
             let mass: f64 = bodies.grains().map(|b| bodies.mass[b]).sum();
             let sweep = 2.0 * mass * 0.1 / s.options.scheme.h;
@@ -125,7 +129,8 @@ fn forces_and_springs_can() {
     can_be_obeyed::<Dim3>();
 }
 
-/// Two driven bodies that move into each other are named; with springs between them they are not, nor where they part or slide.
+/// Two driven bodies that move into each other are named; with springs between them they are not,
+/// nor where they part or slide.
 #[test]
 fn driven_bodies_that_overlap_are_named() {
     let scene = |motion: &str, law: &str| -> Simulation<Dim3> {

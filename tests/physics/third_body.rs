@@ -1,5 +1,5 @@
-//! The third body against closed forms: affine and rigid fields, cut disks and balls, a column under gravity, stress,
-//! and energies by place against the ledger.
+//! The third body against closed forms: affine and rigid fields, cut disks and balls, a column
+//! under gravity, stress, and energies by place against the ledger.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::measure::measures;
@@ -47,7 +47,8 @@ fn opened(text: &str) -> Result<Loaded, String> {
     loaded
 }
 
-/// A floor at the origin, a lid at a height, and disks or balls between; cells of one metre along x (and y).
+/// A floor at the origin, a lid at a height, and disks or balls between; cells of one metre along x
+/// (and y).
 fn between<S: Space>(height: f64, grains: &[([f64; 3], f64)], bins: usize) -> String {
     let list: Vec<String> = grains
         .iter()
@@ -176,8 +177,8 @@ fn sheared(s: &mut Simulation<Dim2>, v: impl Fn(f64) -> f64) {
     s.state.bodies.velocity[wheel].x = v(2.0);
 }
 
-/// An affine field: the profile is straight and through both walls, the granular temperature null, whether bins
-/// follow the rows or not; the lattice fills pi/4 of every bin that holds whole rows.
+/// An affine field: the profile is straight and through both walls, the granular temperature null,
+/// whether bins follow the rows or not; the lattice fills pi/4 of every bin that holds whole rows.
 #[test]
 fn an_affine_field_is_couette_without_granular_temperature() {
     for bins in [10, 20, 7, 33] {
@@ -264,7 +265,8 @@ fn a_granular_temperature_is_the_mean_square_by_the_dimension() {
     assert!(!seen.profile.contains_key(kelvin[0]) && !seen.row.contains_key(kelvin[1]));
 }
 
-/// Ten rows of a poor conductor at 300 K below ten of steel at 400 K: both between, by mass, where a bin is cut in half by the border.
+/// Ten rows of a poor conductor at 300 K below ten of steel at 400 K: both between, by mass, where
+/// a bin is cut in half by the border.
 #[test]
 fn temperatures_of_a_layer_are_means_by_mass() {
     let (below, above): (Vec<_>, Vec<_>) = lattice().into_iter().partition(|(at, _)| at[1] < 1.0);
@@ -299,7 +301,8 @@ fn temperatures_of_a_layer_are_means_by_mass() {
     );
 }
 
-/// A grain of unit radius in the middle of three bins of a metre: the outer ones hold a segment of height 1/2.
+/// A grain of unit radius in the middle of three bins of a metre: the outer ones hold a segment of
+/// height 1/2.
 #[test]
 fn a_grain_is_cut_exactly() {
     let segment = PI / 3.0 - 3f64.sqrt() / 4.0;
@@ -325,7 +328,8 @@ fn a_grain_is_cut_exactly() {
     }
 }
 
-/// A column of eight disks: between a centre and the contact above it the stress is the weight of what is above.
+/// A column of eight disks: between a centre and the contact above it the stress is the weight of
+/// what is above.
 #[test]
 fn a_column_carries_the_weight_above() {
     let disks: Vec<_> = (0..8)
@@ -448,8 +452,8 @@ fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     summary
 }
 
-/// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction coefficient of the
-/// sliding's work is that of what was dissipated and kept.
+/// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction
+/// coefficient of the sliding's work is that of what was dissipated and kept.
 #[test]
 fn energies_by_place_are_those_of_the_ledger() {
     let sets = [

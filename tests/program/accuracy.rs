@@ -122,7 +122,8 @@ pub fn told(output: &Output) -> String {
 
 const LIMIT: &str = "interfaces.0.parameters.contact.limit=2.5e-4";
 
-/// A law that accepts a quarter of the step has every step made in four parts: the bits are those of a run with that step.
+/// A law that accepts a quarter of the step has every step made in four parts: the bits are those
+/// of a run with that step.
 #[test]
 fn a_law_that_asks_for_smaller_steps_gets_them() {
     let (folder, case) = with_careful_law("law");
@@ -198,8 +199,10 @@ fn bonds_that_break_in_a_part_of_a_step_are_recorded() {
     }
 }
 
-/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 %; 0.3 % are asked for. The reference has a tenth of the
-/// step and a tenth of the tolerance, which is tight in both: at 1e-6 it leaves the friction of the coarse steps open by 0.4 %, whichever way contacts are swept.
+/// The scar of a cylinder in steps of a twentieth of a cycle: its friction is off by 1.4 %; 0.3 %
+/// are asked for. The reference has a tenth of the step and a tenth of the tolerance, which is
+/// tight in both: at 1e-6 it leaves the friction of the coarse steps open by 0.4 %, whichever way
+/// contacts are swept.
 #[test]
 fn the_accuracy_that_is_asked_for_is_reached_with_fewer_steps_than_the_reference() {
     let folder = Folder::new("scar");

@@ -1,4 +1,5 @@
-//! Grains of every shape taken from another run: places, orientations, velocities, spins, mass, inertia and outlines.
+//! Grains of every shape taken from another run: places, orientations, velocities, spins, mass,
+//! inertia and outlines.
 
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
@@ -37,8 +38,8 @@ impl Folder {
 
 const STATE: &str = r#"State(results: "out", material: "grain")"#;
 
-/// All numbers of a grain: those that must agree to the bit, and those that may differ by round-off (its place where
-/// that follows from one of its parts, and what is in the world's axes).
+/// All numbers of a grain: those that must agree to the bit, and those that may differ by round-off
+/// (its place where that follows from one of its parts, and what is in the world's axes).
 fn numbers<S: Space>(s: &Simulation<S>, b: usize) -> (Vec<f64>, Vec<f64>) {
     let bodies = &s.state.bodies;
     let mut same = bodies.velocity[b].padded().to_vec();
@@ -129,8 +130,8 @@ fn begins_where_the_other_ended<S: Dimensional>(name: &str, grains: &str, count:
     }
 }
 
-/// Balls, sharp and rounded polygons, capsules, unions, and voussoirs whose mass is not that of their outline; some
-/// reach over the period.
+/// Balls, sharp and rounded polygons, capsules, unions, and voussoirs whose mass is not that of
+/// their outline; some reach over the period.
 const PLANE: &str = r#"
     List(material: "grain", grains: [(at: [0.02, 0.0101], radius: 0.01, velocity: [0.1, -0.5], spin: [3.0]),
         (at: [0.05, 0.031], radius: 0.01, velocity: [0.0, -0.5])]),

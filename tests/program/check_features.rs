@@ -1,4 +1,5 @@
-//! `fretwork check` lists what a scene has switched on and what is off, with the bytes that each takes.
+//! `fretwork check` lists what a scene has switched on and what is off, with the bytes that each
+//! takes.
 
 use std::process::Command;
 
@@ -91,7 +92,8 @@ fn bonds_damage_and_history_are_listed_with_their_bytes() {
     assert!(!quiet.iter().any(|f| f.starts_with("views")));
 }
 
-/// The bytes of a record are those of its numbers: n, p_n, p_t, shift, two inverses of W, mu and two indices.
+/// The bytes of a record are those of its numbers: n, p_n, p_t, shift, two inverses of W, mu and
+/// two indices.
 #[test]
 fn the_row_of_a_contact_is_as_small_as_its_numbers() {
     let (_, _, disks) = check("benchmarks/disks_box_5000", &[]);
@@ -102,7 +104,8 @@ fn the_row_of_a_contact_is_as_small_as_its_numbers() {
     );
 }
 
-/// What changes during a run and what is measured: of `silo` the gate, of `plane_shear` the servo and the drive of a phase.
+/// What changes during a run and what is measured: of `silo` the gate, of `plane_shear` the servo
+/// and the drive of a phase.
 #[test]
 fn the_programme_and_the_measures_are_listed() {
     let (silo, off, _) = check("silo", &[]);
@@ -191,8 +194,9 @@ fn near(got: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// MAC: strength sqrt(w C) at u_0 = sqrt(w/C), a hundredth of it left at 4.64 u_0. Two disks of mass m and inertia m r^2/2 with a
-/// bond of k a N/m, a = r/2: omega^2 = 2 k a/m along the normal, three times that along the tangent.
+/// MAC: strength sqrt(w C) at u_0 = sqrt(w/C), a hundredth of it left at 4.64 u_0. Two disks of
+/// mass m and inertia m r^2/2 with a bond of k a N/m, a = r/2: omega^2 = 2 k a/m along the normal,
+/// three times that along the tangent.
 #[test]
 fn bonds_are_weighed_against_step_and_load_by_driving_them() {
     let made = Made::new("pair", PAIR);
@@ -267,7 +271,8 @@ fn strength_is_told_over_the_pressure_of_the_scene() {
     assert!(weak.contains("WEAK"), "{weak}");
 }
 
-/// The run time is that of a few steps; a step that fails is told and is no crash; `--no-timing` leaves it out.
+/// The run time is that of a few steps; a step that fails is told and is no crash; `--no-timing`
+/// leaves it out.
 #[test]
 fn the_run_time_is_estimated() {
     let (_, _, text) = check("silo", &[]);
@@ -290,8 +295,9 @@ fn the_run_time_is_estimated() {
     assert!(!String::from_utf8_lossy(&output.stdout).contains("run time"));
 }
 
-/// A small disk at the side of a bonded pair: the median pair is that of the large ones, the lightest pair has its own radius and masses; before
-/// there are contacts the lightest grain is paired with every other one.
+/// A small disk at the side of a bonded pair: the median pair is that of the large ones, the
+/// lightest pair has its own radius and masses; before there are contacts the lightest grain is
+/// paired with every other one.
 #[test]
 fn grains_of_different_size_are_weighed_in_pairs() {
     let (large, small) = (0.1, 0.02);
@@ -337,7 +343,8 @@ fn grains_of_different_size_are_weighed_in_pairs() {
     }
 }
 
-/// Their numbers are compared with what is allocated in `cargo test -p fretwork-elastic --test memory`.
+/// Their numbers are compared with what is allocated in
+/// `cargo test -p fretwork-elastic --test memory`.
 #[test]
 fn the_memory_and_cost_of_deformable_bodies_are_told() {
     let (_, _, text) = check("cylinder_on_flat_fretting", &[]);

@@ -66,7 +66,8 @@ fn the_methods_of_a_case_are_listed() {
         text.contains("not newton, interface `") && text.contains("rotation"),
         "{text}"
     );
-    // Shear cohesion where surfaces touch: not the interior point, and of rotation the samples alone are known.
+    // Shear cohesion where surfaces touch: not the interior point, and of rotation the samples
+    // alone are known.
     let (_, text) = check("column", &COHESIVE);
     assert_eq!(line(&text, "methods"), format!("{GRADIENTS}, newton?"));
     assert!(

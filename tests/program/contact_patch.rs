@@ -48,8 +48,8 @@ const WHEEL: [&str; 8] = [
     "wheel_steel_er7,rail_steel_r260",
 ];
 
-/// The pressure at the head of cases/wheel_rail_fretting.ron, which takes the circle of sqrt(R1 R2); the ellipse of these radii differs
-/// from it by less than a percent.
+/// The pressure at the head of cases/wheel_rail_fretting.ron, which takes the circle of sqrt(R1
+/// R2); the ellipse of these radii differs from it by less than a percent.
 #[test]
 fn a_wheel_on_a_rail() {
     let got = json(&WHEEL);
@@ -74,7 +74,8 @@ fn a_wheel_on_a_rail() {
     );
 }
 
-/// Carter's case of the documentation (cases/carter_rolling.ron): a 1 mm, full slip at 0.06 %, Q/(mu P) = 3/4 at half of it.
+/// Carter's case of the documentation (cases/carter_rolling.ron): a 1 mm, full slip at 0.06 %,
+/// Q/(mu P) = 3/4 at half of it.
 #[test]
 fn a_line_that_rolls() {
     let got = json(&[
@@ -146,7 +147,8 @@ fn a_ball_that_frets() {
     assert_eq!(number(&small, "/tangential/local_slip/value"), 0.0);
 }
 
-/// Of an interval of friction and of K each rate has one, and the harder wheel wears less: V is proportional to 1/H.
+/// Of an interval of friction and of K each rate has one, and the harder wheel wears less: V is
+/// proportional to 1/H.
 #[test]
 fn friction_and_wear_have_intervals() {
     let rolls = [
@@ -169,7 +171,8 @@ fn friction_and_wear_have_intervals() {
             "{path}"
         );
     }
-    // The work of friction a metre is Q times the creepage, and Archard's volume k over mu times it.
+    // The work of friction a metre is Q times the creepage, and Archard's volume k over mu times
+    // it.
     let q = number(&got, "/rolling/adhesion/value") * 75e3;
     near(number(&got, "/rolling/energy/value"), 0.005 * q, 1e-12);
     let k = number(&got, "/wear/archard/0/coefficient/value");

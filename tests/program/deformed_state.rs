@@ -1,5 +1,5 @@
-//! Grains that deform taken from another run: a deposit that is sheared in a second case moves as in one run; rigid grains become ones that
-//! deform, and the other way; what does not fit is named.
+//! Grains that deform taken from another run: a deposit that is sheared in a second case moves as
+//! in one run; rigid grains become ones that deform, and the other way; what does not fit is named.
 
 use super::grains::Folder;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};

@@ -1,4 +1,5 @@
-//! What pages say of the program and what its help says of files, against the program and the files.
+//! What pages say of the program and what its help says of files, against the program and the
+//! files.
 
 use fretwork::laws::{Kind, Place};
 use fretwork::shipped::built_in;
@@ -172,7 +173,8 @@ fn the_readme_names_files_that_are_there() {
     }
 }
 
-/// The case by which the README, the page of `trade` and its help show it is one whose results are trusted.
+/// The case by which the README, the page of `trade` and its help show it is one whose results are
+/// trusted.
 #[test]
 fn the_example_of_trade_is_a_case_that_can_be_trusted() {
     let example = |page: &str, begins: &str| {

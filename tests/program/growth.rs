@@ -75,8 +75,9 @@ fn at(row: &BTreeMap<String, f64>, time: f64) -> bool {
     (row["time"] - time).abs() < 1e-9
 }
 
-/// A stack at rest carries its weight in steps of any length; the disk is released in a step of the case that begins when the drive says
-/// so, falls by its parabola and lands in the step in which it has fallen by its height.
+/// A stack at rest carries its weight in steps of any length; the disk is released in a step of the
+/// case that begins when the drive says so, falls by its parabola and lands in the step in which it
+/// has fallen by its height.
 #[test]
 fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
     let folder = Folder::new("drop");
@@ -137,7 +138,8 @@ fn a_disk_that_is_dropped_onto_a_stack_at_rest_lands_when_it_should() {
     assert!(summary["accuracy"]["grown"].as_f64().unwrap() > 0.8);
 }
 
-/// Kinks of a drive end steps, slow sliding is made in long ones, and the work is that of friction over the path.
+/// Kinks of a drive end steps, slow sliding is made in long ones, and the work is that of friction
+/// over the path.
 #[test]
 fn a_slow_drive_is_followed_in_long_steps() {
     let folder = Folder::new("slide");
@@ -173,7 +175,8 @@ fn a_slow_drive_is_followed_in_long_steps() {
     assert!(end["step_length"] > 20.0 * STEP && end["residual"].abs() < 1e-14);
 }
 
-/// Rows every so many steps of the case are where they are without growth, and a largest step is kept.
+/// Rows every so many steps of the case are where they are without growth, and a largest step is
+/// kept.
 #[test]
 fn records_stay_where_they_are_and_the_largest_step_is_kept() {
     let folder = Folder::new("records");

@@ -18,7 +18,8 @@ fn column(text: &str, name: &str) -> Vec<f64> {
         .collect()
 }
 
-/// Hertz's pressure, and Carter's force of rolling 1 - (1 - s)^2 of mu P at s = xi R/(mu a) = 1/2, which 20 cells over a have 0.9 % too high.
+/// Hertz's pressure, and Carter's force of rolling 1 - (1 - s)^2 of mu P at s = xi R/(mu a) = 1/2,
+/// which 20 cells over a have 0.9 % too high.
 #[test]
 fn example_of_half_spaces_runs_and_meets_what_its_page_says() {
     let page = std::fs::read_to_string(Path::new(ROOT).join("docs/half_spaces.md")).unwrap();

@@ -1,4 +1,5 @@
-//! What a run says of its heat: an account that does not close, half-spaces, laws that are not asked, laws with a clock of their own.
+//! What a run says of its heat: an account that does not close, half-spaces, laws that are not
+//! asked, laws with a clock of their own.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::record::statistics::Table;
@@ -107,7 +108,8 @@ fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
     assert!(told[0].contains("50 % for `floor`") && told[0].contains("`over`"));
 }
 
-/// Of the friction at the two corners of a block that conducts nothing, that of the rear one is beside the range.
+/// Of the friction at the two corners of a block that conducts nothing, that of the rear one is
+/// beside the range.
 #[test]
 fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
     let (loaded, built) = built(

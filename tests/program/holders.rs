@@ -207,7 +207,8 @@ fn a_phase_that_begins_at_rest_drives_a_half_space() {
     }
 }
 
-/// A block of steel on a rigid floor, pressed by a servo over the distance of two walls of which one moves, and dragged along.
+/// A block of steel on a rigid floor, pressed by a servo over the distance of two walls of which
+/// one moves, and dragged along.
 const BLOCK: &str = r#"(
     name: "servo",
     dimension: 2,
@@ -241,7 +242,8 @@ const BLOCK: &str = r#"(
     output: (frames: 0, views: 0, every: 1, figures: false),
 )"#;
 
-/// A servo on the holder of a deformable body holds the pressure while the area grows and the surface slips: Q = mu P.
+/// A servo on the holder of a deformable body holds the pressure while the area grows and the
+/// surface slips: Q = mu P.
 #[test]
 fn a_servo_presses_what_holds_a_deformable_body() {
     let file = std::env::temp_dir().join(format!("fretwork-servo-{}.ron", std::process::id()));

@@ -117,7 +117,8 @@ fn under_force_the_bond_fails_at_its_strength() {
     assert!(out.contains("peak traction 3.15"), "{out}");
 }
 
-/// A neck holds what JKR says: 8/9 of the pull-off in contact, the pull-off at most, nothing after the tear.
+/// A neck holds what JKR says: 8/9 of the pull-off in contact, the pull-off at most, nothing after
+/// the tear.
 #[test]
 fn a_neck_is_pulled() {
     let rows = rows("jkr --to 2e-9 --steps 2000 --set w=0.1 --set modulus=1e11");
@@ -134,8 +135,8 @@ fn a_neck_is_pulled() {
     assert_eq!(force(rows.last().unwrap()), 0.0);
 }
 
-/// The interface of a case with its parameters, on the path that the law's own scale gives: the peak of MAC is sqrt(w C), and its
-/// curve has fallen to a hundredth of it at 4.64 u_0.
+/// The interface of a case with its parameters, on the path that the law's own scale gives: the
+/// peak of MAC is sqrt(w C), and its curve has fallen to a hundredth of it at 4.64 u_0.
 #[test]
 fn an_interface_of_a_case_is_driven_with_its_parameters() {
     let peak = |rows: &[Value]| {
@@ -148,7 +149,8 @@ fn an_interface_of_a_case_is_driven_with_its_parameters() {
     close("peak", peak(&own), (0.1f64 * 1e12).sqrt(), 1e-3);
     let last = number(own.last().unwrap(), "opening_n");
     close("path", last, 1.2 * 100f64.cbrt() * u_0, 2e-2);
-    // A case of one interface needs no name; --set changes the case: four times w is twice the peak, at twice the opening.
+    // A case of one interface needs no name; --set changes the case: four times w is twice the
+    // peak, at twice the opening.
     let set = "--set interfaces.grain.parameters.damage.w=0.4";
     let other = rows(&format!("{case} {set} --steps 20000"));
     close("peak", peak(&other), 2.0 * peak(&own), 1e-3);
@@ -166,7 +168,8 @@ fn an_interface_of_a_case_is_driven_with_its_parameters() {
     );
 }
 
-/// Without `--to` a law is driven through its own scale: a neck until it tears, a bond until it breaks.
+/// Without `--to` a law is driven through its own scale: a neck until it tears, a bond until it
+/// breaks.
 #[test]
 fn a_path_without_a_length_has_the_laws_own() {
     let bond = rows("elastic-bond linear-softening --mode II");

@@ -1,4 +1,5 @@
-//! `fretwork law new`, followed literally: the printed commands build a law, certify it and run a case with it.
+//! `fretwork law new`, followed literally: the printed commands build a law, certify it and run a
+//! case with it.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -107,7 +108,8 @@ fn run_with(place: &Place, folder: &str) -> (Option<i32>, String) {
     (output.status.code(), error)
 }
 
-/// What goes wrong in a law ends the run with a sentence, exit code 1; what cannot be loaded is refused, 2.
+/// What goes wrong in a law ends the run with a sentence, exit code 1; what cannot be loaded is
+/// refused, 2.
 #[test]
 fn laws_that_fail_in_a_run_are_named() {
     let place = Place::new("failing");

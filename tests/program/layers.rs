@@ -1,5 +1,6 @@
-//! The layers are crates, so that an import upwards does not compile; here their manifests are read, so that nobody turns an
-//! arrow round by naming a layer, or brings HDF5 or fonts into the core by a library.
+//! The layers are crates, so that an import upwards does not compile; here their manifests are
+//! read, so that nobody turns an arrow round by naming a layer, or brings HDF5 or fonts into the
+//! core by a library.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -15,7 +16,8 @@ const BESIDE_NUMBERS: [&str; 7] = [
     "libloading",
 ];
 
-/// Each layer, the layers it may name, and libraries that neither it nor what it stands on may bring.
+/// Each layer, the layers it may name, and libraries that neither it nor what it stands on may
+/// bring.
 const LAYERS: [(&str, &[&str], &[&str]); 11] = [
     ("diffusion", &[], &BESIDE_NUMBERS),
     ("study", &[], &BESIDE_NUMBERS),
@@ -94,7 +96,8 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
     out
 }
 
-/// What every package of the lock file names, by its name; several versions of one are taken together.
+/// What every package of the lock file names, by its name; several versions of one are taken
+/// together.
 fn locked(lock: &str) -> BTreeMap<&str, BTreeSet<&str>> {
     let mut out: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     let mut name = "";

@@ -1,4 +1,5 @@
-//! The program: its commands, input, files, plugins, and that a run can be resumed and repeated bit by bit.
+//! The program: its commands, input, files, plugins, and that a run can be resumed and repeated bit
+//! by bit.
 
 #![allow(
     clippy::unwrap_used,
@@ -25,6 +26,7 @@ mod holders;
 mod law_drive;
 mod law_new;
 mod layers;
+mod line_length;
 mod material_laws;
 mod plugin_loading;
 mod report;

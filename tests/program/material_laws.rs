@@ -19,7 +19,8 @@ fn folder(name: &str, materials: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// The block that slides on a profile, of this material, with what the interface says of parameters.
+/// The block that slides on a profile, of this material, with what the interface says of
+/// parameters.
 fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Built<Dim2>, String> {
     let sets = [
         format!("materials.grain={material}"),

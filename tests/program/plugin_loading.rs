@@ -168,7 +168,8 @@ fn a_newer_minor_with_a_longer_table_loads() {
     assert!(plugin.validate(&[0.2, 0.3]).is_ok());
 }
 
-/// A plugin built before the last field of the table was there: the host takes that field as absent.
+/// A plugin built before the last field of the table was there: the host takes that field as
+/// absent.
 #[test]
 fn an_older_minor_with_a_shorter_table_loads() {
     let folder = Folder::new("older");
@@ -337,8 +338,9 @@ fn the_shipped_laws_are_found_and_agree_with_their_names() {
     }
 }
 
-/// The program alone, copied elsewhere, without anything in its environment: shipped laws and materials are found, a case
-/// runs to the bits of a run in the checkout, and a library on the path takes no shipped law's place.
+/// The program alone, copied elsewhere, without anything in its environment: shipped laws and
+/// materials are found, a case runs to the bits of a run in the checkout, and a library on the path
+/// takes no shipped law's place.
 #[test]
 fn the_program_alone_runs_a_case() {
     let folder = Folder::new("alone");

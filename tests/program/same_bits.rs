@@ -1,5 +1,6 @@
-//! The same input gives the same bits: every shipped case, twice and on two threads and three, and all shapes in motion. Contacts in another order are another
-//! path of the solver: in a hyperstatic set of contacts it ends in other forces, whose sums are compared instead.
+//! The same input gives the same bits: every shipped case, twice and on two threads and three, and
+//! all shapes in motion. Contacts in another order are another path of the solver: in a hyperstatic
+//! set of contacts it ends in other forces, whose sums are compared instead.
 
 use fretwork::contact::Key;
 use fretwork::geometry::space::VectorLike;
@@ -228,8 +229,8 @@ impl Sums {
     }
 }
 
-/// The state after some steps with the grains' balls in their order, or the other way round: names, order and
-/// sides of contacts follow.
+/// The state after some steps with the grains' balls in their order, or the other way round: names,
+/// order and sides of contacts follow.
 fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
     if turned {
         let grain: Vec<bool> = s.state.bodies.grain_flags();
@@ -259,7 +260,8 @@ fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums
 #[test]
 fn contacts_in_another_order_give_the_same_sums() {
     let far = |x: f64, y: f64| (x - y).abs() / x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
-    // Columns that collapse are others after each impact: what they have in common is the mean of some.
+    // Columns that collapse are others after each impact: what they have in common is the mean of
+    // some.
     for (case, steps, samples) in [
         ("biaxial", 600, 1),
         ("plane_shear", 600, 1),

@@ -143,7 +143,8 @@ fn a_table_gives_grains() {
     );
 }
 
-/// Positions, velocities and spins of a run's end are those that another case begins with, bit by bit.
+/// Positions, velocities and spins of a run's end are those that another case begins with, bit by
+/// bit.
 fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     let folder = Folder::new(name);
     let path = folder.write("first.ron", &case(S::D, "stone", grains, ""));

@@ -294,7 +294,8 @@ fn a_problem_without_contacts_is_solved() {
 fn one_contact_sticks_slides_or_parts() {
     let folder = Folder::new();
     let out = folder.path("out.hdf5");
-    // W = diag(2, 1, 1): sticking needs p = (0.5, -0.1, 0); sliding p_t = -mu p_n; without friction none.
+    // W = diag(2, 1, 1): sticking needs p = (0.5, -0.1, 0); sliding p_t = -mu p_n; without friction
+    // none.
     for (mu, q, exact) in [
         (0.5, [-1.0, 0.1, 0.0], [0.5, -0.1, 0.0]),
         (0.5, [-1.0, 0.0, 3.0], [0.5, 0.0, -0.25]),
@@ -416,7 +417,8 @@ const LOCAL: [&str; 4] = [
     "fc3d_OneObject-i1028-138",
 ];
 
-/// The same motion in other units has the same figure: to the bit where they differ by a power of two.
+/// The same motion in other units has the same figure: to the bit where they differ by a power of
+/// two.
 #[test]
 fn the_scale_free_error_knows_no_units() {
     for name in LOCAL {
@@ -446,8 +448,9 @@ fn the_scale_free_error_knows_no_units() {
     }
 }
 
-/// The field's figure of a problem whose W is 1e-9 of its own passes with velocities that are wrong by their own size: it is
-/// flagged, refused by the exit code where that is asked for, and solved to both where there are iterations for it.
+/// The field's figure of a problem whose W is 1e-9 of its own passes with velocities that are wrong
+/// by their own size: it is flagged, refused by the exit code where that is asked for, and solved
+/// to both where there are iterations for it.
 #[test]
 fn what_the_fields_figure_hides_is_flagged_and_can_be_refused() {
     let folder = Folder::new();

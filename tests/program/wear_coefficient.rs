@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-/// A block that slides on a profile: the wear law takes what is in `wear`, and the two materials have these hardnesses.
+/// A block that slides on a profile: the wear law takes what is in `wear`, and the two materials
+/// have these hardnesses.
 fn slides(
     wear: &str,
     law: &str,
@@ -71,7 +72,8 @@ fn twice_the_hardness_wears_half_the_volume() {
     let (once, twice) = (at([SOFT, HARD]), at([Some((520.0, "HBW")), HARD]));
     assert!(once > 0.0);
     assert!((twice / once - 0.5).abs() < 1e-12, "{twice} {once}");
-    // The same as k = K/H by hand: the softer material counts, wherever it stands, and whether or not the other has a hardness.
+    // The same as k = K/H by hand: the softer material counts, wherever it stands, and whether or
+    // not the other has a hardness.
     let k = 3e-4 / (260.0 * 9.80665e6);
     let by_hand = worn(slides(&format!(r#"{{"k": {k:e}}}"#), "archard", [None, None]).unwrap());
     for hardness in [[SOFT, HARD], [HARD, SOFT], [SOFT, None], [None, SOFT]] {

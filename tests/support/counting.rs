@@ -4,8 +4,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Bytes held at a time beyond which an allocation fails: the test then ends in an abort, with the input kept,
-/// and the machine stays usable.
+/// Bytes held at a time beyond which an allocation fails: the test then ends in an abort, with the
+/// input kept, and the machine stays usable.
 const MAX_ALLOCATION: usize = 6 << 30;
 
 static HELD: AtomicUsize = AtomicUsize::new(0);
@@ -23,8 +23,8 @@ fn allowed(bytes: usize) -> bool {
     HELD.load(Relaxed).saturating_add(bytes) <= MAX_ALLOCATION
 }
 
-// SAFETY: every call goes to the system's allocator with the caller's own arguments, or returns null, which stands for
-// an allocation that failed; the counters do not allocate.
+// SAFETY: every call goes to the system's allocator with the caller's own arguments, or returns
+// null, which stands for an allocation that failed; the counters do not allocate.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !allowed(layout.size()) {
@@ -51,7 +51,8 @@ unsafe impl GlobalAlloc for Counting {
     }
 
     unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
-        // SAFETY: every block comes from the system's allocator, and layouts are passed on as they are.
+        // SAFETY: every block comes from the system's allocator, and layouts are passed on as they
+        // are.
         unsafe { System.dealloc(at, layout) };
         HELD.fetch_sub(layout.size(), Relaxed);
     }

@@ -1,4 +1,5 @@
-//! Features of a scene of grains by the `--set`s that switch them on, for what measures their cost and their memory.
+//! Features of a scene of grains by the `--set`s that switch them on, for what measures their cost
+//! and their memory.
 
 /// A feature: its name and its `--set`s.
 pub type Feature = (&'static str, &'static [&'static str]);

@@ -1,9 +1,9 @@
 //! Adhesion curve: friction of a rolling wheel against creepage, with and without third body.
 //!
-//! `cargo run --release --example adhesion` rolls `cases/wheel_rail_rolling.ron` at several creepages, two at
-//! a time, without third body and with five samples of it, prints the tables of `docs/rolling.md` and draws
-//! `docs/figures/adhesion.png` with the closed form of the bare contact. Creepages (in per cent) may be
-//! given: `-- 0 1 2`; then no figure is drawn.
+//! `cargo run --release --example adhesion` rolls `cases/wheel_rail_rolling.ron` at several
+//! creepages, two at a time, without third body and with five samples of it, prints the tables of
+//! `docs/rolling.md` and draws `docs/figures/adhesion.png` with the closed form of the bare
+//! contact. Creepages (in per cent) may be given: `-- 0 1 2`; then no figure is drawn.
 
 use fretwork::geometry::space::Dim2;
 use fretwork::report::{Axis, Chart, Series, Style, draw_panels};
@@ -21,8 +21,8 @@ const BARE: [f64; 10] = [
     0.0, 0.001, 0.002, 0.003, 0.004, 0.006, 0.008, 0.01, 0.02, 0.08,
 ];
 const SEEDS: [u64; 5] = [3, 4, 5, 6, 7];
-/// Speed (m/s), radius (m), load (N/m), friction coefficient and stiffnesses of the elastic layer (Pa/m) in
-/// the case.
+/// Speed (m/s), radius (m), load (N/m), friction coefficient and stiffnesses of the elastic layer
+/// (Pa/m) in the case.
 const SPEED: f64 = 1.0;
 const RADIUS: f64 = 0.46;
 const LOAD: f64 = 1.333e7;
@@ -40,8 +40,8 @@ struct Rolling {
     /// Force along the rail, and moment over the radius.
     force: f64,
     moment: f64,
-    /// Power of the contact forces on the wheel, friction power, total dissipated power and rate of stored
-    /// energy, over P v.
+    /// Power of the contact forces on the wheel, friction power, total dissipated power and rate of
+    /// stored energy, over P v.
     power: f64,
     friction: f64,
     lost: f64,
@@ -86,15 +86,16 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Half length of the bare contact patch (m) and largest pressure (Pa): P = 4/3 a p0, p0 = k_n a^2/(2 R).
+/// Half length of the bare contact patch (m) and largest pressure (Pa): P = 4/3 a p0, p0 = k_n
+/// a^2/(2 R).
 fn patch() -> (f64, f64) {
     let a = (1.5 * LOAD * RADIUS / NORMAL).cbrt();
     (a, NORMAL * a * a / (2.0 * RADIUS))
 }
 
-/// Q/P of bristles of stiffness k_t under a parabolic pressure. The arc of the disk is longer than its chord,
-/// so averaged over the patch its surface velocity along the rail is lower than that of its rim by the
-/// fraction a^2/(6 R^2).
+/// Q/P of bristles of stiffness k_t under a parabolic pressure. The arc of the disk is longer than
+/// its chord, so averaged over the patch its surface velocity along the rail is lower than that of
+/// its rim by the fraction a^2/(6 R^2).
 fn closed(creepage: f64) -> f64 {
     let (a, p0) = patch();
     let s = TANGENTIAL * (creepage - a * a / (6.0 * RADIUS * RADIUS)) * a / (2.0 * MU * p0);

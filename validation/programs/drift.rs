@@ -1,11 +1,11 @@
 //! Drift of penetrations in a long run of the shear cell, with and without their correction.
 //!
 //! `cargo run --release --example drift [-- STEPS [SETTING...]]` takes 100,000 steps of
-//! `cases/shear_cell_3d.ron` with each solver setting (`none`, `correction=0.1`, `projection=1e-4`, ...) and
-//! prints, ten times per run, the deepest penetration since the last line and at its last step, in radii of
-//! the smaller grain, the mean over closed contacts, the steps with a projection and its iterations, the
-//! energy supplied by the correction as a fraction of the external work, the residual of the ledger, and the
-//! time per step.
+//! `cases/shear_cell_3d.ron` with each solver setting (`none`, `correction=0.1`, `projection=1e-4`,
+//! ...) and prints, ten times per run, the deepest penetration since the last line and at its last
+//! step, in radii of the smaller grain, the mean over closed contacts, the steps with a projection
+//! and its iterations, the energy supplied by the correction as a fraction of the external work,
+//! the residual of the ledger, and the time per step.
 
 use fretwork::geometry::space::Dim3;
 use fretwork::scene::load;

@@ -1,11 +1,12 @@
-//! League table of a folder of FCLIB problems: every solver of Fretwork against the best solver of another
-//! program.
+//! League table of a folder of FCLIB problems: every solver of Fretwork against the best solver of
+//! another program.
 //!
-//! `cargo run --release --example league -- FOLDER BASELINE.csv [OUT]` solves every problem of FOLDER with
-//! `auto` at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT` seconds if set), and with every other solver at
-//! 1e-8, at most 2 s, evaluates the error of every solution again from a written file, and writes
-//! `fclib_table.md` and `figures/solvers_profile.png` to OUT (docs). `ONLY=auto` omits the other solvers and
-//! the picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
+//! `cargo run --release --example league -- FOLDER BASELINE.csv
+//! [OUT]` solves every problem of FOLDER with `auto` at 1e-4, 1e-8 and 1e-12, at most 60 s each (`LIMIT`
+//! seconds if set), and with every other solver at 1e-8, at most 2 s, evaluates the error of every
+//! solution again from a written file, and writes `fclib_table.md` and
+//! `figures/solvers_profile.png` to OUT (docs). `ONLY=auto` omits the other solvers and the
+//! picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
 use fretwork::report::{Axis, Chart, DrawChart, Series};
@@ -302,8 +303,8 @@ fn page(rows: &str, ours: &Times, peer: &Times, counts: &Counts<'_>, limit: f64)
 /// The fastest of the other program's solvers on each problem.
 const BEST: &str = "peer best";
 
-/// Performance profile (Dolan and More): fraction of problems solved within a factor of the best of all
-/// solvers.
+/// Performance profile (Dolan and More): fraction of problems solved within a factor of the best of
+/// all solvers.
 fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut all: BTreeMap<&(String, String), Timings> = BTreeMap::new();
     for (key, times) in ours.iter().filter(|((_, t), _)| t == "1e-8") {

@@ -1,9 +1,9 @@
 //! Memory per grain and per contact, counted to the byte, for each feature.
 //!
-//! `cargo run --release --example memory` makes scenes of disks, spheres, and bricks in 2D and 3D at two
-//! sizes, steps them, and prints the table of `docs/dev/memory.md`. Grains are counted in scenes without
-//! contacts, contacts in packed layers, each by the difference between the two sizes, so that fixed costs
-//! cancel.
+//! `cargo run --release --example memory` makes scenes of disks, spheres, and bricks in 2D and 3D
+//! at two sizes, steps them, and prints the table of `docs/dev/memory.md`. Grains are counted in
+//! scenes without contacts, contacts in packed layers, each by the difference between the two
+//! sizes, so that fixed costs cancel.
 
 #[path = "../../tests/support/counting.rs"]
 mod counting;
@@ -69,8 +69,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Approximate numbers of contacts at the two sizes, just below 2^15 and 2^16. Growing lists double their
-/// capacity when full, and are nearly full here; just after doubling they take twice as much.
+/// Approximate numbers of contacts at the two sizes, just below 2^15 and 2^16. Growing lists double
+/// their capacity when full, and are nearly full here; just after doubling they take twice as much.
 const CONTACTS: [f64; 2] = [32_400.0, 64_800.0];
 
 fn scene<S: Dimensional>(

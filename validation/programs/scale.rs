@@ -1,9 +1,9 @@
 //! Cost of a step and memory against the number of grains.
 //!
-//! `cargo run --release --example scale [-- MAX]` settles layers of disks (20 deep) and spheres (10 deep) of
-//! increasing width, from 1,000 to MAX grains (1,000,000), each in a separate process; it prints the table of
-//! `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth is constant, and with it the
-//! number of iterations that a load needs to propagate across the layer.
+//! `cargo run --release --example scale [-- MAX]` settles layers of disks (20 deep) and spheres (10
+//! deep) of increasing width, from 1,000 to MAX grains (1,000,000), each in a separate process; it
+//! prints the table of `docs/dev/performance.md` and draws `docs/figures/scale.png`. The depth is
+//! constant, and with it the number of iterations that a load needs to propagate across the layer.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::report::{Axis, Chart, Series, draw_panels};
@@ -178,8 +178,8 @@ fn apart(dimension: &str, count: usize) -> Result<Row, Failure> {
 
 const RADIUS: f64 = 1e-3;
 
-/// Limit on the steps for a layer to come to rest; a layer that needs more is measured anyway, and its
-/// iterations show it.
+/// Limit on the steps for a layer to come to rest; a layer that needs more is measured anyway, and
+/// its iterations show it.
 const SETTLING: u32 = 60;
 
 /// A layer of `count` grains above a floor, periodic along the horizontal axes.

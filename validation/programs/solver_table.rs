@@ -1,9 +1,10 @@
 //! Every solver on the fretting case at three tolerances, and on every shipped case.
 //!
-//! `cargo run --release --example solver_table` writes `docs/dev/fretting_solvers.md` from the rows in
-//! `results/solver_table`, which it first fills: a run with an existing row is not repeated. Parts:
-//! `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET` (40) is the limit on
-//! the wall time of a fretting run (s), `SHORT` (4) that of other cases. `PARTS=page` only writes the page.
+//! `cargo run --release --example solver_table` writes `docs/dev/fretting_solvers.md` from the rows
+//! in `results/solver_table`, which it first fills: a run with an existing row is not repeated.
+//! Parts: `PARTS=fretting,seeds,cases`, `METHODS=auto,newton`, `TOLERANCES=1e-4,1e-6`; `BUDGET`
+//! (40) is the limit on the wall time of a fretting run (s), `SHORT` (4) that of other cases.
+//! `PARTS=page` only writes the page.
 
 use fretwork::geometry::space::Space;
 use fretwork::scene::build::Dimensional;
@@ -26,8 +27,8 @@ fn sets(more: String) -> [String; 3] {
         more,
     ]
 }
-/// Steps of compaction and of the first slip, with bonds formed, solved by `auto` at a tolerance of 1e-4 in
-/// every run.
+/// Steps of compaction and of the first slip, with bonds formed, solved by `auto` at a tolerance of
+/// 1e-4 in every run.
 const SETTLE: u64 = 520;
 /// Seeds for the scatter.
 const SEEDS: [u64; 3] = [7, 8, 9];
@@ -119,8 +120,8 @@ fn word(method: Method) -> String {
     format!("solver.method={method:?}")
 }
 
-/// Limit on the iterations per step of a shipped case; an iteration of Newton or the interior point solver is
-/// a factorisation.
+/// Limit on the iterations per step of a shipped case; an iteration of Newton or the interior point
+/// solver is a factorisation.
 fn most(method: Method) -> u32 {
     match method {
         Method::Newton | Method::Interior => 200,
@@ -183,8 +184,8 @@ fn go<S: Dimensional>(
     tally
 }
 
-/// A row: seconds, steps, total steps, iterations per step, unconverged steps, largest error, friction by
-/// cycle.
+/// A row: seconds, steps, total steps, iterations per step, unconverged steps, largest error,
+/// friction by cycle.
 fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<String, Any> {
     let loaded = load(Path::new(FRETTING), &sets(format!("seed={seed}")))?;
     let Scene::Dim2(built) = loaded.build(&search_path())? else {

@@ -1,4 +1,5 @@
-//! Disks that attract each other, in plane shear: friction and solid fraction by inertial and cohesion number.
+//! Disks that attract each other, in plane shear: friction and solid fraction by inertial and
+//! cohesion number.
 
 use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Finer, Row, Verdict, judge, judged, rises};
@@ -51,7 +52,8 @@ fn show(inputs: &Inputs) -> Result<Results, Failure> {
     let mut results = Results::default();
     let varied = table.settings(|r| !usual(r));
     let fine = varied.iter().find(|s| s.factor("tolerance") < 1e-3);
-    // Over the value without cohesion at the same inertial number, from the straight line through its points, less 1.
+    // Over the value without cohesion at the same inertial number, from the straight line through
+    // its points, less 1.
     let share = |s: &Setting, column: &str| {
         let without = case.iter().filter(|s| eta_of(s) == 0.0);
         let points: Vec<_> = without.map(|s| (s.mean(I), s.mean(column))).collect();

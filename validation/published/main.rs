@@ -1,9 +1,10 @@
-//! Numbers of others beside ours: runs the studies of `validation/`, draws a figure for each comparison and writes
-//! `docs/validation.md`.
+//! Numbers of others beside ours: runs the studies of `validation/`, draws a figure for each
+//! comparison and writes `docs/validation.md`.
 //!
-//! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`, from the root of the project.
-//! With names only their studies are run; the page always has all comparisons. Runs are kept in `target/validation` and are not
-//! made twice by one program; another program makes them anew. With `--no-runs` the page is written from the tables that are there.
+//! `cargo run --release --example validation -- [NAME...] [--jobs N] [--program FILE] [--no-runs]`,
+//! from the root of the project. With names only their studies are run; the page always has all
+//! comparisons. Runs are kept in `target/validation` and are not made twice by one program; another
+//! program makes them anew. With `--no-runs` the page is written from the tables that are there.
 
 mod biaxial;
 mod cohesive_shear;

@@ -1,4 +1,5 @@
-//! Disks in plane shear: friction and solid fraction by the inertial number, with and without friction between grains.
+//! Disks in plane shear: friction and solid fraction by the inertial number, with and without
+//! friction between grains.
 
 use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Finer, Reference, Row};

@@ -1,4 +1,5 @@
-//! Numbers of others: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`, `source`; `#` begins a comment.
+//! Numbers of others: `validation/NAME.csv` with the columns `name`, `value`, `low`, `high`,
+//! `source`; `#` begins a comment.
 
 use crate::comparison::Failure;
 use crate::row::Reference;

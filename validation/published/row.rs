@@ -27,8 +27,8 @@ impl Verdict {
     }
 }
 
-/// `difference` from the reference, and half of the range of the reference. Also for a change that is to be 0, as a part of
-/// `reference`.
+/// `difference` from the reference, and half of the range of the reference. Also for a change that
+/// is to be 0, as a part of `reference`.
 pub fn judge(difference: Estimate, range: f64, reference: f64) -> Verdict {
     let reach = difference.half + range;
     let off = difference.mean.abs();
@@ -102,8 +102,8 @@ pub struct Finer {
     pub difference: Option<Estimate>,
 }
 
-/// The difference that is judged: with finer settings where they were run. A change of another point shifts the difference
-/// and widens its interval.
+/// The difference that is judged: with finer settings where they were run. A change of another
+/// point shifts the difference and widens its interval.
 pub fn judged(difference: Estimate, finer: Option<Finer>) -> Estimate {
     finer.map_or(difference, |f| {
         f.difference.unwrap_or(difference.plus(f.change))
@@ -111,7 +111,8 @@ pub fn judged(difference: Estimate, finer: Option<Finer>) -> Estimate {
 }
 
 impl Row {
-    /// A number of ours beside a reference. `difference` is that of each seed from the reference at its own conditions.
+    /// A number of ours beside a reference. `difference` is that of each seed from the reference at
+    /// its own conditions.
     pub fn number(
         quantity: impl Into<String>,
         ours: Estimate,

@@ -83,7 +83,8 @@ impl Estimate {
     }
 }
 
-/// Difference of two means of independent samples, with the root of the sum of squares of their half-widths.
+/// Difference of two means of independent samples, with the root of the sum of squares of their
+/// half-widths.
 pub fn difference(a: Estimate, b: Estimate) -> Estimate {
     a.plus(b.scaled(-1.0))
 }
@@ -157,7 +158,8 @@ mod tests {
         };
         let line = Line::through(&[0.0, 1.0, 3.0].map(point));
         assert!((line.intercept - 1.0).abs() < 1e-12 && (line.slope - 2.0).abs() < 1e-12);
-        // h² (1/n + (x - x̄)²/Σ(x_k - x̄)²), of regression with equal errors: x̄ = 4/3, the sum is 14/3.
+        // h² (1/n + (x - x̄)²/Σ(x_k - x̄)²), of regression with equal errors: x̄ = 4/3, the sum is
+        // 14/3.
         let expected = |x: f64| 0.3 * (1.0 / 3.0 + (x - 4.0 / 3.0).powi(2) * 3.0 / 14.0f64).sqrt();
         for x in [0.0, 4.0 / 3.0, 5.0] {
             assert!((line.half_at(x) - expected(x)).abs() < 1e-12);

@@ -1,5 +1,6 @@
-//! Smallest wear particle. Its runs are made by `validation/smallest_particle.py`, since pieces of bonded grains are found in states and
-//! not in the numbers of a study; it leaves the outcomes in a table.
+//! Smallest wear particle. Its runs are made by `validation/smallest_particle.py`, since pieces of
+//! bonded grains are found in states and not in the numbers of a study; it leaves the outcomes in a
+//! table.
 
 use crate::comparison::{Comparison, Failure, Results, folder};
 use crate::row::{Row, Verdict};
@@ -61,8 +62,9 @@ fn show() -> Result<Results, Failure> {
     Ok(results)
 }
 
-/// Mean over the ratios of both sizes of the difference of shares with a particle, and half its interval of 95 %, with the variance of a share
-/// p of n runs of (k + 1)(n - k + 1)/((n + 2)^2 (n + 3)), which is not 0 where all runs are alike.
+/// Mean over the ratios of both sizes of the difference of shares with a particle, and half its
+/// interval of 95 %, with the variance of a share p of n runs of (k + 1)(n - k + 1)/((n + 2)^2 (n +
+/// 3)), which is not 0 where all runs are alike.
 fn growth(runs: &[Run], from: f64, to: f64) -> (f64, f64) {
     let of = |size: f64, ratio: f64| {
         let own = runs.iter().filter(|r| r.0 == size && r.1 == ratio);

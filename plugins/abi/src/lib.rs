@@ -5,8 +5,8 @@
 //!
 //! Rules of the interface:
 //! * the host owns all memory; nothing is allocated on one side and freed on the other;
-//! * every struct begins with its size and only grows at the end, so that a newer minor version loads
-//!   in an older host of the same major version and vice versa;
+//! * every struct begins with its size and only grows at the end, so that a newer minor version
+//!   loads in an older host of the same major version and vice versa;
 //! * calls are batches over `n` contacts, state is stored in columns (struct of arrays);
 //! * calls are pure: no globals, any thread, any order, same input same bits;
 //! * a call returns a status code and, when it fails, a message in the host's buffer.
@@ -47,13 +47,16 @@ pub const STATUS_PANIC: i32 = 4;
 pub const FLAG_2D_ONLY: u64 = 1;
 /// Flag: the law is written for three-dimensional scenes only.
 pub const FLAG_3D_ONLY: u64 = 1 << 1;
-/// Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression. Below zero opening the
-/// law continues linearly (a negative traction), from which the host finds the zero; the host drops the compression.
-/// Such a bond fills the gap at which it formed. One without the flag also acts in compression until the gap closes.
+/// Flag (cohesion): the normal stiffness acts in tension only; the contact carries compression.
+/// Below zero opening the law continues linearly (a negative traction), from which the host finds
+/// the zero; the host drops the compression. Such a bond fills the gap at which it formed. One
+/// without the flag also acts in compression until the gap closes.
 pub const FLAG_TENSION_ONLY: u64 = 1 << 2;
-/// Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage law.
+/// Flag (cohesion): the law has an opening and a stored energy, so it can be combined with a damage
+/// law.
 pub const FLAG_OPENING: u64 = 1 << 3;
-/// Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its bonds.
+/// Flag (cohesion): the law resists bending and torsion, so the host stores the rotation of its
+/// bonds.
 pub const FLAG_MOMENT: u64 = 1 << 5;
 /// Flag (cohesion): `commit` writes `out_damage`, so the law breaks without a damage law.
 pub const FLAG_BREAKS: u64 = 1 << 6;
@@ -62,10 +65,11 @@ pub const FLAG_FORMS: u64 = 1 << 7;
 /// Flag (contact): `prepare` depends on the parameters only, so the host may call it once for one
 /// contact and use the result for all.
 pub const FLAG_CONSTANT: u64 = 1 << 4;
-/// Flag (contact): the contact is a unilateral spring; `prepare` fills the `out_contact_*` columns. Since version 1.1.
+/// Flag (contact): the contact is a unilateral spring; `prepare` fills the `out_contact_*` columns.
+/// Since version 1.1.
 pub const FLAG_COMPLIANT: u64 = 1 << 8;
-/// Flag: the law reads temperatures, so the case must compute heat; the columns are then not null. Transport laws have them without the
-/// flag. Since version 1.1.
+/// Flag: the law reads temperatures, so the case must compute heat; the columns are then not null.
+/// Transport laws have them without the flag. Since version 1.1.
 pub const FLAG_TEMPERATURE: u64 = 1 << 9;
 
 /// All flags of this version.
@@ -114,11 +118,12 @@ pub struct FwMessage {
     pub contact: i64,
 }
 
-/// One batch of contacts that share an interface law. Columns have `n` values and belong to the host.
+/// One batch of contacts that share an interface law. Columns have `n` values and belong to the
+/// host.
 ///
-/// A column that a call does not use is null. Inputs are read-only; `out_*` and `state_next` columns
-/// are written by the call. Vectors are in the local frame (n, t1, t2), n from the antagonist to the
-/// candidate; in two dimensions the `t2` columns are null.
+/// A column that a call does not use is null. Inputs are read-only; `out_*` and `state_next`
+/// columns are written by the call. Vectors are in the local frame (n, t1, t2), n from the
+/// antagonist to the candidate; in two dimensions the `t2` columns are null.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FwBatch {
@@ -186,7 +191,8 @@ pub struct FwBatch {
     pub friction_work: *const f64,
     /// Time for which the contact has carried a compressive impulse without interruption (s).
     pub pressed: *const f64,
-    /// Rotation of the bond about n, twist (rad); null without [`FLAG_MOMENT`]. In two dimensions null.
+    /// Rotation of the bond about n, twist (rad); null without [`FLAG_MOMENT`]. In two dimensions
+    /// null.
     pub rotation_n: *const f64,
     /// Rotation about t1, bending (rad). In two dimensions that about the axis out of the plane.
     pub rotation_t1: *const f64,
@@ -226,14 +232,16 @@ pub struct FwBatch {
     pub out_damping_n: *mut f64,
     /// Cohesion: tangential damping (Pa s/m).
     pub out_damping_t: *mut f64,
-    /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2). Contact: energy that the tangential spring holds (J), where
-    /// it is not T^2/2 over the stiffness on unloading; 0 otherwise.
+    /// Cohesion, call `energy`: energy stored at this opening and damage (J/m^2). Contact: energy
+    /// that the tangential spring holds (J), where it is not T^2/2 over the stiffness on unloading;
+    /// 0 otherwise.
     pub out_energy: *mut f64,
     /// Damage, and cohesion with [`FLAG_BREAKS`]: D at the end of the step.
     pub out_damage: *mut f64,
     /// Wear: volume removed over this step (m^3).
     pub out_volume: *mut f64,
-    /// Cohesion with [`FLAG_MOMENT`]: twisting moment over the area, against `rotation_n` (N m/m^2).
+    /// Cohesion with [`FLAG_MOMENT`]: twisting moment over the area, against `rotation_n` (N
+    /// m/m^2).
     pub out_moment_n: *mut f64,
     /// Bending moment over the area, against `rotation_t1` (N m/m^2).
     pub out_moment_t1: *mut f64,
@@ -244,13 +252,14 @@ pub struct FwBatch {
     /// Bending stiffness over the area (N m/m^2 per rad).
     pub out_stiffness_bend: *mut f64,
     // Since version 1.1; null for a contact law without [`FLAG_COMPLIANT`].
-    /// Overlap of the bodies (m), not negative: in `prepare` an estimate of that at the end of the step, at which the
-    /// law gives force and stiffness; in `commit` that at the end of the step.
+    /// Overlap of the bodies (m), not negative: in `prepare` an estimate of that at the end of the
+    /// step, at which the law gives force and stiffness; in `commit` that at the end of the step.
     pub overlap: *const f64,
-    /// Effective mass of the contact along its normal, 1/W_nn (kg; kg/m in 2D); 0 if neither body can move.
+    /// Effective mass of the contact along its normal, 1/W_nn (kg; kg/m in 2D); 0 if neither body
+    /// can move.
     pub effective_mass: *const f64,
-    /// Force of the tangential spring along t1 (N; N/m in 2D), positive where the candidate was displaced along t1: at the
-    /// start of the step in `prepare`, at its end in `commit`.
+    /// Force of the tangential spring along t1 (N; N/m in 2D), positive where the candidate was
+    /// displaced along t1: at the start of the step in `prepare`, at its end in `commit`.
     pub spring_t1: *const f64,
     /// Force of the tangential spring along t2 (N).
     pub spring_t2: *const f64,
@@ -260,7 +269,8 @@ pub struct FwBatch {
     pub spring_before_t2: *const f64,
     /// Contact: compressive force of the spring at `overlap` (N; N/m in 2D), not negative.
     pub out_contact_force_n: *mut f64,
-    /// Contact: force of the tangential spring along t1 at the start of the step (N): `spring_t1`, unless the law changes it.
+    /// Contact: force of the tangential spring along t1 at the start of the step (N): `spring_t1`,
+    /// unless the law changes it.
     pub out_contact_force_t1: *mut f64,
     /// Contact: force of the tangential spring along t2 (N).
     pub out_contact_force_t2: *mut f64,
@@ -268,15 +278,17 @@ pub struct FwBatch {
     pub out_contact_stiffness_n: *mut f64,
     /// Contact: slope of the tangential force (N/m); 0 for a rigid tangential contact.
     pub out_contact_stiffness_t: *mut f64,
-    /// Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored energy; 0 where that is
-    /// `out_contact_stiffness_t`.
+    /// Contact: stiffness of the tangential spring when it unloads (N/m), which defines its stored
+    /// energy; 0 where that is `out_contact_stiffness_t`.
     pub out_contact_unloading_t: *mut f64,
     /// Contact: normal damping (N s/m).
     pub out_contact_damping_n: *mut f64,
     /// Contact: tangential damping (N s/m).
     pub out_contact_damping_t: *mut f64,
     // Since version 1.1; null where the case computes no heat.
-    /// Temperature of the contact (K) at the start of the step: that at which two half-spaces of the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e, plus the flash temperature where the case asks for it.
+    /// Temperature of the contact (K) at the start of the step: that at which two half-spaces of
+    /// the bodies' temperatures meet, (e1 T1 + e2 T2)/(e1 + e2) with the effusivities e, plus the
+    /// flash temperature where the case asks for it.
     pub temperature: *const f64,
     /// Temperature of the candidate there (K).
     pub temperature_candidate: *const f64,
@@ -299,8 +311,8 @@ pub type FwValidate =
 pub type FwCall =
     Option<unsafe extern "C" fn(batch: *const FwBatch, message: *mut FwMessage) -> i32>;
 
-/// The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading at a
-/// fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if the law declares none.
+/// The fracture energy (J/m^2) that a bond under this law dissipates under slow monotonic loading
+/// at a fixed angle from the normal (rad; 0 is mode I, pi/2 mode II); NaN if the law declares none.
 pub type FwFracture = Option<unsafe extern "C" fn(parameters: *const f64, angle: f64) -> f64>;
 
 /// The table of a plugin: returned by its entry function, static for the life of the program.
@@ -343,14 +355,16 @@ pub struct FwPlugin {
     pub initialise: FwCall,
     /// Contact and cohesion: fills the local form at the start of the step.
     pub prepare: FwCall,
-    /// Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local form.
+    /// Solves a contact itself. Null in version 1.0; reserved for laws that do not fit the local
+    /// form.
     pub solve_local: FwCall,
-    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`; transport:
-    /// `out_conductance`, `out_electric_conductance`.
+    /// At the end of the step: new internal variables; damage: `out_damage`; wear: `out_volume`;
+    /// transport: `out_conductance`, `out_electric_conductance`.
     pub commit: FwCall,
     /// Cohesion: `out_energy` at the given opening and damage.
     pub energy: FwCall,
-    /// Cohesion and damage: the fracture energy that the law declares; `certify` compares. May be null.
+    /// Cohesion and damage: the fracture energy that the law declares; `certify` compares. May be
+    /// null.
     pub fracture_energy: FwFracture,
 }
 

@@ -1,5 +1,6 @@
-//! The laws of contact that come with Fretwork, by kind. Each is written with the crate `fretwork_law`,
-//! as the law of any author is, and reaches the program through the same table of functions.
+//! The laws of contact that come with Fretwork, by kind. Each is written with the crate
+//! `fretwork_law`, as the law of any author is, and reaches the program through the same table of
+//! functions.
 
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,6 @@
-//! Bonds that open along straight lines between mode I and mode II: their largest traction lies on the envelope of their reference, and what it
-//! takes to separate them is the energy of the reference for that mode.
+//! Bonds that open along straight lines between mode I and mode II: their largest traction lies on
+//! the envelope of their reference, and what it takes to separate them is the energy of the
+//! reference for that mode.
 
 use crate::cohesion::{
     camanho_davila::CamanhoDavila, tvergaard_hutchinson::TvergaardHutchinson,
@@ -16,14 +17,16 @@ use std::f64::consts::{E, SQRT_2};
 const ANGLES: [f64; 5] = [0.0, 20.0, 45.0, 70.0, 90.0];
 const STEPS: u32 = 100_000;
 
-/// Largest normal and shear traction at the same moment, by their length (Pa), and the work (J/m^2).
+/// Largest normal and shear traction at the same moment, by their length (Pa), and the work
+/// (J/m^2).
 #[derive(Default)]
 struct Pulled {
     peak: [f64; 2],
     work: f64,
 }
 
-/// Opens a bond along a line at an angle; `at` gives the traction, normal and shear, at an opening in these directions.
+/// Opens a bond along a line at an angle; `at` gives the traction, normal and shear, at an opening
+/// in these directions.
 fn pull(angle: f64, reach: f64, mut at: impl FnMut([f64; 2]) -> [f64; 2]) -> Pulled {
     let (s, c) = angle.to_radians().sin_cos();
     let (mut out, mut last) = (Pulled::default(), [0.0; 2]);
@@ -124,7 +127,8 @@ fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
         );
         near("tvergaard-hutchinson", angle, pulled.work, 5.0, 1e-3);
     }
-    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma delta_n/delta_t at delta_t/sqrt(2).
+    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma
+    // delta_n/delta_t at delta_t/sqrt(2).
     let pure = |angle| {
         let xu = [2e6, 1e-6, 1.5e-6, 1e-5];
         of_cohesion::<XuNeedleman>(&xu, angle, 2e-5).peak
@@ -139,7 +143,8 @@ fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
     );
 }
 
-/// Shear stiffness of half and of three times the normal one: the traction reaches the strength, and the area is the energy.
+/// Shear stiffness of half and of three times the normal one: the traction reaches the strength,
+/// and the area is the energy.
 #[test]
 fn mixed_mode_of_damage_laws_is_that_of_their_references() {
     for (angle, ratio) in ANGLES.iter().flat_map(|a| [(*a, 0.5), (*a, 3.0)]) {

@@ -1,7 +1,7 @@
 //! The curve of a bond that carries its strength over a plateau before it softens linearly.
 
-/// From the opening u_0 at the strength a plateau to u_p, then a linear fall to nothing at u_f, with
-/// energy = strength (u_f + u_p - u_0)/2.
+/// From the opening u_0 at the strength a plateau to u_p, then a linear fall to nothing at u_f,
+/// with energy = strength (u_f + u_p - u_0)/2.
 pub(crate) struct Trapezoid {
     first: f64,
     end: f64,
@@ -9,8 +9,8 @@ pub(crate) struct Trapezoid {
 }
 
 impl Trapezoid {
-    /// With u_0 `first` (m), energy over strength `length` (m), and `plateau` between 0 (none) and 1, the longest that
-    /// the energy allows: to u_0/2 + length, where u_f = u_p.
+    /// With u_0 `first` (m), energy over strength `length` (m), and `plateau` between 0 (none) and
+    /// 1, the longest that the energy allows: to u_0/2 + length, where u_f = u_p.
     pub fn new(first: f64, length: f64, plateau: f64) -> Self {
         let longest = 0.5 * first + length;
         let end = first + plateau * (longest - first);
@@ -20,7 +20,8 @@ impl Trapezoid {
         Self { first, end, last }
     }
 
-    /// Share of the strength that is carried at an opening beyond u_0 (m); `None` once the bond is broken.
+    /// Share of the strength that is carried at an opening beyond u_0 (m); `None` once the bond is
+    /// broken.
     pub fn share(&self, u: f64) -> Option<f64> {
         if u >= self.last || self.last <= self.first {
             None

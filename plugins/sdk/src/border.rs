@@ -1,4 +1,5 @@
-//! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law is here.
+//! The interface layer: from the host's columns to one contact and back. All `unsafe` code of a law
+//! is here.
 
 use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Law, Site, TransportLaw, WearLaw};
 use core::cell::{Cell, OnceCell};
@@ -48,8 +49,8 @@ fn guarded(message: *mut FwMessage, body: impl FnOnce(&Cell<i64>) -> i32) -> i32
     })
 }
 
-/// Copies the host's batch up to its size. Fields that an older host does not have are zero, so that a
-/// column beyond its end is null; additional fields of a newer host are ignored.
+/// Copies the host's batch up to its size. Fields that an older host does not have are zero, so
+/// that a column beyond its end is null; additional fields of a newer host are ignored.
 ///
 /// # Safety
 /// `raw` is null or valid for the number of bytes in its first field.
@@ -167,7 +168,8 @@ fn not_finite(message: *mut FwMessage, b: &FwBatch, k: usize, what: &str) -> i32
 }
 
 /// Runs `each` over the contacts of a batch, with the law and the internal variables, which it may
-/// change in a `COMMIT`; only there they are stored. It returns the name of an output that is not finite.
+/// change in a `COMMIT`; only there they are stored. It returns the name of an output that is not
+/// finite.
 fn over<L: Law, const COMMIT: bool>(
     raw: *const FwBatch,
     message: *mut FwMessage,

@@ -75,7 +75,8 @@ impl Traction {
         }
     }
 
-    /// That of a bond with one stiffness k (Pa/m) which damage reduces, (1 - D) k u; nothing once it is broken.
+    /// That of a bond with one stiffness k (Pa/m) which damage reduces, (1 - D) k u; nothing once
+    /// it is broken.
     pub fn damaged(site: &Site, k: f64) -> Self {
         if site.damage >= 1.0 {
             return Self::default();

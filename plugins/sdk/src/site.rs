@@ -15,8 +15,8 @@ pub struct Site {
     pub pressed: f64,
     /// Bond elongation (m).
     pub opening: [f64; 3],
-    /// Rotation of the bond (rad): twist about n, bending about t1 and t2; in two dimensions the second is
-    /// that about the axis out of the plane. Zero without `FLAG_MOMENT`.
+    /// Rotation of the bond (rad): twist about n, bending about t1 and t2; in two dimensions the
+    /// second is that about the axis out of the plane. Zero without `FLAG_MOMENT`.
     pub rotation: [f64; 3],
     /// Relative velocity (m/s).
     pub velocity: [f64; 3],
@@ -24,18 +24,19 @@ pub struct Site {
     pub impulse: [f64; 3],
     /// Damage D; 1 without a bond.
     pub damage: f64,
-    /// Overlap (m), with `FLAG_COMPLIANT`: at the start of a step an estimate of that at its end, for which the law gives
-    /// force and stiffness; at the end of a step that which is there.
+    /// Overlap (m), with `FLAG_COMPLIANT`: at the start of a step an estimate of that at its end,
+    /// for which the law gives force and stiffness; at the end of a step that which is there.
     pub overlap: f64,
-    /// Effective mass along the normal (kg; kg/m in 2D), with `FLAG_COMPLIANT` at the start of a step; 0 if neither body can
-    /// move.
+    /// Effective mass along the normal (kg; kg/m in 2D), with `FLAG_COMPLIANT` at the start of a
+    /// step; 0 if neither body can move.
     pub effective_mass: f64,
-    /// Force of the tangential spring along t1 and t2 (N; N/m in 2D), with `FLAG_COMPLIANT`; positive where the candidate was displaced
-    /// along them.
+    /// Force of the tangential spring along t1 and t2 (N; N/m in 2D), with `FLAG_COMPLIANT`;
+    /// positive where the candidate was displaced along them.
     pub spring_t: [f64; 2],
     /// The same at the start of the step, in commit (N; N/m in 2D).
     pub spring_before_t: [f64; 2],
-    /// Temperature of the contact (K) at the start of the step, where the case computes heat; 0 elsewhere.
+    /// Temperature of the contact (K) at the start of the step, where the case computes heat; 0
+    /// elsewhere.
     pub temperature: f64,
     /// Temperatures of candidate and antagonist there (K).
     pub temperatures: [f64; 2],
@@ -98,7 +99,8 @@ impl Site {
         }
     }
 
-    /// Half-width (m) of the spot on which the compressive force is carried where surfaces of this hardness (Pa) yield: of a circle, in 2D of a strip.
+    /// Half-width (m) of the spot on which the compressive force is carried where surfaces of this
+    /// hardness (Pa) yield: of a circle, in 2D of a strip.
     pub fn plastic_spot(&self, hardness: f64) -> f64 {
         let area = self.force() / hardness;
         match self.dimension {
@@ -107,8 +109,9 @@ impl Site {
         }
     }
 
-    /// Conductance of a spot of this half-width (m) between bodies of conductivity `k`: 2 k a of a circle. In 2D that of a strip, counted to the
-    /// distance 2 R on either side, R the reduced radius: pi k/(2 asinh(2 R/a)) per metre of depth. 0 without a spot.
+    /// Conductance of a spot of this half-width (m) between bodies of conductivity `k`: 2 k a of a
+    /// circle. In 2D that of a strip, counted to the distance 2 R on either side, R the reduced
+    /// radius: pi k/(2 asinh(2 R/a)) per metre of depth. 0 without a spot.
     pub fn constriction(&self, k: f64, half_width: f64) -> f64 {
         if half_width <= 0.0 {
             return 0.0;

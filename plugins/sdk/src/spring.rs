@@ -2,7 +2,8 @@
 
 use crate::Site;
 
-/// The unilateral spring of a compliant contact at the site's overlap (N, N/m; per metre of depth in 2D).
+/// The unilateral spring of a compliant contact at the site's overlap (N, N/m; per metre of depth
+/// in 2D).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spring {
     /// Compressive force.
@@ -15,7 +16,8 @@ pub struct Spring {
     pub force_t: [f64; 2],
     /// Its slope; 0 for a rigid tangential contact.
     pub stiffness_t: f64,
-    /// Its slope when it unloads, where that is another; 0 otherwise. Displacement beyond that of this slope is slip.
+    /// Its slope when it unloads, where that is another; 0 otherwise. Displacement beyond that of
+    /// this slope is slip.
     pub unloading_t: f64,
     /// Energy that it holds (J), where that is not T^2/2 over the slope on unloading; 0 otherwise.
     pub energy_t: f64,
@@ -24,7 +26,8 @@ pub struct Spring {
 }
 
 impl Spring {
-    /// A linear spring of stiffness k along the normal and `ratio` times k along the tangents, with a damping ratio ([`damping_ratio`]).
+    /// A linear spring of stiffness k along the normal and `ratio` times k along the tangents, with
+    /// a damping ratio ([`damping_ratio`]).
     pub fn linear(site: &Site, stiffness: f64, ratio: f64, damping: f64) -> Self {
         let k_t = (ratio * stiffness).min(f64::MAX);
         Self {
@@ -40,9 +43,10 @@ impl Spring {
     }
 }
 
-/// Damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound with this share of the approach velocity when the contact
-/// ends as soon as its force is zero, not when the overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to
-/// 22). The same ratio holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k the slope.
+/// Damping ratio zeta of a linear spring, d = 2 zeta sqrt(k m), whose impacts rebound with this
+/// share of the approach velocity when the contact ends as soon as its force is zero, not when the
+/// overlap is (T. Schwager, T. Poschel, Granular Matter 9 (2007) 465, eqs. 20 to 22). The same
+/// ratio holds for Hertz' spring with d = 2 zeta sqrt(5/6) sqrt(k m) at each overlap, k the slope.
 ///
 /// The ratio of restitution 0 is infinite; that of 1e-6 is given instead.
 pub fn damping_ratio(restitution: f64) -> f64 {

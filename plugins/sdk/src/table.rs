@@ -84,8 +84,9 @@ macro_rules! parameters {
     };
 }
 
-/// Exports a law as the plugin of this library: `export!(contact Coulomb);`, `export!(cohesion Mac);`,
-/// `export!(damage Mac);`, `export!(wear Archard);`, `export!(transport Constriction);`.
+/// Exports a law as the plugin of this library: `export!(contact Coulomb);`,
+/// `export!(cohesion Mac);`, `export!(damage Mac);`, `export!(wear Archard);`,
+/// `export!(transport Constriction);`.
 #[macro_export]
 macro_rules! export {
     ($kind:ident $law:ty) => {
@@ -101,7 +102,8 @@ macro_rules! export {
     };
 }
 
-/// The table of a law, a static named `TABLE`, without the exported entry function: for programs with built-in laws.
+/// The table of a law, a static named `TABLE`, without the exported entry function: for programs
+/// with built-in laws.
 #[macro_export]
 macro_rules! plugin_table {
     (contact $law:ty) => {

@@ -1,6 +1,7 @@
 //! Checks common to laws of one kind, for the tests of a law.
 //!
-//! They panic with the values that violate a requirement. `fretwork law certify` tests more, from outside.
+//! They panic with the values that violate a requirement. `fretwork law certify` tests more, from
+//! outside.
 
 use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Parameters, Site, WearLaw};
 use std::fmt::Debug;
@@ -48,7 +49,8 @@ impl<'a, L: DamageLaw> Bond<'a, L> {
     }
 }
 
-/// The undamaged bond of a stiffness (Pa/m), opened by `u` (m) along its normal, whose energy falls with (1 - D)^m.
+/// The undamaged bond of a stiffness (Pa/m), opened by `u` (m) along its normal, whose energy falls
+/// with (1 - D)^m.
 pub fn opened(stiffness: f64, u: f64, m: f64) -> Intact {
     Intact {
         energy: 0.5 * stiffness * u * u,
@@ -58,7 +60,8 @@ pub fn opened(stiffness: f64, u: f64, m: f64) -> Intact {
     }
 }
 
-/// For any finite bond and the minimum, default and maximum of every parameter: D in \[D_i, 1\], variables finite.
+/// For any finite bond and the minimum, default and maximum of every parameter: D in \[D_i, 1\],
+/// variables finite.
 ///
 /// # Panics
 /// If the law leaves that range.
@@ -87,7 +90,8 @@ pub fn damage_stays_in_range<L: DamageLaw + Debug>() {
     }
 }
 
-/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for bonds of 1e12 and 1e14 Pa/m.
+/// Damage does not decrease on a random walk of the opening by 0.2 um per step, for bonds of 1e12
+/// and 1e14 Pa/m.
 ///
 /// # Panics
 /// If it decreases, leaves \[0, 1\], or the path causes no damage.
@@ -139,8 +143,8 @@ impl Pull {
     }
 }
 
-/// A bond of stiffness `k` (Pa/m) and exponent `m`, opened to `reach` (m) by `steps` equal steps along
-/// \[0.6, 0, 0.8\].
+/// A bond of stiffness `k` (Pa/m) and exponent `m`, opened to `reach` (m) by `steps` equal steps
+/// along \[0.6, 0, 0.8\].
 pub fn pull<L: DamageLaw>(law: &L, k: f64, m: f64, reach: f64, steps: u32) -> Pull {
     let mut bond = Bond::new(law, 0.0);
     open(reach, steps, |u, _| {
@@ -181,8 +185,8 @@ fn open(reach: f64, steps: u32, mut at: impl FnMut(f64, f64) -> (f64, f64)) -> P
     out
 }
 
-/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy. An attraction over an
-/// area that overflows its stress is finite.
+/// Openings that overflow give finite numbers, and a broken bond has zero traction and energy. An
+/// attraction over an area that overflows its stress is finite.
 ///
 /// # Panics
 /// If this does not hold, or the force is not attractive.

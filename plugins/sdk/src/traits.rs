@@ -72,8 +72,9 @@ pub trait Law: Parameters {
     /// Internal variables, at most [`crate::border::MOST_VARIABLES`].
     const VARIABLES: &'static [Variable] = &[];
 
-    /// The fracture energy (J/m^2) that a bond dissipates under slow monotonic loading at this angle from the
-    /// normal (rad; 0 is mode I, pi/2 mode II), if the law declares one: checked by `fretwork law certify`.
+    /// The fracture energy (J/m^2) that a bond dissipates under slow monotonic loading at this
+    /// angle from the normal (rad; 0 is mode I, pi/2 mode II), if the law declares one: checked by
+    /// `fretwork law certify`.
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
         None
     }
@@ -87,7 +88,8 @@ pub trait Law: Parameters {
     }
 }
 
-/// A value that goes linearly from `low` to `high` while x goes from `from` to `to`, and stays so outside.
+/// A value that goes linearly from `low` to `high` while x goes from `from` to `to`, and stays so
+/// outside.
 pub fn ramp(x: f64, [from, to]: [f64; 2], [low, high]: [f64; 2]) -> f64 {
     let share = ((x - from) / (to - from)).clamp(0.0, 1.0);
     (1.0 - share) * low + share * high
@@ -108,13 +110,13 @@ pub fn require(holds: bool, message: &str) -> Result<(), String> {
 pub trait ContactLaw: Law {
     /// At the start of a step.
     fn friction(&self, site: &Site, state: &[f64]) -> Friction;
-    /// The spring of a compliant contact at the start of a step, with `FLAG_COMPLIANT`; `damping` is
-    /// [`Self::damping`].
+    /// The spring of a compliant contact at the start of a step, with `FLAG_COMPLIANT`; `damping`
+    /// is [`Self::damping`].
     fn spring(&self, _site: &Site, _state: &[f64], _damping: f64) -> Spring {
         Spring::default()
     }
-    /// A number of its parameters alone that [`Self::spring`] is given, and that is computed once a batch: the damping
-    /// ratio.
+    /// A number of its parameters alone that [`Self::spring`] is given, and that is computed once a
+    /// batch: the damping ratio.
     fn damping(&self) -> f64 {
         0.0
     }
@@ -132,8 +134,8 @@ pub trait CohesionLaw: Law {
     fn energy(&self, _site: &Site, _state: &[f64]) -> f64 {
         0.0
     }
-    /// Updates the internal variables at the end of a step and returns the damage, which is unchanged
-    /// unless the law has `FLAG_BREAKS`. The host keeps it from decreasing.
+    /// Updates the internal variables at the end of a step and returns the damage, which is
+    /// unchanged unless the law has `FLAG_BREAKS`. The host keeps it from decreasing.
     fn commit(&self, site: &Site, _state: &mut [f64]) -> f64 {
         site.damage
     }
@@ -141,21 +143,21 @@ pub trait CohesionLaw: Law {
 
 /// Growth of damage.
 pub trait DamageLaw: Law {
-    /// Damage at the end of the step, from the opening there; updates the internal variables. The host
-    /// keeps the damage from decreasing.
+    /// Damage at the end of the step, from the opening there; updates the internal variables. The
+    /// host keeps the damage from decreasing.
     fn grow(&self, site: &Site, intact: &Intact, state: &mut [f64]) -> f64;
 }
 
 /// Wear: removed volume.
 pub trait WearLaw: Law {
-    /// Volume removed over the step (m^3), mostly from [`Site::slip`] and [`Site::friction_work`]; updates
-    /// the internal variables.
+    /// Volume removed over the step (m^3), mostly from [`Site::slip`] and [`Site::friction_work`];
+    /// updates the internal variables.
     fn volume(&self, site: &Site, state: &mut [f64]) -> f64;
 }
 
 /// Transport of heat and charge through a contact.
 pub trait TransportLaw: Law {
-    /// Conductances over the step, from the state at its end; updates the internal variables. They are not
-    /// negative, and the same where candidate and antagonist are exchanged.
+    /// Conductances over the step, from the state at its end; updates the internal variables. They
+    /// are not negative, and the same where candidate and antagonist are exchanged.
     fn conductance(&self, site: &Site, state: &mut [f64]) -> Conductance;
 }

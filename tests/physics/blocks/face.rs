@@ -1,10 +1,12 @@
-//! A bonded face that is pulled open, against its law's closed form: the same in the plane and in space.
+//! A bonded face that is pulled open, against its law's closed form: the same in the plane and in
+//! space.
 
 use super::{close, driven, scene, step};
 use fretwork::scene::build::Dimensional;
 
-/// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage, end and work of a law
-/// with strength 0.3 MPa and 0.5 J/m^2 over the whole face (m^2; m in 2D), whose bonds add up to it within a part.
+/// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage,
+/// end and work of a law with strength 0.3 MPa and 0.5 J/m^2 over the whole face (m^2; m in 2D),
+/// whose bonds add up to it within a part.
 pub fn opens_by_its_law<S: Dimensional>(case: &str, bonds: u64, face: f64, part: f64) {
     let (strength, energy, stiffness) = (3e5, 0.5, 1e12);
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);

@@ -1,5 +1,5 @@
-//! Blocks that fit each other, and bonds over the faces between them, in the plane and in space: sizes and areas of
-//! samples, the law's closed form over a face, the ledger of a plate that tears.
+//! Blocks that fit each other, and bonds over the faces between them, in the plane and in space:
+//! sizes and areas of samples, the law's closed form over a face, the ledger of a plate that tears.
 
 mod face;
 mod plane;

@@ -49,7 +49,8 @@ fn a_wall_in_running_bond() {
         let of = |axis: usize| points.iter().map(move |p| p[axis]);
         let (low, high) = (of(0).fold(9.0, f64::min), of(0).fold(-9.0, f64::max));
         assert!(low > 0.3 - 1e-12 && high < 0.3 + 0.83 + 1e-12);
-        // The second course begins with half a block, whose joint is over the middle of the first block.
+        // The second course begins with half a block, whose joint is over the middle of the first
+        // block.
         if k == 4 {
             assert!((0.5 * (high + 0.005 + low - 0.005) - 0.3475).abs() < 1e-12);
             assert!((high + 0.005 - 0.4).abs() < 1e-12);

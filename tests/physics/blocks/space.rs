@@ -1,4 +1,5 @@
-//! Polyhedra: sizes and areas of samples, the law's closed form over a face that is pulled, bent and twisted.
+//! Polyhedra: sizes and areas of samples, the law's closed form over a face that is pulled, bent
+//! and twisted.
 
 use super::face::opens_by_its_law;
 use super::{close, driven, scene, step};
@@ -79,7 +80,8 @@ fn a_wall_in_running_bond() {
     }
 }
 
-/// A wall on a table tilted by 20 degrees stays where friction holds it, and slides as one where it does not.
+/// A wall on a table tilted by 20 degrees stays where friction holds it, and slides as one where it
+/// does not.
 #[test]
 fn a_wall_stands_below_its_angle_of_friction_and_slides_above() {
     for (mu, slides) in [(0.4, false), (0.3, true)] {
@@ -106,8 +108,9 @@ fn a_face_opens_by_its_law_over_its_whole_area() {
     opens_by_its_law::<Dim3>("verification/bonded_face_3d", 4, 0.2, 1e-13);
 }
 
-/// Pulled by u, bent by two small angles and twisted: at the four corners (±a, ±b) of the face stand springs of a
-/// quarter of its area, so N = K_n A u, M = K_n A (b² about x, a² about y) and K_t A (a² + b²) about z.
+/// Pulled by u, bent by two small angles and twisted: at the four corners (±a, ±b) of the face
+/// stand springs of a quarter of its area, so N = K_n A u, M = K_n A (b² about x, a² about y) and
+/// K_t A (a² + b²) about z.
 #[test]
 fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     let (k_n, k_t, face, a, b) = (1e12, 5e11, 0.2, 0.25, 0.2);
@@ -118,7 +121,8 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
         |to: f64| format!("Displacement(Ramp(from: 0.0, to: {to:e}, start: 2e-6, end: 4e-6))");
     let (u, rx, ry, rz) = asked;
     let (z, x, y, t) = (ramp(u), later(rx), later(ry), later(rz));
-    // The grip turns about its centre, half a metre above the face: the face follows sideways, and is held there.
+    // The grip turns about its centre, half a metre above the face: the face follows sideways, and
+    // is held there.
     let (dx, dy) = (later(0.5 * ry), later(-0.5 * rx));
     let set = format!("bodies.grip.dofs=(x: {dx}, y: {dy}, z: {z}, rx: {x}, ry: {y}, rz: {t})");
     let mut s = scene::<Dim3>("verification/bonded_face_3d", &[&set]);
@@ -133,8 +137,8 @@ fn a_face_that_is_bent_and_twisted_resists_at_its_corners() {
     }
     let (force, moment) = s.state.received[grip];
     let (force, moment) = (-force / s.options.scheme.h, -moment / s.options.scheme.h);
-    // Where it stands: turns about several axes at once are those of the step's velocities, closer than the square of
-    // the angles.
+    // Where it stands: turns about several axes at once are those of the step's velocities, closer
+    // than the square of the angles.
     let b_grip = s.state.bodies.driven[grip].body as usize;
     let u = s.state.bodies.position[b_grip].z - 1.0;
     let turned = s.state.bodies.rotation[b_grip].scaled_axis();
@@ -201,7 +205,8 @@ fn neighbours_are_bonded_over_their_faces_and_nothing_else_is() {
     }
 }
 
-/// Blocks count where grains are measured: their mass above a level, the tops of stairs, the wall without holes.
+/// Blocks count where grains are measured: their mass above a level, the tops of stairs, the wall
+/// without holes.
 #[test]
 fn blocks_are_measured() {
     let name = || "m".to_owned();

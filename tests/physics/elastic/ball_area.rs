@@ -1,4 +1,5 @@
-//! What a ball is to a grain that deforms: its area counts once, however many points it touches, and its mass is that of the case.
+//! What a ball is to a grain that deforms: its area counts once, however many points it touches,
+//! and its mass is that of the case.
 
 use super::*;
 use fretwork::scene::load_text;

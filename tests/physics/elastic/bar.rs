@@ -1,5 +1,6 @@
-//! An elastic bar hits a rigid wall (the field's impact benchmark: E 210 GPa, rho 7800 kg/m^3, 1 m long, 0.1 m/s): the wave that
-//! runs to its end and back carries a constant force, v sqrt(E rho) per area, for 2 L/c, and leaves it with its speed reversed.
+//! An elastic bar hits a rigid wall (the field's impact benchmark: E 210 GPa, rho 7800 kg/m^3, 1 m
+//! long, 0.1 m/s): the wave that runs to its end and back carries a constant force, v sqrt(E rho)
+//! per area, for 2 L/c, and leaves it with its speed reversed.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -76,7 +77,8 @@ fn a_bar_that_hits_a_wall_is_thrown_back_by_its_wave() {
     assert!((0.0..0.01).contains(&taken), "{taken:e}");
 }
 
-/// Steps far above the time in which a wave crosses an element, and far below: no blow-up at theta from 1/2 to 1.
+/// Steps far above the time in which a wave crosses an element, and far below: no blow-up at theta
+/// from 1/2 to 1.
 #[test]
 fn any_step_is_stable() {
     for (step, theta) in [(1e-3, 0.5), (1e-3, 1.0), (1e-5, 0.5), (1e-8, 0.5)] {

@@ -1,9 +1,10 @@
-//! A cantilever under a force at its end, in plane strain: Euler and Bernoulli's deflection F L^3/(3 E' I), E' = E/(1 - nu^2), and
-//! Timoshenko's shear, F L/(kappa G A).
+//! A cantilever under a force at its end, in plane strain: Euler and Bernoulli's deflection F
+//! L^3/(3 E' I), E' = E/(1 - nu^2), and Timoshenko's shear, F L/(kappa G A).
 
 use super::*;
 
-/// Deflection at the end (m) with a number of cells over the height, at rest under a force of 1 kN/m.
+/// Deflection at the end (m) with a number of cells over the height, at rest under a force of 1
+/// kN/m.
 fn deflection(cells: usize) -> f64 {
     let (length, height, force) = (0.5, 0.05, 1e3);
     let mut s = scene::<Dim2>(&Sketch {
@@ -48,8 +49,8 @@ fn mesh_of_tip(s: &Simulation<Dim2>, length: f64) -> f64 {
 #[test]
 fn a_cantilever_bends_by_its_closed_form() {
     let ratios = [4, 8, 16].map(deflection);
-    // The error of elements of constant strain falls with about the square of their size: the corners of the clamped end have
-    // singular stresses.
+    // The error of elements of constant strain falls with about the square of their size: the
+    // corners of the clamped end have singular stresses.
     let order = ((ratios[1] - ratios[0]) / (ratios[2] - ratios[1])).log2();
     assert!((1.6..2.3).contains(&order), "{ratios:?}: {order}");
     let extrapolated = ratios[2] + (ratios[2] - ratios[1]) / 3.0;

@@ -1,5 +1,5 @@
-//! Cohesion and damage between deformable bodies: glued by their points, they are pulled off with the strength and the energy of the law,
-//! which does not know of what it acts on.
+//! Cohesion and damage between deformable bodies: glued by their points, they are pulled off with
+//! the strength and the energy of the law, which does not know of what it acts on.
 
 use super::*;
 use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
@@ -12,7 +12,8 @@ const STIFF: Elasticity = Elasticity {
     density: 7800.0,
 };
 
-/// Stiffness, strength and fracture energy of the bonds (Pa/m, Pa, J/m^2), and the opening at which they break (m).
+/// Stiffness, strength and fracture energy of the bonds (Pa/m, Pa, J/m^2), and the opening at which
+/// they break (m).
 const K: f64 = 1e12;
 const STRENGTH: f64 = 3e5;
 const ENERGY: f64 = 0.5;
@@ -100,8 +101,8 @@ fn bonds<S: Space>(s: &Simulation<S>) -> Vec<(f64, bool)> {
     bonds.map(|b| (b.area, b.intact())).collect()
 }
 
-/// Pulls a part along an axis until long after bonds are to break: the peak of its force is the strength times the area, what was released the energy
-/// times the area, and no bond is left.
+/// Pulls a part along an axis until long after bonds are to break: the peak of its force is the
+/// strength times the area, what was released the energy times the area, and no bond is left.
 fn pulled<S: Dimensional>(
     what: &str,
     mut s: Simulation<S>,
@@ -132,8 +133,9 @@ fn pulled<S: Dimensional>(
     closes(&s, 1e-9);
 }
 
-/// By a coupling, within what the peak of the force and the energy are those of the law: where damage lags the strength is exceeded by what a
-/// bond opens in a step over strength/K, 0.028 here, and the energy is off by the same order of the step.
+/// By a coupling, within what the peak of the force and the energy are those of the law: where
+/// damage lags the strength is exceeded by what a bond opens in a step over strength/K, 0.028 here,
+/// and the energy is off by the same order of the step.
 const COUPLINGS: [(&str, [f64; 2]); 3] = [
     ("Midpoint", [0.015, 1e-4]),
     ("Explicit", [0.028, 0.01]),
@@ -166,7 +168,8 @@ fn a_block_is_pulled_off_a_plane_in_space() {
     a_block::<Dim3>();
 }
 
-/// A half-space that repeats opens uniformly, normal to its surface and along it; of one that does not the rim is pulled more.
+/// A half-space that repeats opens uniformly, normal to its surface and along it; of one that does
+/// not the rim is pulled more.
 fn off_a_plane<S: Dimensional>(infinite: f64) {
     let up = S::D - 1;
     let (coupling, tolerances) = COUPLINGS[0];
@@ -224,8 +227,9 @@ fn growing(n: u32) -> Vec<f64> {
     (0..=n).map(place).collect()
 }
 
-/// A bond at a point of a mesh stands for its share of the surface, half of each cell beside it in the plane, so that the areas add up to the
-/// surface: graded meshes tear at the strength times the area, on a plane and on the mesh of another body.
+/// A bond at a point of a mesh stands for its share of the surface, half of each cell beside it in
+/// the plane, so that the areas add up to the surface: graded meshes tear at the strength times the
+/// area, on a plane and on the mesh of another body.
 fn graded_blocks<S: Dimensional>(n: u32) {
     let (coupling, tolerances) = COUPLINGS[0];
     let up = S::D - 1;
@@ -286,10 +290,13 @@ fn a_graded_mesh_has_the_area_of_its_surface_in_space() {
     graded_blocks::<Dim3>(4);
 }
 
-/// Half of a double cantilever beam: a beam of height h on a plane, to which it is glued beyond a crack, lifted at its end. Once the crack runs, the force P at a
-/// deflection d fulfils G = P^2 a^2/(2 E I) and d = P a^3/(3 E I), where a is the length of the crack with what the root turns (J. G. Williams, Int. J. Fract.
-/// 36 (1988) 101), so that G = P^2/(2 E I) (3 E I d/P)^(2/3) whatever the root does. A beam of triangles is stiffer than E I by some per cent, which counts by a
-/// third, and what the scheme takes of bonds that open in some tens of steps adds three per cent to G: 1.068 here, 1.035 in the limit of small steps.
+/// Half of a double cantilever beam: a beam of height h on a plane, to which it is glued beyond a
+/// crack, lifted at its end. Once the crack runs, the force P at a deflection d fulfils G = P^2
+/// a^2/(2 E I) and d = P a^3/(3 E I), where a is the length of the crack with what the root turns
+/// (J. G. Williams, Int. J. Fract. 36 (1988) 101), so that G = P^2/(2 E I) (3 E I d/P)^(2/3)
+/// whatever the root does. A beam of triangles is stiffer than E I by some per cent, which counts
+/// by a third, and what the scheme takes of bonds that open in some tens of steps adds three per
+/// cent to G: 1.068 here, 1.035 in the limit of small steps.
 #[test]
 fn a_cantilever_peels_off_at_the_energy_of_its_bonds() {
     let (energy, strength, height, crack, lift) = (500.0, 2e7, 2e-3, 2e-2, 2e-5);

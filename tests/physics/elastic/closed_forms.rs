@@ -1,5 +1,6 @@
-//! Uniform large strain of the neo-Hookean material (J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis",
-//! 2nd edition, section 6.4.3): the first Piola-Kirchhoff stress P = mu (F - F^-T) + lambda ln J F^-T, and Cauchy's sigma = P F^T/J.
+//! Uniform large strain of the neo-Hookean material (J. Bonet and R. D. Wood, "Nonlinear Continuum
+//! Mechanics for Finite Element Analysis", 2nd edition, section 6.4.3): the first Piola-Kirchhoff
+//! stress P = mu (F - F^-T) + lambda ln J F^-T, and Cauchy's sigma = P F^T/J.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -19,7 +20,8 @@ fn nominal(stretch: f64, volume: f64) -> f64 {
     g * (stretch - 1.0 / stretch) + l * volume.ln() / stretch
 }
 
-/// The stretch across at which P vanishes there: of one direction (the other is held), or of two alike.
+/// The stretch across at which P vanishes there: of one direction (the other is held), or of two
+/// alike.
 fn across(stretch: f64, directions: i32) -> f64 {
     let (mut low, mut high) = (0.2f64, 5.0f64);
     for _ in 0..100 {
@@ -46,7 +48,8 @@ fn cube<S: Space>(cells: usize) -> Mesh<S> {
     block::<S>(&lines[..S::D]).unwrap()
 }
 
-/// The force of the upper holder (N; N/m) at rest where it has been moved by a share of the height, with sides that are held or free.
+/// The force of the upper holder (N; N/m) at rest where it has been moved by a share of the height,
+/// with sides that are held or free.
 fn squeezed<S: Dimensional + Deformable>(share: f64, confined: bool) -> f64 {
     let mut s = scene::<S>(&Sketch {
         bodies: floor::<S>().replace(
@@ -107,7 +110,8 @@ fn compression_and_extension() {
     follows_the_closed_form::<Dim3>();
 }
 
-/// Simple shear by gamma: P_xy = mu gamma, sigma_xy = mu gamma, sigma_xx = mu gamma^2, and no force along y.
+/// Simple shear by gamma: P_xy = mu gamma, sigma_xy = mu gamma, sigma_xx = mu gamma^2, and no force
+/// along y.
 #[test]
 fn simple_shear() {
     let gamma = 0.5;
@@ -133,7 +137,8 @@ fn simple_shear() {
     }
 }
 
-/// A smooth rigid lid presses a block with free sides by a fifth: the sum of its contacts is that of uniaxial strain.
+/// A smooth rigid lid presses a block with free sides by a fifth: the sum of its contacts is that
+/// of uniaxial strain.
 #[test]
 fn a_block_under_a_lid() {
     under_a_lid::<Dim2>();
@@ -192,7 +197,8 @@ fn under_a_lid<S: Dimensional + Deformable>() {
     assert!(forces.iter().all(|f| *f == forces[0]));
 }
 
-/// As the load vanishes all strains agree: the difference falls with the load, for the stubby cantilever in shear and compression.
+/// As the load vanishes all strains agree: the difference falls with the load, for the stubby
+/// cantilever in shear and compression.
 #[test]
 fn small_loads_are_linear() {
     let moved = |strain: Strain, load: f64| {

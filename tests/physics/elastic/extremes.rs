@@ -1,5 +1,5 @@
-//! Bodies in large strain at their limits: nearly incompressible, elements of very different sizes, bodies on each other, and one that
-//! tumbles on a floor.
+//! Bodies in large strain at their limits: nearly incompressible, elements of very different sizes,
+//! bodies on each other, and one that tumbles on a floor.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -9,8 +9,8 @@ fn below<S: Space>() -> String {
     floor::<S>().replace("shapes:", "position: [0.0, -1.0], shapes:")
 }
 
-/// Deflection of a cantilever, 10 : 1, as a share of that of Euler and Bernoulli with Timoshenko's shear: linear elements lock as Poisson's ratio
-/// comes near 1/2.
+/// Deflection of a cantilever, 10 : 1, as a share of that of Euler and Bernoulli with Timoshenko's
+/// shear: linear elements lock as Poisson's ratio comes near 1/2.
 fn deflection(poisson: f64, cells: usize) -> f64 {
     let (length, height, force) = (0.1, 0.01, 1e-3);
     let material = Elasticity { poisson, ..RUBBER };
@@ -71,7 +71,8 @@ fn elements_of_all_sizes_in_one_mesh() {
     }
 }
 
-/// A soft block is pressed into a wider one by a third of its height: the holders and the contacts carry the same force.
+/// A soft block is pressed into a wider one by a third of its height: the holders and the contacts
+/// carry the same force.
 #[test]
 fn a_block_is_pressed_into_another() {
     let side = 0.01;
@@ -128,8 +129,8 @@ fn with_skin(mesh: &Mesh<Dim2>) -> Mesh<Dim2> {
     Mesh::new(mesh.points().to_vec(), elements, &parts).unwrap()
 }
 
-/// A soft block falls on a rough floor while it spins, and bounces: energy does not grow, and the ledger closes. Two runs, the second on two
-/// threads, give the same bits.
+/// A soft block falls on a rough floor while it spins, and bounces: energy does not grow, and the
+/// ledger closes. Two runs, the second on two threads, give the same bits.
 #[test]
 fn a_block_tumbles_on_a_rough_floor() {
     for strain in LARGE {

@@ -1,4 +1,5 @@
-//! A ball on the middle of a facet: its force goes to the corners of the facet, in small and in large strain, from below as from above.
+//! A ball on the middle of a facet: its force goes to the corners of the facet, in small and in
+//! large strain, from below as from above.
 
 use super::*;
 
@@ -8,7 +9,8 @@ const RUBBER: Elasticity = Elasticity {
     density: 1000.0,
 };
 
-/// Normal force of a ball that is moved 10 um into a block, and the load that the block's far side carries (N/m).
+/// Normal force of a ball that is moved 10 um into a block, and the load that the block's far side
+/// carries (N/m).
 fn force(strain: Strain, above: bool) -> f64 {
     let (side, depth, radius) = (0.01, 1e-5, 3e-3);
     let sign = if above { 1.0 } else { -1.0 };

@@ -5,8 +5,8 @@ use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use std::path::Path;
 
-/// A block of points that is lowered by 1 um a step on one that touches with its flat or wavy surface, to an overlap of 5 um of both without load: the
-/// force of its holder (N/m).
+/// A block of points that is lowered by 1 um a step on one that touches with its flat or wavy
+/// surface, to an overlap of 5 um of both without load: the force of its holder (N/m).
 fn pressed(profile: &str, theta: f64, alert: f64) -> f64 {
     let text = format!(
         r#"(name: "blocks", dimension: 2, time: (step: 1e-3, end: 0.03, theta: {theta:?}),

@@ -41,8 +41,8 @@ fn a_holder_carries_weight_and_load() {
     assert!(sunk < free && sunk > 0.8 * free, "{sunk:e} of {free:e}");
 }
 
-/// Damping by mass slows a translation by (1 - alpha h/2)/(1 + alpha h/2) a step at theta = 1/2; a holder that starts at once does the work
-/// of its jump.
+/// Damping by mass slows a translation by (1 - alpha h/2)/(1 + alpha h/2) a step at theta = 1/2; a
+/// holder that starts at once does the work of its jump.
 #[test]
 fn damping_and_jumps_are_booked() {
     let (alpha, h, speed) = (50.0, 1e-4, 0.2);
@@ -84,7 +84,8 @@ fn damping_and_jumps_are_booked() {
     );
 }
 
-/// Two equal blocks between smooth walls: all points carry the same pressure, those at the ends over half the length.
+/// Two equal blocks between smooth walls: all points carry the same pressure, those at the ends
+/// over half the length.
 #[test]
 fn a_uniform_pressure_is_uniform() {
     let mut s = scene::<Dim2>(&Sketch {
@@ -133,8 +134,8 @@ fn a_uniform_pressure_is_uniform() {
     }
 }
 
-/// The force of a pin that a beam bends into does not depend on how far the neighbour list looks, although the middle of the beam,
-/// which carries the frame of its surface, stays where it is.
+/// The force of a pin that a beam bends into does not depend on how far the neighbour list looks,
+/// although the middle of the beam, which carries the frame of its surface, stays where it is.
 #[test]
 fn a_beam_meets_what_its_end_bends_into() {
     let pressed = |skin: f64| {
@@ -175,7 +176,8 @@ fn a_beam_meets_what_its_end_bends_into() {
     }
 }
 
-/// A block dragged to and fro over a floor: what its holder does over a cycle is what friction takes, at any theta.
+/// A block dragged to and fro over a floor: what its holder does over a cycle is what friction
+/// takes, at any theta.
 #[test]
 fn the_area_of_the_loop_is_the_heat_of_friction() {
     for theta in [0.5, 1.0] {

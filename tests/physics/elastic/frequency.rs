@@ -1,9 +1,11 @@
-//! Eigenfrequencies of a bar: w = pi c/(2 L) clamped at one end and w = pi c/L free at both, c = sqrt(E/rho) (nu = 0).
+//! Eigenfrequencies of a bar: w = pi c/(2 L) clamped at one end and w = pi c/L free at both, c =
+//! sqrt(E/rho) (nu = 0).
 
 use super::*;
 use std::f64::consts::PI;
 
-/// The lowest angular frequency of a bar along x in small strain, by inverse iteration of A^-1 M with A = M + s K.
+/// The lowest angular frequency of a bar along x in small strain, by inverse iteration of A^-1 M
+/// with A = M + s K.
 fn lowest(cells: usize, clamped: bool) -> f64 {
     let (length, width) = (1.0, 1.0 / cells as f64);
     let material = Elasticity {

@@ -1,5 +1,5 @@
-//! Elastic half-spaces against the closed forms of contact mechanics: Hertz, Westergaard, Cattaneo and Mindlin, Carter, and the creep
-//! curve of an elliptic contact.
+//! Elastic half-spaces against the closed forms of contact mechanics: Hertz, Westergaard, Cattaneo
+//! and Mindlin, Carter, and the creep curve of an elliptic contact.
 
 mod defaults;
 mod punch;
@@ -15,7 +15,8 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// A rail and a wheel: G 82 GPa, nu 0.28, where a line contact of R 500 mm has a = 1 mm under 178.9 N/mm.
+/// A rail and a wheel: G 82 GPa, nu 0.28, where a line contact of R 500 mm has a = 1 mm under 178.9
+/// N/mm.
 const RAIL: Elasticity = Elasticity {
     young: 2.0 * 82e9 * 1.28,
     poisson: 0.28,
@@ -80,13 +81,15 @@ fn ramp(to: f64, from: usize, steps: usize) -> TimeFunction {
     }
 }
 
-/// A loaded contact: place (m) and traction on the lower body along each axis (Pa), pressure positive.
+/// A loaded contact: place (m) and traction on the lower body along each axis (Pa), pressure
+/// positive.
 struct Traction<V> {
     at: V,
     on: V,
 }
 
-/// Those of the points that carry a load. A point above a corner of the surface's facets may touch several of them.
+/// Those of the points that carry a load. A point above a corner of the surface's facets may touch
+/// several of them.
 fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
     let contacts = s.state.network.contacts.iter();
     let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
@@ -120,7 +123,8 @@ fn mean<V: VectorLike>(found: &[Traction<V>], axis: usize, weight: impl Fn(&V) -
     sum / total
 }
 
-/// Two like bodies in line contact, `n` cells over a, under 178.9 N/mm and a share of friction's limit.
+/// Two like bodies in line contact, `n` cells over a, under 178.9 N/mm and a share of friction's
+/// limit.
 fn line(n: usize, mu: f64, share: f64) -> Simulation<Dim2> {
     let (a, load) = (1e-3, 178.9e3);
     let size = a / n as f64;
@@ -179,8 +183,9 @@ fn hertz_and_cattaneo_of_a_line() {
     assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
 }
 
-/// K. L. Johnson, "Contact Mechanics", section 13.2, after Westergaard (1939): a wave of amplitude D and length L under a mean pressure
-/// p touches over 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and sin(pi x/L) is distributed as an ellipse.
+/// K. L. Johnson, "Contact Mechanics", section 13.2, after Westergaard (1939): a wave of amplitude
+/// D and length L under a mean pressure p touches over 2 a with sin^2(pi a/L) = p/p*, p* = pi E*
+/// D/L, and sin(pi x/L) is distributed as an ellipse.
 #[test]
 fn westergaards_wave() {
     let (length, amplitude) = (1e-3, 1e-6);
@@ -223,7 +228,8 @@ const SOFT: Elasticity = Elasticity {
     density: 1000.0,
 };
 
-/// Two like bodies whose surfaces have a relative radius, `n` cells over a, pressed to a depth and moved by `along` (m).
+/// Two like bodies whose surfaces have a relative radius, `n` cells over a, pressed to a depth and
+/// moved by `along` (m).
 fn spheres(
     n: usize,
     mu: f64,
@@ -253,8 +259,9 @@ fn spheres(
     s
 }
 
-/// Hertz, Cattaneo and Mindlin, and the tangential loop of Mindlin and Deresiewicz: P of the depth a^2/R, Q/(mu P) = 7/8 and c/a = 1/2 of
-/// the shift, 0.01102 N mm a loop (Johnson, sections 4.2 and 7.2 to 7.4).
+/// Hertz, Cattaneo and Mindlin, and the tangential loop of Mindlin and Deresiewicz: P of the depth
+/// a^2/R, Q/(mu P) = 7/8 and c/a = 1/2 of the shift, 0.01102 N mm a loop (Johnson, sections 4.2 and
+/// 7.2 to 7.4).
 #[test]
 fn sphere() {
     let (n, a, mu, depth, shift, load) = (6, 1e-3, 0.4, 2e-5, 8.172e-6, 9.1954);
@@ -266,7 +273,8 @@ fn sphere() {
         (52.0, 1.0),
     ];
     let table = turns.map(|(k, x): (f64, f64)| (k * STEP, x * shift));
-    // Pressed by twice the alert distance in a step, or in two steps: what the loop takes is the same.
+    // Pressed by twice the alert distance in a step, or in two steps: what the loop takes is the
+    // same.
     let [mut s, mut slower] = [1, 2].map(|steps| {
         let along = TimeFunction::Table(table.to_vec());
         spheres(n, mu, (depth, steps), along)
@@ -296,7 +304,8 @@ fn sphere() {
     closes(&s, 1e-9);
 }
 
-/// A cylinder pressed on a flat in 10 steps, moved in the next 22 and then to and fro in 80, with friction 0.3.
+/// A cylinder pressed on a flat in 10 steps, moved in the next 22 and then to and fro in 80, with
+/// friction 0.3.
 fn fretted(theta: f64) -> Simulation<Dim2> {
     let turns = [
         (0.0, 0.0),
@@ -362,8 +371,9 @@ fn the_area_of_a_loop_does_not_depend_on_theta() {
     near(areas[2], areas[1], 0.02);
 }
 
-/// The work of the contacts less what is stored is (f+ - f) F (f+ - f)/2 in each step, at any theta: a half-space never gives energy back. Friction
-/// opposes the velocity of the end of a step and works on the mean one; below theta = 1 velocities without inertia ring, so that it may give
+/// The work of the contacts less what is stored is (f+ - f) F (f+ - f)/2 in each step, at any
+/// theta: a half-space never gives energy back. Friction opposes the velocity of the end of a step
+/// and works on the mean one; below theta = 1 velocities without inertia ring, so that it may give
 /// some back in single steps.
 #[test]
 fn energy_comes_back_from_friction_alone_and_below_theta_1() {
@@ -388,8 +398,8 @@ fn energy_comes_back_from_friction_alone_and_below_theta_1() {
     }
 }
 
-/// S. Fouvry, Ph. Kapsa, L. Vincent, Wear 185 (1995) 35: partial slip ends where Q = mu P and E_d/(4 Q delta) = 0.2, at the displacement
-/// 3 mu P (2 - nu)/(8 G a) of Mindlin.
+/// S. Fouvry, Ph. Kapsa, L. Vincent, Wear 185 (1995) 35: partial slip ends where Q = mu P and
+/// E_d/(4 Q delta) = 0.2, at the displacement 3 mu P (2 - nu)/(8 G a) of Mindlin.
 #[test]
 fn partial_slip_ends_at_an_energy_ratio_of_a_fifth() {
     let (mu, load) = (0.4, 9.1954);

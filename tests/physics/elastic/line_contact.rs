@@ -1,6 +1,8 @@
-//! A rigid cylinder pressed on an elastic block, and moved along it: Hertz's line contact, and Cattaneo and Mindlin's stick zone.
+//! A rigid cylinder pressed on an elastic block, and moved along it: Hertz's line contact, and
+//! Cattaneo and Mindlin's stick zone.
 //!
-//! K. L. Johnson, "Contact Mechanics" (1985), sections 4.2 and 7.2: with E* = E/(1 - nu^2) and P the load per length,
+//! K. L. Johnson, "Contact Mechanics" (1985), sections 4.2 and 7.2: with E* = E/(1 - nu^2) and P
+//! the load per length,
 //!
 //! ```text
 //! a = 2 sqrt(P R/(pi E*))        p(x) = p0 sqrt(1 - x^2/a^2), p0 = 2 P/(pi a)
@@ -12,7 +14,8 @@ use cpu_time::ThreadTime;
 use fretwork::solve::Options;
 use nalgebra::Vector2;
 
-/// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under 178.9 N/mm.
+/// The field's benchmark (a rail and a wheel): G 82 GPa, nu 0.28, R 500 mm, where a is 1 mm under
+/// 178.9 N/mm.
 const STEEL: Elasticity = Elasticity {
     young: 2.0 * 82e9 * 1.28,
     poisson: 0.28,
@@ -21,8 +24,9 @@ const STEEL: Elasticity = Elasticity {
 
 const RADIUS: f64 = 0.5;
 const A: f64 = 1e-3;
-/// A thousandth of a second: waves cross the bodies in a hundredth of that, and the velocity that the load would give the cylinder
-/// without contacts, against which the error of the solver is measured, is still small.
+/// A thousandth of a second: waves cross the bodies in a hundredth of that, and the velocity that
+/// the load would give the cylinder without contacts, against which the error of the solver is
+/// measured, is still small.
 const STEP: f64 = 1e-3;
 /// Extent of the bodies (m).
 const FAR: f64 = 40.0 * A;
@@ -39,7 +43,8 @@ fn modulus(counter: Counter) -> f64 {
 /// What is pressed on the block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Counter {
-    /// A rigid disk without friction: with friction shear tractions of a load without shift raise the pressure.
+    /// A rigid disk without friction: with friction shear tractions of a load without shift raise
+    /// the pressure.
     Rigid,
     /// A cylinder of the same steel, of which the block is a mirror.
     Steel,
@@ -50,7 +55,8 @@ fn load(counter: Counter) -> f64 {
     std::f64::consts::PI * modulus(counter) * A * A / (4.0 * RADIUS)
 }
 
-/// Coordinates along the contact, even where it is, and away from it, with `n` elements over the half-width.
+/// Coordinates along the contact, even where it is, and away from it, with `n` elements over the
+/// half-width.
 fn coordinates(n: usize) -> [Vec<f64>; 2] {
     let size = A / n as f64;
     let outside = graded(1.5 * A, FAR, size, 1.25);
@@ -61,9 +67,9 @@ fn coordinates(n: usize) -> [Vec<f64>; 2] {
     [x, graded(0.0, FAR, size, 1.15)]
 }
 
-/// The cylinder at rest under its load, and a tangential force along x, a share of mu P, with `n` elements over the half-width, and
-/// of `finer` quarters of that number on a cylinder of steel.
-/// The solution is static: steps are long against all waves.
+/// The cylinder at rest under its load, and a tangential force along x, a share of mu P, with `n`
+/// elements over the half-width, and of `finer` quarters of that number on a cylinder of steel. The
+/// solution is static: steps are long against all waves.
 fn pressed(counter: Counter, n: usize, finer: usize, share: f64) -> Simulation<Dim2> {
     pressed_as(counter, n, finer, share, |lines, _| {
         Grid::new(lines).unwrap()
@@ -80,7 +86,8 @@ fn joined(lines: &[Vec<f64>], from: &str) -> Grid {
     Grid::coarsened(lines, &Coarsening { from, ratio: 1.0 }, 1_000_000).unwrap()
 }
 
-/// The same, of bodies of cells between coordinates that the last argument makes, away from the side of that name.
+/// The same, of bodies of cells between coordinates that the last argument makes, away from the
+/// side of that name.
 fn pressed_as(
     counter: Counter,
     n: usize,
@@ -195,7 +202,8 @@ fn hertz(counter: Counter) {
         errors.push(off(&found, 1, |x| p0 * ellipse(x, A)) / p0);
     }
     println!("{counter:?}: a {widths:?} p {errors:?}");
-    // The pressure is of first order at least: its edge lies between two points. The bodies are 40 a high, not half-spaces.
+    // The pressure is of first order at least: its edge lies between two points. The bodies are 40
+    // a high, not half-spaces.
     assert!(errors[3] < 0.01, "{errors:?}");
     assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
     assert!(widths[3].abs() < 0.005, "{widths:?}");
@@ -211,8 +219,8 @@ fn hertz_between_two_bodies() {
     hertz(Counter::Steel);
 }
 
-/// The default solver, whose error is measured against velocities that the load would give the cylinder, leaves no point with another
-/// pressure than a tight tolerance.
+/// The default solver, whose error is measured against velocities that the load would give the
+/// cylinder, leaves no point with another pressure than a tight tolerance.
 #[test]
 fn defaults_have_the_pressure_of_each_point() {
     let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);
@@ -231,8 +239,9 @@ fn defaults_have_the_pressure_of_each_point() {
     assert!(most < 0.005, "{most}");
 }
 
-/// Where points lie anywhere on the segments of the other body, pressures of single points are those of Hertz too: contacts act on the place
-/// that a point faces on average over the segments at it.
+/// Where points lie anywhere on the segments of the other body, pressures of single points are
+/// those of Hertz too: contacts act on the place that a point faces on average over the segments at
+/// it.
 #[test]
 fn meshes_that_do_not_match_have_the_pressure() {
     let p0 = 2.0 * load(Counter::Steel) / (std::f64::consts::PI * A);

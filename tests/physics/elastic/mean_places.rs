@@ -1,4 +1,5 @@
-//! Contacts on mean places beside the patch test: wear of unlike meshes, what sticks and slips, many facets below one point, and the end of a surface.
+//! Contacts on mean places beside the patch test: wear of unlike meshes, what sticks and slips,
+//! many facets below one point, and the end of a surface.
 
 use super::wear::{agree, case};
 use super::*;
@@ -6,7 +7,8 @@ use fretwork::geometry::space::Space;
 use fretwork_observe::nearest_places::NearestPlaces;
 use fretwork_observe::tractions::{SurfaceState, Zone};
 
-/// Blocks of steel with other cells, in place of the bodies of a case: the lower one with `low`, the upper one with `high` lines along each axis across.
+/// Blocks of steel with other cells, in place of the bodies of a case: the lower one with `low`,
+/// the upper one with `high` lines along each axis across.
 struct Blocks {
     half_width: [f64; 2],
     size: [f64; 2],
@@ -81,7 +83,8 @@ fn depths<S: Space>(s: &Simulation<S>, within: f64) -> Vec<f64> {
     found.map(|(_, depth)| depth).collect()
 }
 
-/// Coarse points under an even pressure wear a fine surface as evenly as points that match it: 25 MPa, +-20 um.
+/// Coarse points under an even pressure wear a fine surface as evenly as points that match it: 25
+/// MPa, +-20 um.
 #[test]
 fn coarse_points_wear_a_fine_surface_evenly() {
     let run = |size: f64| {
@@ -154,7 +157,8 @@ fn coarse_points_wear_a_fine_surface_evenly_in_space() {
     }
 }
 
-/// Two blocks of one width between smooth walls in space, pressed with 50 MPa: the lower one with cells of a size, the upper one with four.
+/// Two blocks of one width between smooth walls in space, pressed with 50 MPa: the lower one with
+/// cells of a size, the upper one with four.
 fn pressed(size: f64) -> Simulation<Dim3> {
     const HELD: &str = "(part: \"left\", x: Fixed), (part: \"right\", x: Fixed), (part: \"front\", y: Fixed), (part: \"back\", y: Fixed), ";
     let below = format!("{HELD} (part: \"bottom\", z: Fixed)");
@@ -176,7 +180,8 @@ fn pressed(size: f64) -> Simulation<Dim3> {
     s
 }
 
-/// All of a surface that carries an even pressure is closed, however much finer it is than the points that touch it.
+/// All of a surface that carries an even pressure is closed, however much finer it is than the
+/// points that touch it.
 #[test]
 fn a_fine_surface_under_full_pressure_is_not_open() {
     let s = pressed(5e-4);
@@ -200,8 +205,9 @@ fn a_point_faces_as_many_facets_as_there_are() {
     }
 }
 
-/// A soft block on a stiff one of the same width, both free at one side, pressed by 0.35 % of its modulus: it grows by a per mille or two more than the
-/// stiff one, and the points at that edge leave the surface. Their facets stay on it, and carry what they did.
+/// A soft block on a stiff one of the same width, both free at one side, pressed by 0.35 % of its
+/// modulus: it grows by a per mille or two more than the stiff one, and the points at that edge
+/// leave the surface. Their facets stay on it, and carry what they did.
 fn beyond_the_end<S: Dimensional>() {
     let up = S::D - 1;
     let (half, size, pressure): (f64, f64, f64) = (4e-3, 8e-4, 3.5e3);
@@ -254,7 +260,8 @@ fn points_beyond_the_end_of_a_surface_are_held_by_their_facets() {
     beyond_the_end::<Dim3>();
 }
 
-/// The points of one half-space on the surface of another: on equal cells the nearest place is the mean one, wherever the points stand.
+/// The points of one half-space on the surface of another: on equal cells the nearest place is the
+/// mean one, wherever the points stand.
 #[test]
 fn nearest_places_are_told_where_cells_differ() {
     let found = |size: &str| {
@@ -273,7 +280,8 @@ fn nearest_places_are_told_where_cells_differ() {
     assert!(text.contains("100 % of the load"), "{text}");
 }
 
-/// Points above the valleys of a saw touch two sides of it: their tension is that of their area once, so that the whole is the strength times the width.
+/// Points above the valleys of a saw touch two sides of it: their tension is that of their area
+/// once, so that the whole is the strength times the width.
 #[test]
 fn tension_acts_once_at_a_crease() {
     let (half, strength) = (4e-3, 1e6);

@@ -1,4 +1,5 @@
-//! Bodies of finite elements against closed forms: impact of a bar, bending, Hertz, Cattaneo and Mindlin.
+//! Bodies of finite elements against closed forms: impact of a bar, bending, Hertz, Cattaneo and
+//! Mindlin.
 
 mod ball_area;
 mod bar;

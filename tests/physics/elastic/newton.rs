@@ -1,4 +1,5 @@
-//! Newton's method of a step: its iterations converge quadratically, and steps that find no balance end with a sentence.
+//! Newton's method of a step: its iterations converge quadratically, and steps that find no balance
+//! end with a sentence.
 
 use super::*;
 use crate::extremes::bench::floor;

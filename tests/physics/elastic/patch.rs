@@ -1,7 +1,8 @@
-//! Patch test of the contact: a uniform pressure goes through the contact of two meshes, whatever their points.
+//! Patch test of the contact: a uniform pressure goes through the contact of two meshes, whatever
+//! their points.
 //!
-//! Source: R. L. Taylor and P. Papadopoulos, "On a patch test for contact problems in two dimensions", Computational methods in nonlinear
-//! mechanics (1991).
+//! Source: R. L. Taylor and P. Papadopoulos, "On a patch test for contact problems in two
+//! dimensions", Computational methods in nonlinear mechanics (1991).
 
 use super::*;
 
@@ -19,8 +20,9 @@ fn across(cells: usize, growth: f64) -> Vec<f64> {
     (0..=cells).map(|k| WIDTH * (place(k) - 0.5)).collect()
 }
 
-/// Two blocks between smooth walls, the upper one pressed on the lower: most difference of the stress across of an element, and of the pressure on a
-/// point, over the mean pressure. Cells over the width along each axis.
+/// Two blocks between smooth walls, the upper one pressed on the lower: most difference of the
+/// stress across of an element, and of the pressure on a point, over the mean pressure. Cells over
+/// the width along each axis.
 fn pressed<S: Deformable + Dimensional>(
     low: &[f64],
     high: &[f64],
@@ -34,7 +36,8 @@ fn pressed<S: Deformable + Dimensional>(
     })
 }
 
-/// The same of meshes of the given width, from zero to `HEIGHT`, that touch with the side of that name.
+/// The same of meshes of the given width, from zero to `HEIGHT`, that touch with the side of that
+/// name.
 fn pressed_on<S: Deformable + Dimensional>(
     low: &[f64],
     high: &[f64],

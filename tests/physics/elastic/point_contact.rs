@@ -1,5 +1,6 @@
-//! A rigid sphere pressed on an elastic block: Hertz's point contact (Johnson, "Contact Mechanics", section 4.2),
-//! a^3 = 3 P R/(4 E*), delta = a^2/R, p(r) = p0 sqrt(1 - r^2/a^2) with p0 = 3 P/(2 pi a^2).
+//! A rigid sphere pressed on an elastic block: Hertz's point contact (Johnson, "Contact Mechanics",
+//! section 4.2), a^3 = 3 P R/(4 E*), delta = a^2/R, p(r) = p0 sqrt(1 - r^2/a^2) with p0 = 3 P/(2 pi
+//! a^2).
 
 use super::*;
 use fretwork::geometry::space::Dim3;
@@ -8,8 +9,8 @@ const RADIUS: f64 = 0.05;
 const A: f64 = 1e-3;
 const STEP: f64 = 1e-3;
 
-/// At the approach a^2/R the load as a share of Hertz's, and the half-width from the second moment of the pressure, 2 P a^2/5, as a
-/// share of that of the load.
+/// At the approach a^2/R the load as a share of Hertz's, and the half-width from the second moment
+/// of the pressure, 2 P a^2/5, as a share of that of the load.
 fn pressed(n: usize) -> (f64, f64) {
     let (load, half_width, _) = pressed_on(n, &|lines| Grid::new(lines).unwrap());
     (load, half_width)
@@ -61,8 +62,9 @@ fn pressed_on(n: usize, cells: &dyn Fn(&[Vec<f64>]) -> Grid) -> (f64, f64, usize
     (total / expected, second / half_width, unknowns)
 }
 
-/// Tetrahedra of constant strain are too stiff, by some per cent with four elements over the half-width (six: 1.5 %), and the
-/// bottom of the block, held at a depth of 16 a, would sink by some 5 % of the approach in a half-space.
+/// Tetrahedra of constant strain are too stiff, by some per cent with four elements over the
+/// half-width (six: 1.5 %), and the bottom of the block, held at a depth of 16 a, would sink by
+/// some 5 % of the approach in a half-space.
 #[test]
 fn hertz_under_a_sphere() {
     let [coarse, fine] = [2, 4].map(pressed);

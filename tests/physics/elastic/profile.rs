@@ -6,8 +6,9 @@ use fretwork::shipped::search_path;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Westergaard's wave, of which contact covers 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and the pressure on the crest is 2 p/sin(pi a/L) (K. L. Johnson,
-/// "Contact Mechanics", 1985, section 13.2).
+/// Westergaard's wave, of which contact covers 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and
+/// the pressure on the crest is 2 p/sin(pi a/L) (K. L. Johnson, "Contact Mechanics", 1985, section
+/// 13.2).
 #[test]
 fn a_wavy_block_is_pressed_as_westergaard_says() {
     let file = format!(

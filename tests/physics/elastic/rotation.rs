@@ -1,5 +1,5 @@
-//! Blocks that spin freely: a rotation leaves no stress, momentum is kept, and the angle of a step is that of the theta scheme,
-//! 2 atan(w h/2) at theta = 1/2.
+//! Blocks that spin freely: a rotation leaves no stress, momentum is kept, and the angle of a step
+//! is that of the theta scheme, 2 atan(w h/2) at theta = 1/2.
 
 use super::*;
 use crate::extremes::bench::floor;
@@ -47,7 +47,8 @@ fn largest_stress<S: Space>(s: &Simulation<S>) -> f64 {
     stresses.fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-/// Angular momentum about z through the origin (kg m^2/s), with lumped masses: a (D + 1)-th of each element at its corners.
+/// Angular momentum about z through the origin (kg m^2/s), with lumped masses: a (D + 1)-th of each
+/// element at its corners.
 fn momentum<S: Space>(s: &Simulation<S>, density: f64) -> f64 {
     let system = s.state.systems.get(0).unwrap();
     let mesh = system.deformed_mesh().unwrap();
@@ -65,7 +66,8 @@ fn momentum<S: Space>(s: &Simulation<S>, density: f64) -> f64 {
     sum
 }
 
-/// Stiff, at a tenth of a radian a step: a quarter and a whole turn without stress, with steps ten thousand times the time of a wave.
+/// Stiff, at a tenth of a radian a step: a quarter and a whole turn without stress, with steps ten
+/// thousand times the time of a wave.
 fn turns_without_stress<S: Dimensional + Deformable>(strain: Strain) {
     let material = Elasticity {
         young: 1e11,
@@ -99,7 +101,8 @@ fn a_block_turns_without_stress() {
     }
 }
 
-/// Soft, stretched by its spin: angular momentum is kept, and what the scheme takes of the energy falls with the square of the step.
+/// Soft, stretched by its spin: angular momentum is kept, and what the scheme takes of the energy
+/// falls with the square of the step.
 fn keeps_its_momentum<S: Dimensional + Deformable>(strain: Strain) {
     let (spin, time) = (40.0, 2.0 * PI / 40.0);
     let runs = [400, 800, 1600].map(|steps| {
@@ -136,8 +139,8 @@ fn a_spinning_block_keeps_its_angular_momentum() {
     }
 }
 
-/// Damping by stiffness takes the vibration that a sudden spin excites and does not brake the spin; damping by mass does, by
-/// (1 - alpha h/2)/(1 + alpha h/2) a step.
+/// Damping by stiffness takes the vibration that a sudden spin excites and does not brake the spin;
+/// damping by mass does, by (1 - alpha h/2)/(1 + alpha h/2) a step.
 #[test]
 fn damping_follows_the_rotation() {
     for strain in LARGE {
@@ -154,7 +157,8 @@ fn damping_follows_the_rotation() {
             let start = momentum(&s, RUBBER.density);
             go(&mut s, 400);
             let factor = (1.0 - 0.5e-3 * mass) / (1.0 + 0.5e-3 * mass);
-            // The moment of a braking force at the middle of the step is that of the mean momentum up to the square of the step.
+            // The moment of a braking force at the middle of the step is that of the mean momentum
+            // up to the square of the step.
             let tolerance = if mass > 0.0 { 1e-4 } else { 1e-8 };
             let expected = start * factor.powi(400);
             near(expected, momentum(&s, RUBBER.density), tolerance);
@@ -171,7 +175,8 @@ fn damping_follows_the_rotation() {
     }
 }
 
-/// Steps far below and far above the time of a wave (3 ms across the block), moduli of jelly and far above steel: energy does not grow.
+/// Steps far below and far above the time of a wave (3 ms across the block), moduli of jelly and
+/// far above steel: energy does not grow.
 #[test]
 fn any_step_and_modulus_is_stable() {
     for strain in LARGE {

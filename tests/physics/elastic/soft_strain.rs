@@ -1,5 +1,6 @@
-//! What grains in small strain lose when they are pressed hard: the force of a disk between two plates against that of the same mesh of a
-//! neo-Hookean material, of which the two agree to first order.
+//! What grains in small strain lose when they are pressed hard: the force of a disk between two
+//! plates against that of the same mesh of a neo-Hookean material, of which the two agree to first
+//! order.
 
 use super::*;
 use fretwork::elastic::grain::mesh::{disk, polygon};
@@ -18,7 +19,8 @@ fn unit() -> Mesh<Dim2> {
     polygon::<Dim2>(&corners, &Vector2::zeros(), 1.0 / ELEMENTS as f64).unwrap()
 }
 
-/// Plates that close on a disk at the origin by a share of its radius over twenty steps, with theta 1.
+/// Plates that close on a disk at the origin by a share of its radius over twenty steps, with
+/// theta 1.
 fn plates(share: f64) -> Simulation<Dim2> {
     let (gap, speed) = (RADIUS, share * RADIUS / (1e-3 * STEPS as f64));
     let bodies = format!(
@@ -108,7 +110,8 @@ fn neo_hookean(share: f64) -> f64 {
     force(&s)
 }
 
-/// The warning of grains that deform begins at a strain of a tenth: their forces are then off by less than 1.5 per cent.
+/// The warning of grains that deform begins at a strain of a tenth: their forces are then off by
+/// less than 1.5 per cent.
 #[test]
 fn forces_of_small_strain_hold_up_to_a_strain_of_a_tenth() {
     println!("approach/R, force (N/m), of the neo-Hookean disk, off by, largest strain, by energy");

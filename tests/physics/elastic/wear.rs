@@ -1,4 +1,5 @@
-//! Wear of deformable bodies: what is gone is what Archard's law says, and the pressure falls as the scar widens.
+//! Wear of deformable bodies: what is gone is what Archard's law says, and the pressure falls as
+//! the scar widens.
 
 use super::*;
 use fretwork::scene::load;
@@ -20,7 +21,8 @@ pub fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-/// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of the points that touch over the step.
+/// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of
+/// the points that touch over the step.
 pub fn rubbed<S: Space>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
     let contacts = s.state.network.contacts.iter();
     contacts
@@ -42,7 +44,8 @@ struct Found {
     expected: f64,
     /// The wear that steps reported (m^2).
     booked: f64,
-    /// Highest traction and number of loaded contacts at the end of the first step under the load and of the last (Pa).
+    /// Highest traction and number of loaded contacts at the end of the first step under the load
+    /// and of the last (Pa).
     pressure: [f64; 2],
     loaded: [usize; 2],
 }
@@ -69,7 +72,8 @@ fn wear(s: &mut Simulation<Dim2>, start: f64, end: f64, size: f64) -> Found {
     found
 }
 
-/// Area between the surface of the scar, as it is shown, and the one that its system would have without wear (m^2).
+/// Area between the surface of the scar, as it is shown, and the one that its system would have
+/// without wear (m^2).
 fn gone(s: &Simulation<Dim2>) -> f64 {
     let scar = &s.state.scars[0];
     let carried = &s.shapes.surfaces[scar.surface];

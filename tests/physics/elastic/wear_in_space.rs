@@ -1,4 +1,5 @@
-//! Wear of deformable bodies in space: what is gone is what the law says, and the load goes where less is gone.
+//! Wear of deformable bodies in space: what is gone is what the law says, and the load goes where
+//! less is gone.
 
 use super::wear::{agree, case, rubbed};
 use super::*;
@@ -39,7 +40,8 @@ fn dissipated_energy() -> String {
     )
 }
 
-/// Volume between the surface of the scar, as it is shown, and the one that its system would have without wear (m^3).
+/// Volume between the surface of the scar, as it is shown, and the one that its system would have
+/// without wear (m^3).
 fn gone(s: &Simulation<Dim3>) -> f64 {
     let scar = &s.state.scars[0];
     let carried = &s.shapes.surfaces[scar.surface];
@@ -88,7 +90,8 @@ fn holds(s: &Simulation<Dim3>, booked: f64, strained: f64) {
 /// A cycle of gross slip by Archard's law, and the sphere lifted then.
 fn a_cycle(mut s: Simulation<Dim3>) {
     let [booked, expected] = wear(&mut s, 0.01 + PERIOD);
-    // The places that touch are those of the end of the step here, and the law's those of its middle.
+    // The places that touch are those of the end of the step here, and the law's those of its
+    // middle.
     agree("archard", expected, booked, 2e-5);
     // Where all slips the heat of friction is mu F s.
     agree("heat", K * s.state.energy.friction / MU, booked, 1e-5);
@@ -198,7 +201,8 @@ fn a_round_side_wears_by_the_dissipated_energy() {
     assert!(scar.deepest() > 1e-8 && scar.deepest_at().xy().norm() < 3e-4);
 }
 
-/// A flat punch at rest on a half-space of which an even layer, and more at one place, has been worn off.
+/// A flat punch at rest on a half-space of which an even layer, and more at one place, has been
+/// worn off.
 fn pressed(layer: f64, more: f64) -> (f64, Vec<[f64; 3]>) {
     let sets = [
         "half_spaces.0.wears=(thickness: 1e-4)",

@@ -1,5 +1,5 @@
-//! The extremes that take seconds: each ends as it declares, met, or reported with its cause and what to change. The whole
-//! table: `cargo run --release --example extremes`.
+//! The extremes that take seconds: each ends as it declares, met, or reported with its cause and
+//! what to change. The whole table: `cargo run --release --example extremes`.
 
 #[path = "../../../validation/programs/extremes/bench/mod.rs"]
 pub(crate) mod bench;
@@ -54,7 +54,8 @@ fn another_cause_than_the_declared_one_is_broken() {
     let late = (Cause::Late, late);
     assert!(!broken(HELD, true, true, &[]));
     assert!(!broken(told(&[Cause::Late]), false, true, &[late]));
-    // Missed and silent; reported where it should be met; met where a limit was declared; another cause; one more.
+    // Missed and silent; reported where it should be met; met where a limit was declared; another
+    // cause; one more.
     assert!(broken(HELD, false, true, &[]));
     assert!(broken(told(&[Cause::Late]), false, true, &[]));
     assert!(broken(HELD, false, true, &[late]));

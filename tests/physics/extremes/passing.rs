@@ -1,5 +1,5 @@
-//! Bodies that move farther in a step than they are thick: they meet what is in their way, or the run says that they may not
-//! have, when and which.
+//! Bodies that move farther in a step than they are thick: they meet what is in their way, or the
+//! run says that they may not have, when and which.
 
 use super::bench::{G, Sketch, ball, floor, grains, place};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -42,7 +42,8 @@ fn silent<S: Space>(s: &Simulation<S>) {
     assert_eq!(s.state.network.step_size.warning(), None);
 }
 
-/// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of grains.
+/// A blade of half the grains' thickness is driven by ten times its thickness a step along a row of
+/// grains.
 #[test]
 fn a_driven_blade_takes_along_what_it_meets() {
     let row: Vec<String> = (0..10)
@@ -139,8 +140,8 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     assert!((momentum(&s) - before).norm() < 1e-9 * scale);
 }
 
-/// Head on at ten radii a step: without restitution they stay together; with e the lighter part of the velocity is
-/// exchanged, v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
+/// Head on at ten radii a step: without restitution they stay together; with e the lighter part of
+/// the velocity is exchanged, v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
 fn head_on<S: Dimensional>() {
     for (contact, e) in [("coulomb", 0.0), ("newton-restitution", 0.8)] {
         let expected = [50.0 * (1.0 - e), 50.0 * (1.0 + e)];
@@ -176,8 +177,8 @@ fn fast_balls_meet_head_on() {
     head_on::<Dim3>();
 }
 
-/// Two balls that pass beside each other keep their velocities to the last bit, however near the line of their centres is to
-/// the motion at the start.
+/// Two balls that pass beside each other keep their velocities to the last bit, however near the
+/// line of their centres is to the motion at the start.
 #[test]
 fn fast_balls_that_miss_each_other_do_not_meet() {
     for (x, aside) in [(0.1, 0.0201), (0.05, 0.03), (0.4, 0.021), (0.021, 0.0205)] {
@@ -222,7 +223,8 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
     }
 }
 
-/// A bond is made within the alert distance alone, and nothing pulls at a distance, however fast two grains come together.
+/// A bond is made within the alert distance alone, and nothing pulls at a distance, however fast
+/// two grains come together.
 #[test]
 fn speed_makes_no_bonds() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [30.0, 0.0])".to_owned();
@@ -308,7 +310,8 @@ fn passed<S: Space>(s: &Simulation<S>) {
     assert!(told.contains("penetrated or passed through"), "{told}");
 }
 
-/// What bodies go through before the first detection, and by a jump of an imposed velocity, is reported.
+/// What bodies go through before the first detection, and by a jump of an imposed velocity, is
+/// reported.
 #[test]
 fn what_is_passed_before_detection_is_reported() {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
@@ -367,8 +370,8 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation
     s
 }
 
-/// One impact after another: v1 = (1 - e) v/2, then v2 = (1 - e)(1 + e) v/4 and v3 = (1 + e)^2 v/4. Where both come in one step
-/// the second waits for the next step, and the run says so.
+/// One impact after another: v1 = (1 - e) v/2, then v2 = (1 - e)(1 + e) v/4 and v3 = (1 + e)^2 v/4.
+/// Where both come in one step the second waits for the next step, and the run says so.
 #[test]
 fn impacts_with_restitution_one_after_the_other() {
     for e in [1.0, 0.8] {
@@ -395,7 +398,8 @@ fn impacts_with_restitution_one_after_the_other() {
     }
 }
 
-/// Two balls thrown at a wall one behind the other: the rear one does not bounce off the wall through the front one.
+/// Two balls thrown at a wall one behind the other: the rear one does not bounce off the wall
+/// through the front one.
 #[test]
 fn a_ball_does_not_bounce_through_another() {
     let thrown = |x: f64| format!("(at: [{x}, 0.0], radius: 0.01, velocity: [150.0, 0.0])");

@@ -1,8 +1,10 @@
-//! The smallest problems on which sweeps over rigid contacts never end, and what ends them: a disk that spins between walls.
+//! The smallest problems on which sweeps over rigid contacts never end, and what ends them: a disk
+//! that spins between walls.
 //!
-//! A sweep solves one contact after the other. A contact that sticks projects the velocity orthogonally, one that slides along
-//! (1, mu) against its normal, which lengthens it by up to 1/cos(delta), tan(delta) = mu. If all n walls slide, whose contact lines
-//! are pi/n apart, a sweep multiplies the velocity by (cos(pi/n - delta)/cos(delta))^n: above one for mu > tan(pi/(2n)).
+//! A sweep solves one contact after the other. A contact that sticks projects the velocity
+//! orthogonally, one that slides along (1, mu) against its normal, which lengthens it by up to
+//! 1/cos(delta), tan(delta) = mu. If all n walls slide, whose contact lines are pi/n apart, a sweep
+//! multiplies the velocity by (cos(pi/n - delta)/cos(delta))^n: above one for mu > tan(pi/(2n)).
 
 use fretwork::record::fclib::{self, Problem};
 use fretwork::solve::local::solver::{Limits, Method, Outcome, solve};
@@ -11,8 +13,8 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// A disk of mass 1, radius 1 and inertia 1/2 between walls whose normals have these angles (rad), with this free velocity
-/// (m/s, rad/s); `compliance` on the diagonal of W.
+/// A disk of mass 1, radius 1 and inertia 1/2 between walls whose normals have these angles (rad),
+/// with this free velocity (m/s, rad/s); `compliance` on the diagonal of W.
 fn pit(angles: &[f64], velocity: [f64; 3], mu: f64, compliance: f64) -> LocalProblem {
     let rows = angles.iter().flat_map(|a| {
         let (s, c) = a.sin_cos();
@@ -56,7 +58,8 @@ fn by(method: Method, problem: &LocalProblem) -> Outcome {
     solve(problem, method, &limits)
 }
 
-/// Two contacts: all slide for mu = 1.2 > tan(pi/4), and p = (1, mu, mu, mu^2)/(1 + mu^2) solves the problem.
+/// Two contacts: all slide for mu = 1.2 > tan(pi/4), and p = (1, mu, mu, mu^2)/(1 + mu^2) solves
+/// the problem.
 #[test]
 fn a_disk_that_spins_in_a_corner_is_not_solved_by_sweeps() {
     let problem = corner(1.2, 0.0);
@@ -90,7 +93,8 @@ fn a_disk_that_spins_in_a_corner_is_not_solved_by_sweeps() {
         let outcome = by(method, &problem);
         assert!(outcome.converged, "{}: {:e}", method.name(), outcome.error);
     }
-    // Below the threshold sweeps end, and above it where the contacts give way: all slide with mu/(1 + c) < 1.
+    // Below the threshold sweeps end, and above it where the contacts give way: all slide with
+    // mu/(1 + c) < 1.
     assert!(by(Method::Nlgs, &corner(0.9, 0.0)).converged);
     assert!(!by(Method::Nlgs, &corner(1.2, 0.19)).converged);
     assert!(by(Method::Nlgs, &corner(1.2, 0.21)).converged);

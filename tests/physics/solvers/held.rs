@@ -1,5 +1,6 @@
-//! Contacts of bodies that are held in some or all directions: a spring, a bond, damping and friction give an impulse of the velocities that
-//! are imposed, without any mass. Every row and every method against the laws, written out.
+//! Contacts of bodies that are held in some or all directions: a spring, a bond, damping and
+//! friction give an impulse of the velocities that are imposed, without any mass. Every row and
+//! every method against the laws, written out.
 
 use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::solve::form::{ContactForm, Elastic, Problem};
@@ -261,7 +262,8 @@ fn springs_bonds_and_friction_between_held_bodies_in_space() {
     everything::<Dim3>();
 }
 
-/// Bodies that can only turn, or only move along an axis: the laws hold at the velocities that the solver finds.
+/// Bodies that can only turn, or only move along an axis: the laws hold at the velocities that the
+/// solver finds.
 #[test]
 fn contacts_of_bodies_that_are_held_in_part() {
     fn of<S: Space>() {

@@ -1,4 +1,5 @@
-//! The ends of the range: nothing to solve, contacts that nothing moves, numbers that are none, no time.
+//! The ends of the range: nothing to solve, contacts that nothing moves, numbers that are none, no
+//! time.
 
 use super::made::{Made, friction, rng, well};
 use super::{run, tolerance};
@@ -250,7 +251,8 @@ fn single<const D: usize>(w: [[f64; D]; D], q: [f64; D], mu: f64) -> LocalProble
     }
 }
 
-/// Bodies that yield along some directions only: the slip of the others is given, and friction goes against it.
+/// Bodies that yield along some directions only: the slip of the others is given, and friction goes
+/// against it.
 #[test]
 fn blocks_of_less_than_full_rank() {
     let r = 0.3f64.hypot(1.0);

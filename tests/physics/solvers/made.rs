@@ -1,5 +1,5 @@
-//! Problems made from their solutions: impulses p and velocities u that satisfy the laws are drawn first,
-//! then an operator W, and q = u - W p. And the error, computed here from its formula alone.
+//! Problems made from their solutions: impulses p and velocities u that satisfy the laws are drawn
+//! first, then an operator W, and q = u - W p. And the error, computed here from its formula alone.
 
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::block::BlockMatrix;
@@ -174,8 +174,9 @@ impl<const D: usize> Made<D> {
         self.q.as_chunks().0.to_vec()
     }
 
-    /// The error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t| n))) / rho or what that
-    /// loses of min(p_n/rho, u_n), mu^2/(1 + mu^2); in the field's norm |r| / max(|u|, |q|) where that is above a half.
+    /// The error of p by its formula: |r| / max(...), r = (p - proj(p - rho (u + mu |u_t| n))) /
+    /// rho or what that loses of min(p_n/rho, u_n), mu^2/(1 + mu^2); in the field's norm |r| /
+    /// max(|u|, |q|) where that is above a half.
     pub fn error(&self, p: &[f64], norm: Norm) -> f64 {
         let u = &self.w * DVector::from_column_slice(p) + DVector::from_column_slice(&self.q);
         let (mut r2, mut p2, mut u2) = (0.0, 0.0, 0.0);
@@ -232,7 +233,8 @@ impl<const D: usize> Made<D> {
     }
 }
 
-/// The largest eigenvalue of a block from above: the largest absolute row sum of its symmetric part.
+/// The largest eigenvalue of a block from above: the largest absolute row sum of its symmetric
+/// part.
 fn bound(w: &DMatrix<f64>) -> f64 {
     let s = 0.5 * (w + w.transpose());
     s.row_iter()

@@ -22,7 +22,8 @@ fn tolerance(method: Method) -> f64 {
     }
 }
 
-/// Iterations that a problem of these sizes may take; one of Newton or the interior point factorises.
+/// Iterations that a problem of these sizes may take; one of Newton or the interior point
+/// factorises.
 fn iterations(method: Method) -> u32 {
     match method {
         Method::Newton | Method::Interior => 300,
@@ -170,8 +171,8 @@ fn rigid_bodies_of_full_rank() {
 
 #[test]
 fn hyperstatic_rigid_bodies() {
-    // The literature's figures: sweeps and first-order methods often stall, Newton and interior points
-    // solve most, and each problem is solved by one of them.
+    // The literature's figures: sweeps and first-order methods often stall, Newton and interior
+    // points solve most, and each problem is solved by one of them.
     let least = |method| match method {
         Method::Auto => 1.0,
         Method::Newton => 0.85,

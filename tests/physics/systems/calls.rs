@@ -1,4 +1,5 @@
-//! What a step asks of a system, and how often: A and the contacts do not change while a step is solved.
+//! What a step asks of a system, and how often: A and the contacts do not change while a step is
+//! solved.
 
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
@@ -7,8 +8,8 @@ use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use std::sync::Arc;
 
-/// Both balls rub on the floor: their two contacts are asked once for their nodes, A^-1 is applied to each axis of each node, for
-/// the free velocity and for the impulses.
+/// Both balls rub on the floor: their two contacts are asked once for their nodes, A^-1 is applied
+/// to each axis of each node, for the free velocity and for the impulses.
 fn once_a_step<S: Dimensional>() {
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),
@@ -30,7 +31,8 @@ fn a_step_asks_once_for_nodes_and_compliance() {
     once_a_step::<Dim3>();
 }
 
-/// A bond to a grain softens as it opens, and the step is solved until damage and opening agree: the compliance stays.
+/// A bond to a grain softens as it opens, and the step is solved until damage and opening agree:
+/// the compliance stays.
 fn iterates<S: Dimensional>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let opens = v / omega;

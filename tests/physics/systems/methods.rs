@@ -8,7 +8,8 @@ use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::solve::local::solver::Method;
 
-/// It slides on the floor and pushes a grain before it, which spins: all methods give the motion that sweeps give.
+/// It slides on the floor and pushes a grain before it, which spins: all methods give the motion
+/// that sweeps give.
 fn solved_by<S: Dimensional>(method: Method) -> Vec<S::Vector> {
     let row = [ball(&place::<S>(0.75, 0.0, R), R)];
     let mut s = built::<S>(&Sketch {

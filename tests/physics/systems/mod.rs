@@ -1,5 +1,5 @@
-//! Dynamical systems beside rigid bodies: a body of two masses on a spring, written here, vibrates, falls, slides, collides and is
-//! bonded by its closed forms, and goes on from a saved state.
+//! Dynamical systems beside rigid bodies: a body of two masses on a spring, written here, vibrates,
+//! falls, slides, collides and is bonded by its closed forms, and goes on from a saved state.
 
 mod calls;
 mod methods;
@@ -45,8 +45,8 @@ fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
     }
 }
 
-/// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger closes and bits are equal all the
-/// same.
+/// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger
+/// closes and bits are equal all the same.
 fn falls<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -88,7 +88,8 @@ fn momentum<S: Space>(s: &Simulation<S>, mass: [f64; 2]) -> f64 {
     grains + mass[0] * velocity[0] + mass[1] * velocity[S::D]
 }
 
-/// Free vibration. The midpoint rule conserves energy and turns the phase by 2 atan(w h/2) a step: tan(w' h/2) = w h/2.
+/// Free vibration. The midpoint rule conserves energy and turns the phase by 2 atan(w h/2) a step:
+/// tan(w' h/2) = w h/2.
 fn vibrates<S: Dimensional>() {
     let (mass, k, stretch) = ([2.0, 3.0], 4e3, 0.01);
     let mut s = built::<S>(&Sketch {
@@ -125,7 +126,8 @@ fn it_vibrates_at_the_frequency_of_the_midpoint_rule() {
     vibrates::<Dim3>();
 }
 
-/// Dropped upright on a floor, without restitution: the lower ball then carries the weight of both, the spring that of the upper.
+/// Dropped upright on a floor, without restitution: the lower ball then carries the weight of both,
+/// the spring that of the upper.
 fn comes_to_rest<S: Dimensional>() {
     let (mass, k) = ([2.0, 3.0], 5e4);
     let mut s = built::<S>(&Sketch {
@@ -189,7 +191,8 @@ fn it_slides_to_a_stop_at_mu_g() {
     slides::<Dim3>();
 }
 
-/// It strikes a grain: momentum stays, the ball leaves at e times the speed that it came with, the ledger closes.
+/// It strikes a grain: momentum stays, the ball leaves at e times the speed that it came with, the
+/// ledger closes.
 fn strikes<S: Dimensional>(touching: Touching, theta: f64, stiffening: f64) {
     let (mass, e) = ([2.0, 3.0], 0.6);
     let row = [ball(&place::<S>(1.0, 0.0, 1.0), R)];
@@ -228,8 +231,8 @@ fn strikes<S: Dimensional>(touching: Touching, theta: f64, stiffening: f64) {
         near(before, momentum(&s, mass), 1e-12);
     }
     assert!(struck > 0 && s.state.energy.elastic > 0.0);
-    // Velocities are averaged by theta: beyond 1/2 the scheme books a part of what the impact takes, and more; the tangent of a
-    // stiffening spring is not its secant.
+    // Velocities are averaged by theta: beyond 1/2 the scheme books a part of what the impact
+    // takes, and more; the tangent of a stiffening spring is not its secant.
     let sinks = (s.state.energy.impact, s.state.energy.scheme);
     assert!(sinks.0 + sinks.1 > 0.0);
     assert_eq!(sinks.1 == 0.0, theta == 0.5 && stiffening == 0.0);
@@ -287,8 +290,9 @@ fn masses_without_a_spring_bounce_as_grains() {
     is_a_grain::<Dim3>();
 }
 
-/// A bond between a grain and the second mass, as stiff as the spring, makes a chain of three equal masses. Outwards at v, at
-/// rest, outwards at v is its mode of w^2 = k/m: the bond opens by v/w sin w' t.
+/// A bond between a grain and the second mass, as stiff as the spring, makes a chain of three equal
+/// masses. Outwards at v, at rest, outwards at v is its mode of w^2 = k/m: the bond opens by v/w
+/// sin w' t.
 fn is_bonded<S: Dimensional>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let k = m * omega * omega;
@@ -338,8 +342,8 @@ fn a_bond_holds_it_to_a_grain() {
     is_bonded::<Dim3>();
 }
 
-/// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second one that runs into it, between
-/// walls.
+/// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second
+/// one that runs into it, between walls.
 fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
     let mut row = Vec::new();
     for k in 0..24u32 {
@@ -385,7 +389,8 @@ fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
     s
 }
 
-/// Grains and contactors bear on each other, contactors on contactors of their own and of another system.
+/// Grains and contactors bear on each other, contactors on contactors of their own and of another
+/// system.
 fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
     for c in &s.state.network.contacts {
         if c.impulse == S::Vector::zero() {
@@ -472,7 +477,8 @@ fn threads_do_not_change_its_bits() {
     assert!(one == after(1) && one == after(2) && one == after(3));
 }
 
-/// A system that moves when it is added keeps its kinetic energy in the ledger where imposed motion begins after it.
+/// A system that moves when it is added keeps its kinetic energy in the ledger where imposed motion
+/// begins after it.
 #[test]
 fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
     let mut s = built::<Dim2>(&Sketch {
@@ -494,7 +500,8 @@ fn imposed_motion_that_begins_later_leaves_the_energy_of_systems() {
     closes(&s, 1e-12);
 }
 
-/// A moment has no power on a contactor that does not turn: under rolling friction it slides as under friction alone, and slows down by mu g.
+/// A moment has no power on a contactor that does not turn: under rolling friction it slides as
+/// under friction alone, and slows down by mu g.
 #[test]
 fn a_contactor_that_does_not_turn_takes_moments_without_power() {
     let (mu, speed, mass) = (0.3, 2.0, [2.0, 3.0]);

@@ -1,4 +1,5 @@
-//! What a scene measures itself against takes in its systems: conditions of rest do, and what cannot is refused.
+//! What a scene measures itself against takes in its systems: conditions of rest do, and what
+//! cannot is refused.
 
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
@@ -6,8 +7,8 @@ use crate::extremes::bench::{G, Sketch, floor};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 
-/// Dropped upright, and an imposed one beside it that never rests: the phase ends when m g d of the first has been above its kinetic
-/// energy for long enough, d the length over both balls.
+/// Dropped upright, and an imposed one beside it that never rests: the phase ends when m g d of the
+/// first has been above its kinetic energy for long enough, d the length over both balls.
 fn phase_of_rest<S: Dimensional>() {
     let (mass, share, held) = ([2.0, 3.0], 1e-4, 0.05);
     let mut s = built::<S>(&Sketch {

@@ -1,5 +1,6 @@
-//! A body that is not rigid, as a user of the library writes one: two masses on a linear spring with a damper, which touch by a
-//! ball each or by one ball half-way between them. The spring may stiffen as it is stretched.
+//! A body that is not rigid, as a user of the library writes one: two masses on a linear spring
+//! with a damper, which touch by a ball each or by one ball half-way between them. The spring may
+//! stiffen as it is stretched.
 
 use fretwork::bodies::{Contactor, ContactorShape, DynamicalSystem, Nodes, SystemStep, SystemWork};
 use fretwork::geometry::space::{Space, VectorLike};
@@ -36,8 +37,8 @@ impl Calls {
     }
 }
 
-/// The spring pulls along all axes alike, with s = d2 - d1 along an axis, d the displacements from rest: the force on the first
-/// mass is k (s + stiffening s^3) + c ds/dt.
+/// The spring pulls along all axes alike, with s = d2 - d1 along an axis, d the displacements from
+/// rest: the force on the first mass is k (s + stiffening s^3) + c ds/dt.
 #[derive(Clone, Debug)]
 pub struct Spring<S: Space> {
     pub mass: [f64; 2],

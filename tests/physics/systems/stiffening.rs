@@ -1,4 +1,5 @@
-//! A system that is not linear: two masses on a spring that stiffens, whose tangent is formed anew in each step.
+//! A system that is not linear: two masses on a spring that stiffens, whose tangent is formed anew
+//! in each step.
 
 use super::spring::Spring;
 use super::{R, at, built, closes, contactors, go, near, sketch};
@@ -9,11 +10,12 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 const MASS: [f64; 2] = [2.0, 3.0];
-/// Stiffness (N/m), stretch at the start (m), and stiffening (1/m^2): at that stretch the force is twice that of the linear spring.
+/// Stiffness (N/m), stretch at the start (m), and stiffening (1/m^2): at that stretch the force is
+/// twice that of the linear spring.
 const SPRING: [f64; 3] = [4e3, 0.01, 1e4];
 
-/// The period of x'' + a x + b x^3 = 0 at an amplitude A: 4 K(m)/sqrt(a + b A^2), m = b A^2/(2 (a + b A^2)), the complete elliptic
-/// integral by the arithmetic-geometric mean.
+/// The period of x'' + a x + b x^3 = 0 at an amplitude A: 4 K(m)/sqrt(a + b A^2), m = b A^2/(2 (a +
+/// b A^2)), the complete elliptic integral by the arithmetic-geometric mean.
 fn period(a: f64, b: f64, amplitude: f64) -> f64 {
     let square = a + b * amplitude * amplitude;
     let m = b * amplitude * amplitude / (2.0 * square);
@@ -79,7 +81,8 @@ fn vibration<S: Dimensional>(h: f64) -> (f64, f64) {
     ((downwards[10] - downwards[0]) / 10.0, changed)
 }
 
-/// The period tends to that of Duffing's oscillator with the square of the step, and so does the energy.
+/// The period tends to that of Duffing's oscillator with the square of the step, and so does the
+/// energy.
 fn follows_the_exact_period<S: Dimensional>() {
     let [k, stretch, stiffening] = SPRING;
     let reduced = MASS[0] * MASS[1] / (MASS[0] + MASS[1]);
@@ -108,6 +111,7 @@ fn a_stiffening_spring_has_the_period_of_duffings_oscillator() {
 #[test]
 fn the_period_of_a_linear_and_of_a_cubic_spring() {
     near(2.0 * PI / 3.0, period(9.0, 0.0, 0.7), 1e-14);
-    // x'' + x^3 = 0 at the amplitude 1: sqrt(pi) Gamma(1/4)/Gamma(3/4) times sqrt 2 is 7.416298709...
+    // x'' + x^3 = 0 at the amplitude 1: sqrt(pi) Gamma(1/4)/Gamma(3/4) times sqrt 2 is
+    // 7.416298709...
     near(7.416_298_709_205_488, period(0.0, 1.0, 1.0), 1e-12);
 }

@@ -54,8 +54,8 @@ fn modes(table: &mut Table) {
     }
 }
 
-/// The continuum limit b dbeta/dt = w - beta C u^2 for u = 0.045 t to 100 um, by Heun's rule with steps
-/// far below those of the case: peak and area.
+/// The continuum limit b dbeta/dt = w - beta C u^2 for u = 0.045 t to 100 um, by Heun's rule with
+/// steps far below those of the case: peak and area.
 fn ode(b: f64) -> (f64, f64) {
     let (rate, n) = (0.045, 4_000_000);
     let h = 100e-6 / rate / f64::from(n);

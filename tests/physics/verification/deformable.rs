@@ -11,8 +11,9 @@ pub fn all(table: &mut Table) {
     spinning_block(table);
 }
 
-/// The first Piola-Kirchhoff stress of the neo-Hookean material along a principal axis (J. Bonet and R. D. Wood, "Nonlinear Continuum
-/// Mechanics for Finite Element Analysis", 2nd edition, section 6.4.3) (Pa).
+/// The first Piola-Kirchhoff stress of the neo-Hookean material along a principal axis (J. Bonet
+/// and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd edition,
+/// section 6.4.3) (Pa).
 fn nominal(stretch: f64, volume: f64) -> f64 {
     let [young, poisson, _] = RUBBER;
     let shear = 0.5 * young / (1.0 + poisson);
@@ -88,7 +89,8 @@ fn spinning_block(table: &mut Table) {
     let turned = along[1].atan2(along[0]).rem_euclid(2.0 * PI);
     let expected = 2.0 * f64::atan(0.5 * spin * h) * steps;
     table.compare("spinning_block", "angle (rad)", expected, turned, 1e-3);
-    // Stretched at once, it swings about the stress of steady spin, which the mean over the turn has.
+    // Stretched at once, it swings about the stress of steady spin, which the mean over the turn
+    // has.
     let steady = RUBBER[2] * spin * spin * 0.2 * 0.2 / 8.0;
     table.compare(
         "spinning_block",

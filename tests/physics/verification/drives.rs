@@ -1,4 +1,5 @@
-//! Imposed motion: bodies are where their functions of time say, at every instant, and the work of it is booked.
+//! Imposed motion: bodies are where their functions of time say, at every instant, and the work of
+//! it is booked.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::code::{decode, encode};
@@ -199,8 +200,8 @@ fn imposed_rotations_are_on_their_paths() {
     }
 }
 
-/// Free under a force, then on a path that begins where it is, then at a velocity, then held: the work of the drives
-/// is the kinetic energy that they give.
+/// Free under a force, then on a path that begins where it is, then at a velocity, then held: the
+/// work of the drives is the kinetic energy that they give.
 #[test]
 fn stages_take_over_where_the_body_is() {
     let mut s = driven::<Dim2>(
@@ -276,7 +277,8 @@ fn phases_begin_where_the_body_is() {
     assert!(s.phases_finished());
 }
 
-/// After 100,000 steps bodies are where they should be, as exactly as a time and an angle of that size are numbers.
+/// After 100,000 steps bodies are where they should be, as exactly as a time and an angle of that
+/// size are numbers.
 #[test]
 fn a_long_run_does_not_drift() {
     const STEPS: u32 = 100_000;
@@ -340,7 +342,8 @@ fn jumps_of_the_velocity_are_work_of_the_drive() {
     }
 }
 
-/// A wall that moves from time zero on meets what touches it at its velocity: it leaves with (1 + e) V.
+/// A wall that moves from time zero on meets what touches it at its velocity: it leaves with (1 +
+/// e) V.
 #[test]
 fn a_wall_hits_with_the_velocity_it_starts_with() {
     let mut s: Simulation<Dim2> = build(
@@ -360,8 +363,8 @@ fn a_wall_hits_with_the_velocity_it_starts_with() {
     }
 }
 
-/// A block that friction holds on a floor that swings smoothly goes with it: after ten periods it has slipped by less
-/// than the square of the step's angle.
+/// A block that friction holds on a floor that swings smoothly goes with it: after ten periods it
+/// has slipped by less than the square of the step's angle.
 #[test]
 fn what_sticks_goes_along() {
     let (a, f) = (1e-3, 5.0);
@@ -452,7 +455,8 @@ fn a_kept_state_goes_on_along_its_paths() {
     }
 }
 
-/// The slide of a friction test is the way of its body, and summaries say which drives the step cannot follow.
+/// The slide of a friction test is the way of its body, and summaries say which drives the step
+/// cannot follow.
 #[test]
 fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     let case = |frequency: f64| {

@@ -1,4 +1,5 @@
-//! What laws do in a scene: moments, attraction without opening, bonds that form, implicit coupling.
+//! What laws do in a scene: moments, attraction without opening, bonds that form, implicit
+//! coupling.
 
 use super::{G, Table, plane, solid, until};
 use fretwork::geometry::space::Space;
@@ -21,7 +22,8 @@ fn grain<S: Space>(s: &Simulation<S>) -> usize {
         .unwrap()
 }
 
-/// Thrown at v it slides until rolling, then loses g (l/R)/(1 + k) a second: measured over the rolling part.
+/// Thrown at v it slides until rolling, then loses g (l/R)/(1 + k) a second: measured over the
+/// rolling part.
 fn rolling(table: &mut Table) {
     fn slow<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> (f64, f64) {
         let b = grain(&s);
@@ -138,7 +140,8 @@ fn healing(table: &mut Table) {
     });
     let first =
         |list: &[(f64, u64)], n: u64| list.iter().find(|x| x.1 >= n).map_or(f64::NAN, |x| x.0);
-    // It carries from the first step on, so it is pressed for 0.02 s when the step begins that ends at 0.0201 s.
+    // It carries from the first step on, so it is pressed for 0.02 s when the step begins that ends
+    // at 0.0201 s.
     table.compare("healing", "first bond (s)", 0.0201, first(&made, 1), 1e-9);
     // A pull of 1e3 N/m on 0.5 m is below the strength of 1e4 Pa, 1e4 N/m above it.
     table.compare(
@@ -174,7 +177,8 @@ fn healing(table: &mut Table) {
     );
 }
 
-/// One viscous MAC bond pulled at a given speed: both couplings meet the limit of small steps, first order.
+/// One viscous MAC bond pulled at a given speed: both couplings meet the limit of small steps,
+/// first order.
 fn coupling(table: &mut Table) {
     let run = |h: f64, coupling: &str| {
         let h = format!("time.step={h:e}");
@@ -309,7 +313,8 @@ fn held(table: &mut Table) {
         most = most.max(s.state.network.contacts.len())
     });
     table.compare("pinned_roller", "contacts", 1.0, most as f64, 0.0);
-    // What the drive gave is in the roller's spin and, by friction at 1 m, in the grain: I w + m |v_x| R = M t.
+    // What the drive gave is in the roller's spin and, by friction at 1 m, in the grain: I w + m
+    // |v_x| R = M t.
     let roller = s.state.bodies.driven[0].body as usize;
     let on_top = (0..s.state.bodies.len()).find(|b| *b != roller).unwrap();
     let spun = s.state.bodies.inertia[roller] * s.state.bodies.spin[roller][0].abs();

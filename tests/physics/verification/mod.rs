@@ -1,7 +1,7 @@
 //! Runs `cases/verification/` and compares with closed forms.
 //!
-//! `cargo test --release --test physics verification -- --nocapture` prints the table: case, quantity, expected,
-//! obtained, tolerance. Every expected value is a formula written here.
+//! `cargo test --release --test physics verification -- --nocapture` prints the table: case,
+//! quantity, expected, obtained, tolerance. Every expected value is a formula written here.
 
 mod bonds;
 mod deformable;

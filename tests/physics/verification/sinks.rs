@@ -1,5 +1,6 @@
-//! Each sink of the energy ledger against its own closed form, and identities that do not follow from the
-//! ledger's residual: normal work from the lid's path, forces along a column, momentum in 3D.
+//! Each sink of the energy ledger against its own closed form, and identities that do not follow
+//! from the ledger's residual: normal work from the lid's path, forces along a column, momentum in
+//! 3D.
 
 use super::{G, Table, plane, solid, until};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
@@ -21,7 +22,8 @@ fn driven<S: Space>(s: &Simulation<S>, name: &str) -> usize {
     at.unwrap_or_else(|| panic!("there is a body `{name}`"))
 }
 
-/// What slides loses to friction: all of m v^2/2, or k/(1 + k) of it when it ends rolling (rows 3, 4).
+/// What slides loses to friction: all of m v^2/2, or k/(1 + k) of it when it ends rolling (rows 3,
+/// 4).
 fn friction(table: &mut Table) {
     let mut s = plane("slide_to_stop", &[]);
     let b = s.state.bodies.driven[driven(&s, "block")].body as usize;
@@ -57,7 +59,8 @@ fn friction(table: &mut Table) {
     );
 }
 
-/// A ball that has come to rest has lost m g h0 in its impacts (row 1); e = 1 loses nothing (row 6).
+/// A ball that has come to rest has lost m g h0 in its impacts (row 1); e = 1 loses nothing (row
+/// 6).
 fn impacts(table: &mut Table) {
     let mut s = plane("bouncing_ball", &[]);
     until(&mut s, 4.3, |_| {});
@@ -72,7 +75,8 @@ fn impacts(table: &mut Table) {
         s.state.energy.impact,
         1e-2,
     );
-    // A bounce loses (1 - e^2) m v^2/2 and is no lift, also where overlaps are taken out by a velocity.
+    // A bounce loses (1 - e^2) m v^2/2 and is no lift, also where overlaps are taken out by a
+    // velocity.
     for e in [0.5_f64, 0.9, 1.0] {
         let restitution = format!("interfaces.grain.parameters.contact.restitution_n={e}");
         let sets = ["gravity=[0.0, 0.0]", "solver.correction=0.2", &restitution];
@@ -205,8 +209,9 @@ impl Lid {
         self.pressure_path += received[normal] / h * moved[0].abs();
     }
 
-    /// mu from forces less mu from heat. The layer takes what the lid gives: drag + press = heat + stored,
-    /// the lid's own kinetic energy apart, so mu from heat is (heat + stored - press)/(P V).
+    /// mu from forces less mu from heat. The layer takes what the lid gives: drag + press = heat +
+    /// stored, the lid's own kinetic energy apart, so mu from heat is (heat + stored - press)/(P
+    /// V).
     fn compare<S: Space>(&self, table: &mut Table, case: &str, s: &Simulation<S>, lid: usize) {
         let e = &s.state.energy;
         let v = s.state.bodies.velocity[lid];
@@ -271,7 +276,8 @@ fn shear(table: &mut Table) {
         let now = s.state.bodies.position[b];
         lid.add::<Dim3>(&s.state.received[d].0, s.options.scheme.h, &(now - last), 2);
         last = now;
-        // Without gravity grains gain what contacts give them, and driven bodies receive the opposite.
+        // Without gravity grains gain what contacts give them, and driven bodies receive the
+        // opposite.
         let (mut sum, mut scale): (Vector3<f64>, f64) = (Vector3::zeros(), 0.0);
         for (k, v) in s
             .state

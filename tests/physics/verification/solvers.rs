@@ -69,8 +69,8 @@ fn column(table: &mut Table) {
     }
 }
 
-/// A block that is dragged at a given velocity and free to rise: friction is mu times its weight, although
-/// no impulse changes its slip.
+/// A block that is dragged at a given velocity and free to rise: friction is mu times its weight,
+/// although no impulse changes its slip.
 fn dragged(table: &mut Table) {
     for method in ALL {
         let mut s: Simulation<Dim2> = scene(
@@ -94,8 +94,9 @@ fn dragged(table: &mut Table) {
     }
 }
 
-/// A ball thrown obliquely on a floor of huge friction does not sink in: it rolls on at once, at v_x/(1 + 1/k),
-/// k = 1/2 of a disk, and the floor takes its normal momentum. Until it arrives the floor takes none.
+/// A ball thrown obliquely on a floor of huge friction does not sink in: it rolls on at once, at
+/// v_x/(1 + 1/k), k = 1/2 of a disk, and the floor takes its normal momentum. Until it arrives the
+/// floor takes none.
 fn thrown(table: &mut Table) {
     for mu in ["0.3", "1e4", "1e7"] {
         for method in ALL {
@@ -180,8 +181,8 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
     }
 }
 
-/// What a method cannot solve is refused with the reason: before the run where the laws tell, else at the
-/// first step that asks for it.
+/// What a method cannot solve is refused with the reason: before the run where the laws tell, else
+/// at the first step that asks for it.
 fn refused() {
     for (case, method, word) in [
         ("rolling_stop_sphere", "Newton", "rotation"),

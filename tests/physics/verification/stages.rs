@@ -20,7 +20,8 @@ fn place(s: &Simulation<Dim2>, name: &str) -> usize {
     found.unwrap_or_else(|| panic!("a body named {name}"))
 }
 
-/// F for t1, then V, then -F. At theta = 1/2 the scheme is exact: V begins with a jump of the velocity, where the cart is.
+/// F for t1, then V, then -F. At theta = 1/2 the scheme is exact: V begins with a jump of the
+/// velocity, where the cart is.
 fn cart(table: &mut Table) {
     let (f, m, v2, t1) = (10.0, 5.0, -0.7, 0.2);
     let mut s = plane("staged_drive", &[]);
@@ -55,8 +56,8 @@ fn cart(table: &mut Table) {
     table.compare(name, "pushed again: place (m)", x3, x, 1e-12);
 }
 
-/// The lid falls by the gap and rests on the grain, then it is lifted: the work is F times the gap, lost in
-/// impacts, then m V^2/2.
+/// The lid falls by the gap and rests on the grain, then it is lifted: the work is F times the gap,
+/// lost in impacts, then m V^2/2.
 fn lid(table: &mut Table) {
     let (f, gap, m, v) = (100.0, 0.01, 4.0, 0.3);
     let mut s = plane("staged_drive", &[]);
@@ -94,8 +95,8 @@ fn lid(table: &mut Table) {
     );
 }
 
-/// Momentum of the driven walls and half of that of the grains: its rate is how much the mean push on two walls
-/// exceeds the load.
+/// Momentum of the driven walls and half of that of the grains: its rate is how much the mean push
+/// on two walls exceeds the load.
 fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
     let walls = ["right", "top"].map(|name| s.state.bodies.driven[place(s, name)].body as usize);
     let mut sum = [0.0; 2];
@@ -111,7 +112,8 @@ fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
     sum
 }
 
-/// At rest: forces over lengths, and the Love-Weber stress. Then the strain that the wall's motion gives.
+/// At rest: forces over lengths, and the Love-Weber stress. Then the strain that the wall's motion
+/// gives.
 fn biaxial(table: &mut Table) {
     let name = "biaxial";
     let root = env!("CARGO_MANIFEST_DIR");
@@ -141,7 +143,8 @@ fn biaxial(table: &mut Table) {
     let width = at(&s, "right").x + 0.14 + 0.01;
     let height = at(&s, "top").y;
     let state = test.state(&s);
-    // Not quite at rest: on a driven wall push F and its inertia, on the one across the inertia of grains too.
+    // Not quite at rest: on a driven wall push F and its inertia, on the one across the inertia of
+    // grains too.
     let inertia = [0, 1].map(|k| (after[k] - before[k]) / s.options.scheme.h);
     table.compare(
         name,

@@ -46,8 +46,8 @@ fn what_falls_off_a_ceiling_passes_every_flow_once() {
     for a in [r.tied, r.contact, r.ejected, r.lost] {
         assert!(a.grains == 0 && a.mass.abs() < 1e-12 * mass);
     }
-    // Grains that leave take their kinetic energy with them: each falls from rest, its mean 0.1 or 0.3 m deep, to more than
-    // 1 m, under two to three times the weight.
+    // Grains that leave take their kinetic energy with them: each falls from rest, its mean 0.1 or
+    // 0.3 m deep, to more than 1 m, under two to three times the weight.
     assert!(s.energy.carried > mass * 9.81 * 0.7 * 2.0);
     assert!(
         s.energy_residual_relative < 1e-6,
@@ -69,8 +69,8 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
     assert_eq!([f.source, f.attached, f.wear].map(|a| a.grains), [0; 3]);
 }
 
-/// Two roots of different strength on a bar of two grains: the first breaks alone, the second frees the bar; its debris
-/// cost both.
+/// Two roots of different strength on a bar of two grains: the first breaks alone, the second frees
+/// the bar; its debris cost both.
 #[test]
 fn debris_remembers_the_bonds_that_broke_before_the_last() {
     use fretwork::process::circuit::Circuit;

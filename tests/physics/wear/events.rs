@@ -7,8 +7,9 @@ use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use std::path::Path;
 
-/// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books, and what
-/// breaks tell of themselves adds up to the fracture energy, with what intact bonds lost on the way.
+/// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books,
+/// and what breaks tell of themselves adds up to the fracture energy, with what intact bonds lost
+/// on the way.
 fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();

@@ -7,7 +7,8 @@ use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use std::path::{Path, PathBuf};
 
-/// Runs a case into a folder of its own; its summary, and the depths of the scar of `flat` if there is one (m).
+/// Runs a case into a folder of its own; its summary, and the depths of the scar of `flat` if there
+/// is one (m).
 fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
     let mut all = vec![
@@ -42,7 +43,8 @@ fn refused(case: &str, sets: &[&str]) -> String {
     }
 }
 
-/// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles within 4 %.
+/// The bound of the comparison that the field makes: Cruzado et al. (2012) keep a hundred cycles
+/// within 4 %.
 const BOUND: f64 = 0.04;
 
 /// The jump of a run that stands for 1000 cycles with a twentieth of the steps of the full one.
@@ -54,7 +56,8 @@ fn twenty_times_fewer<'a>(jumped: &'a Summary, full: &Summary) -> &'a JumpSummar
     jump
 }
 
-/// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every cycle.
+/// Wear of the cylinder on a flat: volume, largest depth and profile of the run that computes every
+/// cycle.
 #[test]
 fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     let (jumped, profile) = ran("fretting_wear_jump", "scar", &[]);
@@ -79,7 +82,8 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
     assert!(estimate > 0.5 * truly, "{estimate} {truly}");
     assert!(estimate < 10.0 * truly.max(0.01));
     assert!(jumped.energy_residual_relative < 1e-12);
-    // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P times it.
+    // V against E_d is of all cycles: k/mu, as Archard's volume is k P times the path, and E_d mu P
+    // times it.
     let [a, b] = [&jumped, &full].map(|s| s.fretting.as_ref().unwrap());
     assert!(
         (a.energy / b.energy - 1.0).abs() < BOUND,
@@ -121,7 +125,8 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
     assert!(jumped.energy_residual_relative < 1e-12);
 }
 
-/// A bond that breaks does so about the cycle at which it breaks without jumps, and its energy is booked.
+/// A bond that breaks does so about the cycle at which it breaks without jumps, and its energy is
+/// booked.
 #[test]
 fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     let soft = "interfaces.0.parameters.damage.length=0.4";
@@ -147,7 +152,8 @@ fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     );
 }
 
-/// Surfaces that follow seldom follow at once within a jump; the load is the case's, so the volume is Archard's whatever they do.
+/// Surfaces that follow seldom follow at once within a jump; the load is the case's, so the volume
+/// is Archard's whatever they do.
 #[test]
 fn surfaces_that_follow_seldom_do_so_at_once_in_a_jump() {
     let sets = ["bodies.flat.wears.every=40", "jump.cycles=300"];

@@ -43,8 +43,9 @@ struct Rubbed {
     area: f64,
 }
 
-/// Runs and adds up what a law makes of each contact and step; compares with the scar, with the surface, and closes the
-/// ledger. The slip is the way that the slider itself went along the contact, it does not turn.
+/// Runs and adds up what a law makes of each contact and step; compares with the scar, with the
+/// surface, and closes the ledger. The slip is the way that the slider itself went along the
+/// contact, it does not turn.
 fn worn<S: Dimensional>(
     name: &str,
     sets: &[&str],
@@ -131,9 +132,9 @@ fn volume_is_alpha_times_the_energy_of_the_ledger() {
     assert!((ratio - 1.0).abs() < 1e-10, "{ratio}");
 }
 
-/// The regimes of the map of R8T on 900A (R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004) 467-478), mass per
-/// metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, 55 to 77.2, then 61.9 more for each N/mm^2, in
-/// ug/(m mm^2).
+/// The regimes of the map of R8T on 900A (R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004)
+/// 467-478), mass per metre rolled and area against T gamma/A: 5.3 x to 10.4 N/mm^2, 55 to 77.2,
+/// then 61.9 more for each N/mm^2, in ug/(m mm^2).
 #[test]
 fn t_gamma_wears_by_its_map() {
     for (speed, density, load, severe) in [(1.0, 785.0, -2e6, false), (1e-5, 7.85e-3, -150.0, true)]
@@ -156,12 +157,14 @@ fn t_gamma_wears_by_its_map() {
         let load = format!("bodies.block.dofs.y=Force(Constant({load:e}))");
         let sets = ["interfaces.0.wear=\"t-gamma\"", &law, &load];
         worn::<Dim2>("verification/worn_slide", &sets, map);
-        // The severe case is in that regime where one contact takes the load, four steps of five at least.
+        // The severe case is in that regime where one contact takes the load, four steps of five at
+        // least.
         assert_eq!(in_severe.get() > 400, severe, "{}", in_severe.get());
     }
 }
 
-/// A flat block that goes back and forth, pressed, sinks by V over what it covers, its length and the stroke.
+/// A flat block that goes back and forth, pressed, sinks by V over what it covers, its length and
+/// the stroke.
 #[test]
 fn a_block_sinks_into_what_it_covers() {
     let (width, amplitude, spacing) = (0.02, 0.002, 2e-4);
@@ -210,10 +213,11 @@ fn a_block_sinks_into_what_it_covers() {
     assert!((o.to - o.from - width - 2.0 * amplitude).abs() < 4.0 * spacing);
 }
 
-/// The scar of a cylinder of radius R that goes a to each side under Archard's law, half as wide as b > a: the contact
-/// goes from edge to edge with the stroke, x = u b/a, so that all of the scar deepens alike; there its slope is the
-/// cylinder's, (x - u)/R. So it is a parabola of the curvature (1 - a/b)/R, of depth b (b - a)/(2 R) and of area
-/// 2 b^2 (b - a)/(3 R): the cylinder's own form where a is small beside b.
+/// The scar of a cylinder of radius R that goes a to each side under Archard's law, half as wide as
+/// b > a: the contact goes from edge to edge with the stroke, x = u b/a, so that all of the scar
+/// deepens alike; there its slope is the cylinder's, (x - u)/R. So it is a parabola of the
+/// curvature (1 - a/b)/R, of depth b (b - a)/(2 R) and of area 2 b^2 (b - a)/(3 R): the cylinder's
+/// own form where a is small beside b.
 #[test]
 fn the_scar_of_a_cylinder_tends_to_its_form() {
     let (radius, a) = (0.05f64, 2e-4);
@@ -266,8 +270,9 @@ fn the_scar_of_a_cylinder_tends_to_its_form() {
     assert!(s.state.energy.relative_residual().abs() < 1e-9);
 }
 
-/// A punch drawn 2 mm above its face, 4 mm wide: friction turns it onto its leading edge, and the scar is deeper at both
-/// sides than in the middle. Held against turning it stays flat, and sinks by V over width and stroke.
+/// A punch drawn 2 mm above its face, 4 mm wide: friction turns it onto its leading edge, and the
+/// scar is deeper at both sides than in the middle. Held against turning it stays flat, and sinks
+/// by V over width and stroke.
 #[test]
 fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     let form = |sets: &[&str]| {
@@ -290,8 +295,8 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
     assert!((held.middle / (volume / 4.4e-3) - 1.0).abs() < 0.05);
 }
 
-/// Where the motion turns within a step, friction gives work back: later steps owe it to the law, and the volume
-/// stays that of the ledger's energy.
+/// Where the motion turns within a step, friction gives work back: later steps owe it to the law,
+/// and the volume stays that of the ledger's energy.
 #[test]
 fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
     let file = format!("{}/cases/fretting_scar.ron", env!("CARGO_MANIFEST_DIR"));

@@ -128,8 +128,9 @@ fn a_worn_profile_is_read_again_as_it_was_written() {
     }
 }
 
-/// Archard's law with k = 1e-8: a block drawn over a flat profile wears it by k P s, and the summary's V/(P s) is k again, for the body
-/// that wears. Mean depth times what was worn is the volume.
+/// Archard's law with k = 1e-8: a block drawn over a flat profile wears it by k P s, and the
+/// summary's V/(P s) is k again, for the body that wears. Mean depth times what was worn is the
+/// volume.
 #[test]
 fn the_specific_wear_rate_is_that_of_the_law() {
     let out = Folder::new("rate");

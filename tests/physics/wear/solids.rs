@@ -1,4 +1,5 @@
-//! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off its grip.
+//! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off
+//! its grip.
 
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::process::circuit::Circuit;
@@ -48,7 +49,8 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
         "{}/cases/verification/{case}.ron",
         env!("CARGO_MANIFEST_DIR")
     );
-    // With damage at the start of a step bonds release more, and the crack of this sample runs through.
+    // With damage at the start of a step bonds release more, and the crack of this sample runs
+    // through.
     let sets = [
         r#"circuit=(bases: ["left"], every: 1)"#,
         "coupling=Explicit",

@@ -2,7 +2,8 @@
 
 use super::trial::{MARK, PLANE, Trial, refused, with};
 
-/// The plane case without its period and with a deformable block of the given mesh and further fields.
+/// The plane case without its period and with a deformable block of the given mesh and further
+/// fields.
 pub(super) fn block(mesh: &str, more: &str) -> String {
     let body = format!(
         "elastic: [(name: \"block\", material: \"grain\", mesh: {mesh}, {more})],\n    friction:"
@@ -105,7 +106,8 @@ fn strains_that_cannot_be() {
     }
 }
 
-/// A block in small strain that is sheared by a tenth runs, and is no run to trust; in large strain it is.
+/// A block in small strain that is sheared by a tenth runs, and is no run to trust; in large strain
+/// it is.
 #[test]
 fn strains_that_are_not_small_are_warned_of() {
     let trial = Trial::new();

@@ -1,4 +1,5 @@
-//! Elastic half-spaces that cannot be: their cells, depths, holders, profiles, and what they cannot do.
+//! Elastic half-spaces that cannot be: their cells, depths, holders, profiles, and what they cannot
+//! do.
 
 use super::trial::{MARK, PLANE, SOLID, Trial, with};
 
@@ -55,7 +56,8 @@ fn two(old: &str, new: &str) -> String {
     plane(&format!("({LINE}), ({})", with(&second, old, new)))
 }
 
-/// The case is refused at its mark with these words, with a stone that has a modulus and these files beside it.
+/// The case is refused at its mark with these words, with a stone that has a modulus and these
+/// files beside it.
 #[track_caller]
 fn refused_beside(marked: &str, files: &[(&str, &str)], words: &[&str]) {
     let trial = Trial::new();

@@ -1,4 +1,5 @@
-//! Laws that hang, exit or crash, while they are loaded or in a step, and laws that answer what cannot be.
+//! Laws that hang, exit or crash, while they are loaded or in a step, and laws that answer what
+//! cannot be.
 
 use super::trial::{Trial, refusal};
 use super::trust::{own, run, says};
@@ -114,8 +115,9 @@ fn stopped(trial: &Trial, why: &str) {
     let summary = std::fs::read_to_string(out("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
     let steps = summary["steps"].as_u64().unwrap() as usize;
-    // The law lasts a thousand calls. Each step makes one or more of them: grains touch the floor from the start. It makes up to four:
-    // a few steps in a hundred are repeated twice (`uncertainty`), and a step may be solved twice.
+    // The law lasts a thousand calls. Each step makes one or more of them: grains touch the floor
+    // from the start. It makes up to four: a few steps in a hundred are repeated twice
+    // (`uncertainty`), and a step may be solved twice.
     assert!((250..=1000).contains(&steps), "{steps}");
     let said = summary["stopped"].as_str().unwrap();
     assert!(said.contains(why), "{said}");
@@ -187,7 +189,8 @@ fn rows_that_a_law_left_without_a_state_are_not_replaced() {
     says(&run(&trial, &never), 1, &["`own` crashed in prepare"]);
 }
 
-/// Nothing in the process can see `_exit`. The folder does not say that the run is done, and it can be gone on with.
+/// Nothing in the process can see `_exit`. The folder does not say that the run is done, and it can
+/// be gone on with.
 #[cfg(unix)]
 #[test]
 fn a_law_that_ends_the_process_at_once() {
@@ -267,7 +270,8 @@ fn certificates_of_laws_that_end_the_process() {
     }
 }
 
-/// A process that has no memory says nothing of the law that it tests: no shipped law is blamed under limits that are met in a test.
+/// A process that has no memory says nothing of the law that it tests: no shipped law is blamed
+/// under limits that are met in a test.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_law_that_could_not_be_tested_is_not_blamed() {
@@ -292,7 +296,8 @@ fn a_law_that_could_not_be_tested_is_not_blamed() {
     assert!(untested > 0, "no limit was met in a test");
 }
 
-/// Rounding and subnormal numbers belong to the caller: the run is that of a law which leaves them alone, and the certificate names it.
+/// Rounding and subnormal numbers belong to the caller: the run is that of a law which leaves them
+/// alone, and the certificate names it.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn a_law_that_changes_rounding_changes_no_number() {
@@ -349,7 +354,8 @@ fn flags_of_a_later_interface_are_refused() {
     );
 }
 
-/// A file beside the user, named without a folder: the linker would look for it where the system has its libraries.
+/// A file beside the user, named without a folder: the linker would look for it where the system
+/// has its libraries.
 #[test]
 fn a_library_is_certified_in_its_own_folder() {
     let (trial, _) = own("SPOOFS");

@@ -1,4 +1,5 @@
-//! Laws that link to libraries beside them: these are a part of the law, whatever else is opened, and nothing else comes with them.
+//! Laws that link to libraries beside them: these are a part of the law, whatever else is opened,
+//! and nothing else comes with them.
 
 use super::trial::{PLANE, Trial, refusal, with};
 use super::trust::{run, says};
@@ -116,7 +117,8 @@ fn two_laws_link_to_one_library() {
         let line = listed.lines().find(|l| l.contains(law)).unwrap();
         assert!(!line.contains("unusable"), "{line}");
     }
-    // All are opened before the first is tested; that all shipped ones are tested then is not waited for.
+    // All are opened before the first is tested; that all shipped ones are tested then is not
+    // waited for.
     let mut certify = trial.start(&["law", "certify", "--all", "--plugin-path", "."]);
     std::thread::sleep(std::time::Duration::from_secs(2));
     let running = certify.try_wait().unwrap();
@@ -127,7 +129,8 @@ fn two_laws_link_to_one_library() {
     assert!(!said.contains("changed while"), "{said}");
 }
 
-/// Two files of one name: the linker takes the first for both, so the second law is not what its file says.
+/// Two files of one name: the linker takes the first for both, so the second law is not what its
+/// file says.
 #[test]
 fn two_libraries_of_one_name_do_not_stand_for_each_other() {
     let trial = with_helper();

@@ -1,5 +1,6 @@
-//! Numbers that are possible one by one and together are outside the range of the computation: refused at their place, or the run
-//! ends with a sentence; nothing that is not finite reaches a file of a run that says it is done.
+//! Numbers that are possible one by one and together are outside the range of the computation:
+//! refused at their place, or the run ends with a sentence; nothing that is not finite reaches a
+//! file of a run that says it is done.
 
 use super::trial::{PLANE, SOLID, Trial, refused, with};
 

@@ -1,5 +1,5 @@
-//! Random damage to a valid case, the same at every run: whatever the text, the library answers with a
-//! scene or a refusal.
+//! Random damage to a valid case, the same at every run: whatever the text, the library answers
+//! with a scene or a refusal.
 
 use super::trial::{PLANE, SOLID, Trial, with};
 use fretwork::laws::SearchPath;
@@ -17,7 +17,8 @@ const PIECES: [&str; 20] = [
     "\"", ":", "\u{0}", "\u{e9}",
 ];
 
-/// A text with some of its bytes changed; with `numbers`, only digits, so that most stay well formed.
+/// A text with some of its bytes changed; with `numbers`, only digits, so that most stay well
+/// formed.
 fn damaged(text: &str, numbers: bool, rng: &mut Pcg64) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..rng.random_range(1..=3) {

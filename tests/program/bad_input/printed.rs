@@ -1,4 +1,5 @@
-//! What is printed: titles without commands to a terminal, pairs that pass through each other, places of laws.
+//! What is printed: titles without commands to a terminal, pairs that pass through each other,
+//! places of laws.
 
 use super::trial::{PLANE, Trial, refusal, with};
 

@@ -260,12 +260,14 @@ impl Trial {
         self.compile_bad_law(name, flags, "GOOD");
     }
 
-    /// The same with a fault, a word that the text asks for: it `LOOPS` for ever in prepare, say, or `SPILLS` behind a column.
+    /// The same with a fault, a word that the text asks for: it `LOOPS` for ever in prepare, say,
+    /// or `SPILLS` behind a column.
     pub fn compile_bad_law(&self, name: &str, flags: &str, fault: &str) {
         self.compile(name, flags, fault, &[]);
     }
 
-    /// A law that links to `libhelper.so` of a folder, which it finds beside itself by this run path.
+    /// A law that links to `libhelper.so` of a folder, which it finds beside itself by this run
+    /// path.
     pub fn compile_linked_law(&self, name: &str, folder: &str, run_path: &str) {
         let folder = format!("-L{folder}");
         let run_path = format!("-Wl,-rpath,{run_path}");

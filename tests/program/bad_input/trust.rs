@@ -1,4 +1,5 @@
-//! Libraries that others may have put there, that are not those of the case, and that do not keep to their columns.
+//! Libraries that others may have put there, that are not those of the case, and that do not keep
+//! to their columns.
 
 use super::trial::{PLANE, Trial, refusal, with};
 use std::path::PathBuf;
@@ -266,7 +267,8 @@ fn a_law_that_does_not_come_back() {
     assert!(said.contains("resuming the run"), "{said}");
 }
 
-/// The trial steps of `check`: a law that fails in one is told, one that does not come back holds nothing up.
+/// The trial steps of `check`: a law that fails in one is told, one that does not come back holds
+/// nothing up.
 #[test]
 fn check_times_steps_of_laws_that_fail_and_hang() {
     for (fault, says) in [

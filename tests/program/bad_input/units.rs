@@ -164,7 +164,8 @@ fn units_of_parameters_are_those_of_the_law() {
     );
 }
 
-/// Every file of the repository reads, and its numbers keep their values: their units are those of the schema.
+/// Every file of the repository reads, and its numbers keep their values: their units are those of
+/// the schema.
 #[test]
 fn shipped_materials_pass() {
     use fretwork::scene::material::{InterfaceParameters, Material};

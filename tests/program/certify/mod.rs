@@ -1,4 +1,5 @@
-//! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere else.
+//! Every shipped law keeps its promises; laws made to break one fail where they should and nowhere
+//! else.
 
 use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
@@ -38,6 +39,35 @@ fn every_shipped_law_is_certified() {
     assert_eq!(count, 50);
 }
 
+/// Built-in laws have no memory of their own that could be compared before and after calls, as that
+/// of a library is: their sources declare no static memory.
+#[test]
+fn shipped_laws_have_no_static_memory() {
+    let mut files = 0;
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("plugins/laws/src")];
+    while let Some(folder) = folders.pop() {
+        for path in std::fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().path())
+        {
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).unwrap();
+            let declared = |l: &str| {
+                l.trim_start()
+                    .trim_start_matches("pub ")
+                    .starts_with("static ")
+            };
+            let kept = text.lines().any(declared) || text.contains("thread_local");
+            assert!(!kept, "{}", path.display());
+            files += 1;
+        }
+    }
+    assert!(files > 50, "{files}");
+}
+
 /// Also with the parameters that shipped cases give it: no shipped case warns of its own laws.
 #[test]
 fn laws_of_shipped_cases_are_certified() {
@@ -74,8 +104,8 @@ fn laws_of_shipped_cases_are_certified() {
     assert!(known.len() > 20, "{}", known.len());
 }
 
-/// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D grows,
-/// and no work comes out.
+/// Every damage law with every cohesion law that has an opening: pulled, let go and pulled again, D
+/// grows, and no work comes out.
 #[test]
 fn any_damage_goes_with_any_cohesion_that_opens() {
     let path = search_path();
@@ -139,7 +169,8 @@ fn compile(wrong: &str, library: &Path, include: &str) {
     assert!(made.success(), "{wrong}");
 }
 
-/// The header of version 1.0 is frozen in `tests/certify/1.0`: what is built with it goes on working.
+/// The header of version 1.0 is frozen in `tests/certify/1.0`: what is built with it goes on
+/// working.
 #[test]
 fn a_law_built_with_the_first_header_is_certified() {
     let folder = std::env::temp_dir().join(format!("fretwork-frozen-{}", std::process::id()));
@@ -227,8 +258,8 @@ fn a_law_beside_a_bad_one_is_not_blamed() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// Whether a law converges does not depend on where within a step its bond breaks: every energy of the rate law, also where it breaks
-/// soon after its onset.
+/// Whether a law converges does not depend on where within a step its bond breaks: every energy of
+/// the rate law, also where it breaks soon after its onset.
 #[test]
 fn convergence_is_not_a_matter_of_chance() {
     let path = search_path();
@@ -259,7 +290,8 @@ fn wrong_laws_fail_their_line_and_no_other() {
         ("FRAME", &["objectivity"]),
         ("STEP", &["convergence"]),
         ("TANGENT", &["tangent"]),
-        // A bond whose traction is curved and that stores what it carries unloads along its own curve.
+        // A bond whose traction is curved and that stores what it carries unloads along its own
+        // curve.
         ("CURVED", &[]),
         ("SECANT", &["dissipation", "secant"]),
         // What it carries at small openings is not what it stores: unloading shows that too.
@@ -286,8 +318,8 @@ fn wrong_laws_fail_their_line_and_no_other() {
     std::fs::remove_dir_all(&folder).ok();
 }
 
-/// What a law keeps in its library between calls is found, whether or not threads happen to meet there. (That they do not
-/// is chance: the line `threads` may fail beside it.)
+/// What a law keeps in its library between calls is found, whether or not threads happen to meet
+/// there. (That they do not is chance: the line `threads` may fail beside it.)
 #[cfg(target_os = "linux")]
 #[test]
 fn laws_with_static_memory_are_found() {

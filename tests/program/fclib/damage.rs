@@ -1,5 +1,5 @@
-//! Damaged files, the same at every run: whatever the bytes, reading answers with a problem or a sentence,
-//! at once and in little memory.
+//! Damaged files, the same at every run: whatever the bytes, reading answers with a problem or a
+//! sentence, at once and in little memory.
 
 use super::shared;
 use fretwork::record::fclib::{self, FclibError};
@@ -59,7 +59,8 @@ const EXTREMES: [u8; 6] = [0x00, 0x01, 0x7f, 0x80, 0xfe, 0xff];
 
 fn damaged(bytes: &[u8], rng: &mut Pcg64) -> Vec<u8> {
     let mut out = bytes.to_vec();
-    // The structure of the file is a small part of it: half of the hits aim at bytes that are not zero.
+    // The structure of the file is a small part of it: half of the hits aim at bytes that are not
+    // zero.
     let aim = |rng: &mut Pcg64, out: &[u8]| {
         let at = rng.random_range(0..out.len());
         match rng.random_range(0..2) {
@@ -93,7 +94,8 @@ fn damaged(bytes: &[u8], rng: &mut Pcg64) -> Vec<u8> {
 
 #[test]
 fn damaged_files_are_refused_without_a_panic() {
-    // Small files, whose structure is hit often; the last in the newer format, with checksums and attributes.
+    // Small files, whose structure is hit often; the last in the newer format, with checksums and
+    // attributes.
     let files = [
         "gfc3d_Example00_badly_scaled.hdf5",
         "fc2d_SliderCrankLagrangian00000.hdf5",

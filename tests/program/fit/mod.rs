@@ -1,11 +1,13 @@
-//! `fretwork fit` through the program: planted parameters found again within their intervals, directions that the measurements do not
-//! tell, ends of ranges, failed runs, resuming, and wrong input.
+//! `fretwork fit` through the program: planted parameters found again within their intervals,
+//! directions that the measurements do not tell, ends of ranges, failed runs, resuming, and wrong
+//! input.
 
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-/// A slider whose velocity rises to 4 m/s: friction is mu_0 ((1 - A) exp(-B v) + A), Polach's law, in every row.
+/// A slider whose velocity rises to 4 m/s: friction is mu_0 ((1 - A) exp(-B v) + A), Polach's law,
+/// in every row.
 const SLIDER: &str = r#"(
     name: "friction test", dimension: 2, time: (step: 1e-3, end: 0.4),
     materials: {"steel": "contact_steel"},
@@ -79,8 +81,8 @@ impl Drop for Folder {
     }
 }
 
-/// The law with mu_0 0.5, A `a`, B 0.9 s/m at 30 velocities, with noise of 0.01 from a linear congruential generator: sums of twelve
-/// numbers of a uniform distribution less their mean.
+/// The law with mu_0 0.5, A `a`, B 0.9 s/m at 30 velocities, with noise of 0.01 from a linear
+/// congruential generator: sums of twelve numbers of a uniform distribution less their mean.
 fn measured(a: f64) -> String {
     let mut state = 7u64;
     let mut uniform = || {
@@ -116,8 +118,9 @@ fn number(value: &Value, key: &str) -> f64 {
         .unwrap_or_else(|| panic!("no {key} in {value}"))
 }
 
-/// The simultaneous intervals hold the planted values, they are not as wide as the ranges, the sum of squares is one of 30 values with
-/// 3 parameters (27 +- 2.6 x 7.3), and a second call makes no run and finds the same.
+/// The simultaneous intervals hold the planted values, they are not as wide as the ranges, the sum
+/// of squares is one of 30 values with 3 parameters (27 +- 2.6 x 7.3), and a second call makes no
+/// run and finds the same.
 #[test]
 fn planted_parameters_are_found_within_their_intervals() {
     let folder = Folder::new("planted");
@@ -156,7 +159,8 @@ fn planted_parameters_are_found_within_their_intervals() {
     }
 }
 
-/// Only the product of two factors acts: together up and down they are not determined, and each may be anything.
+/// Only the product of two factors acts: together up and down they are not determined, and each may
+/// be anything.
 #[test]
 fn what_measurements_do_not_tell_is_said() {
     let folder = Folder::new("flat");
@@ -176,7 +180,8 @@ fn what_measurements_do_not_tell_is_said() {
     assert!((product - 0.5).abs() < 0.05, "{product}");
 }
 
-/// The truth lies beyond the range: the parameter is at its end, and the model does not describe the measurement.
+/// The truth lies beyond the range: the parameter is at its end, and the model does not describe
+/// the measurement.
 #[test]
 fn a_range_without_the_truth_is_told() {
     let folder = Folder::new("end");
@@ -188,8 +193,8 @@ fn a_range_without_the_truth_is_told() {
     assert!(number(&found, "widened") > 2.0);
 }
 
-/// Half of the region gives no curve, as the slider does not reach the measured velocities: these points are kept with their reason, and
-/// the rest is searched.
+/// Half of the region gives no curve, as the slider does not reach the measured velocities: these
+/// points are kept with their reason, and the rest is searched.
 #[test]
 fn failed_runs_are_data() {
     let folder = Folder::new("failed");
@@ -204,8 +209,9 @@ fn failed_runs_are_data() {
     assert!(table.contains("run it farther"), "{table}");
 }
 
-/// A row has velocity and friction of the end of its step. Over the velocity at its beginning the curve is shifted by 10 m/s^2 times the step.
-/// The estimate is wrong in proportion to the step, so that the change with half the step is half its error; the sum of squares hides it.
+/// A row has velocity and friction of the end of its step. Over the velocity at its beginning the
+/// curve is shifted by 10 m/s^2 times the step. The estimate is wrong in proportion to the step, so
+/// that the change with half the step is half its error; the sum of squares hides it.
 #[test]
 fn a_step_that_moves_a_parameter_is_told() {
     let folder = Folder::new("step");

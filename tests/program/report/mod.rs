@@ -1,5 +1,5 @@
-//! `fretwork report` and `fretwork compare`: what is on a page, that it stays small, loads nothing, and that no text of a case becomes
-//! markup. What a browser makes of it is in `tests/browser`.
+//! `fretwork report` and `fretwork compare`: what is on a page, that it stays small, loads nothing,
+//! and that no text of a case becomes markup. What a browser makes of it is in `tests/browser`.
 
 mod pages;
 mod refusals;

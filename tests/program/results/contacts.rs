@@ -1,4 +1,5 @@
-//! What `results.h5` keeps of each contact: forces with their directions, bodies, status, work of friction.
+//! What `results.h5` keeps of each contact: forces with their directions, bodies, status, work of
+//! friction.
 
 use super::ledger::table;
 use super::{folder, run};
@@ -94,7 +95,8 @@ fn vectors(contacts: &Contacts, name: &str, dimension: usize) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The forces of the contacts of a driven body of this identity add up to what the statistics say it receives.
+/// The forces of the contacts of a driven body of this identity add up to what the statistics say
+/// it receives.
 fn forces_add_up(case: &str, (body, id): (&str, i64), dimension: usize, sets: &[&str]) {
     let out = folder(&format!("forces-{dimension}"));
     let mut args = vec!["--set", "output.frames=0", "--set", "output.figures=false"];
@@ -171,7 +173,8 @@ fn forces_of_contacts_add_up_to_those_on_a_body_in_space() {
     forces_add_up("shear_cell_3d", ("lid", 481), 3, &["time.end=0.02"]);
 }
 
-/// A sphere thrown at v = 1 m/s slides until 2 v/(7 mu g) = 0.097 s and then rolls; friction takes m v^2/7.
+/// A sphere thrown at v = 1 m/s slides until 2 v/(7 mu g) = 0.097 s and then rolls; friction takes
+/// m v^2/7.
 #[test]
 fn a_sphere_slides_and_then_rolls_and_friction_took_a_seventh() {
     let out = folder("status");
@@ -247,7 +250,8 @@ fn every_dataset_says_its_unit_and_what_it_is() {
     std::fs::remove_dir_all(out).ok();
 }
 
-/// Flows count from the start of the friction test: what the sliding wore since then, over the time since then.
+/// Flows count from the start of the friction test: what the sliding wore since then, over the time
+/// since then.
 #[test]
 fn the_source_flow_counts_from_the_start_of_the_friction_test() {
     let out = folder("flows");

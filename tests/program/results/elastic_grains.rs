@@ -1,10 +1,12 @@
-//! Fields inside grains that deform, in `results.h5`: those of the other files of the run, and of a rigid motion.
+//! Fields inside grains that deform, in `results.h5`: those of the other files of the run, and of a
+//! rigid motion.
 
 use super::meshes::{Field, legacy};
 use super::{folder, run};
 use fretwork::record::results::Reader;
 
-/// A disk that rests on the floor, and a square far above it that flies out of the period and spins.
+/// A disk that rests on the floor, and a square far above it that flies out of the period and
+/// spins.
 const CASE: &str = r#"(
     name: "two grains", dimension: 2, time: (step: 1e-4, end: 0.04, theta: 0.5), gravity: [0.0, -10.0],
     periodic: (x: 1.0), detection: (alert: 1e-4, skin: 1e-3),
@@ -76,7 +78,8 @@ fn fields_of_grains_are_those_of_the_other_files_and_of_their_motion() {
             assert!((at - now[k][axis]).abs() < 1e-12, "{at} {}", now[k][axis]);
         }
     }
-    // The square moves as a rigid one: v = V + w x r without stress; the disk on the floor has some.
+    // The square moves as a rigid one: v = V + w x r without stress; the disk on the floor has
+    // some.
     let cells = stress.len() / 6;
     let of_cells = reader.whole(&format!("{group}/CellData/body"), (0, cells));
     let of_cells = of_cells.unwrap();

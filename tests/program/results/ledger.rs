@@ -37,7 +37,8 @@ const STORED_AND_SPENT: [&str; 11] = [
     "carried",
 ];
 
-/// Runs a case; its columns must add up row by row, these entries must not be zero, and the last row is that of the summary.
+/// Runs a case; its columns must add up row by row, these entries must not be zero, and the last
+/// row is that of the summary.
 fn adds_up(name: &str, case: &str, sets: &[&str], entries: &[&str]) {
     let out = folder(&format!("ledger-{name}"));
     let mut args = Vec::new();

@@ -1,5 +1,5 @@
-//! Names, units and descriptions in the files of a run are those of the registries of fields and columns, and the page of the outputs
-//! has no field that no registry has.
+//! Names, units and descriptions in the files of a run are those of the registries of fields and
+//! columns, and the page of the outputs has no field that no registry has.
 
 use super::documented::{field_tables, undocumented};
 use super::folder;
@@ -98,7 +98,8 @@ fn statistics_agree<S: Observed + Dimensional>(loaded: &Loaded, built: Built<S>,
     }
 }
 
-/// Fields of grains and contacts in the file: those of the registry, and those that observers add, which stand in the page.
+/// Fields of grains and contacts in the file: those of the registry, and those that observers add,
+/// which stand in the page.
 fn views_agree<S: Space>(file: &H5File) {
     let mut fields = Fields::<S>::default();
     orientation().into_iter().for_each(|f| fields.grains.add(f));

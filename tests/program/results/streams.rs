@@ -1,5 +1,5 @@
-//! Standard streams that are closed or full: nothing panics, a run ends as it would have, and an answer that was asked for and
-//! could not be written is a failure.
+//! Standard streams that are closed or full: nothing panics, a run ends as it would have, and an
+//! answer that was asked for and could not be written is a failure.
 #![cfg(unix)]
 
 use super::folder;

@@ -1,8 +1,10 @@
-//! Cases that are killed, and resumed with one thread and with two: all files are those of a run that was not stopped.
+//! Cases that are killed, and resumed with one thread and with two: all files are those of a run
+//! that was not stopped.
 
 use super::common::{Folder, Job, same};
 
-/// The run is killed as soon as each of these numbers of states was kept; what each kill leaves is resumed twice.
+/// The run is killed as soon as each of these numbers of states was kept; what each kill leaves is
+/// resumed twice.
 fn resumes(name: &str, job: Job<'_>, states: &[u64]) {
     let whole = Folder::new(&format!("{name}-whole"));
     job.done(&whole.0, &[]);
@@ -93,7 +95,8 @@ fn shear_in_space() {
     resumes("space", job, &[3]);
 }
 
-/// Phases of which one ends by rest, colours and strains that begin with the second one, means of profiles.
+/// Phases of which one ends by rest, colours and strains that begin with the second one, means of
+/// profiles.
 #[test]
 fn phases_and_measures() {
     let sets = [
@@ -117,7 +120,8 @@ fn phases_and_measures() {
     resumes("phases", job, &[3, 11]);
 }
 
-/// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and taken out.
+/// The circuit of a third body: bonds that break, debris, grains that are ejected, lost and taken
+/// out.
 #[test]
 fn the_circuit() {
     let sets = [
@@ -209,7 +213,8 @@ fn deformable_bodies() {
     resumes("deformable-phases", job, &[3]);
 }
 
-/// Half-spaces: one that wears under a friction test, and two that roll, of which a step begins with the forces of the one before.
+/// Half-spaces: one that wears under a friction test, and two that roll, of which a step begins
+/// with the forces of the one before.
 #[test]
 fn half_spaces() {
     let sets = [

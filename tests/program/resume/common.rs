@@ -47,7 +47,8 @@ pub struct Job<'a> {
     pub sets: &'a [&'a str],
 }
 
-/// A variable of the environment that makes the file of results grow in place from so many bytes on.
+/// A variable of the environment that makes the file of results grow in place from so many bytes
+/// on.
 pub const IN_PLACE: &str = "FRETWORK_COPY_LIMIT";
 
 /// Whether a file is marked as being written: a byte of its superblock says so.
@@ -111,7 +112,8 @@ impl Job<'_> {
         let mut child = self.start(out, &[]);
         let begun = Instant::now();
         loop {
-            // A file that is being written may be read in the middle of a change: it is looked at again.
+            // A file that is being written may be read in the middle of a change: it is looked at
+            // again.
             let last = last_frame(out);
             if last.is_some_and(|f| f.kind == Kind::State && f.number >= states) {
                 break;
@@ -129,7 +131,8 @@ impl Job<'_> {
     }
 }
 
-/// The file that a run writes before it takes the name of the results; a run that is killed may leave one.
+/// The file that a run writes before it takes the name of the results; a run that is killed may
+/// leave one.
 pub fn draft(out: &Path) -> Option<Vec<u8>> {
     std::fs::read(out.join("results.h5.part")).ok()
 }

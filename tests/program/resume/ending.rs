@@ -1,4 +1,5 @@
-//! What a run says at its end: reasons not to trust it before any number, on the terminal, in the summary and over pictures.
+//! What a run says at its end: reasons not to trust it before any number, on the terminal, in the
+//! summary and over pictures.
 
 use super::common::{Folder, Job, said};
 use serde_json::Value;
@@ -83,7 +84,8 @@ fn a_run_that_missed_the_tolerance_says_so_first() {
     }
 }
 
-/// Student's interval over the later half of the cycles, from the list in the summary itself; k from the other numbers.
+/// Student's interval over the later half of the cycles, from the list in the summary itself; k
+/// from the other numbers.
 #[test]
 fn the_interval_of_friction_is_that_of_the_cycles_in_the_file() {
     let job = Job {

@@ -203,7 +203,8 @@ fn a_file_that_is_cut_or_none_is_refused() {
     refused(&out.0, job(), 1, &["it is not a file"]);
 }
 
-/// What lies behind the end of a cut file would be read as zeros: refused, or the bits of a run that was not stopped.
+/// What lies behind the end of a cut file would be read as zeros: refused, or the bits of a run
+/// that was not stopped.
 #[test]
 fn a_file_that_is_cut_anywhere_gives_no_other_numbers() {
     let (out, whole) = (Folder::new("cut-anywhere"), Folder::new("not-cut"));

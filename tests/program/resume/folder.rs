@@ -1,4 +1,5 @@
-//! What a folder holds beside a state: settings that change no number, files of older runs, summaries of others.
+//! What a folder holds beside a state: settings that change no number, files of older runs,
+//! summaries of others.
 
 use super::common::{Folder, Job, draft, files, said, same};
 
@@ -95,7 +96,8 @@ fn a_summary_of_another_run_ends_none() {
     let other = Folder::new("summary-other");
     job(&OTHER).done(&other.0, &[]);
     let out = Folder::new("summary");
-    // That of another case, and that of another run of the same case: the file knows that it is not at its end.
+    // That of another case, and that of another run of the same case: the file knows that it is not
+    // at its end.
     for from in [&other, &whole] {
         std::fs::remove_dir_all(&out.0).ok();
         job(&SETS).killed_after(&out.0, 2);
@@ -113,8 +115,8 @@ fn a_summary_of_another_run_ends_none() {
     assert!(told.contains("is finished"), "{told}");
 }
 
-/// What hangs on the whole length of a run is its spacing of states and pictures: without them it is the run that was longer
-/// from its start.
+/// What hangs on the whole length of a run is its spacing of states and pictures: without them it
+/// is the run that was longer from its start.
 #[test]
 fn a_run_goes_on_beyond_its_end() {
     const SHORT: [&str; 4] = [
@@ -243,7 +245,8 @@ fn what_hangs_on_the_end_is_refused_a_later_one() {
     job(&SETS).done(&out.0, &["--resume"]);
 }
 
-/// What the documentation excepts from equal bits, and nothing else, differs between two runs of one case.
+/// What the documentation excepts from equal bits, and nothing else, differs between two runs of
+/// one case.
 #[test]
 fn two_runs_differ_in_what_the_clock_gives_alone() {
     let docs = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/checkpoints.md"));
@@ -266,7 +269,8 @@ fn two_runs_differ_in_what_the_clock_gives_alone() {
     same(&one.0, &other.0);
 }
 
-/// A process that is ended while it makes the report leaves a whole run: the next command makes the page.
+/// A process that is ended while it makes the report leaves a whole run: the next command makes the
+/// page.
 #[test]
 fn a_finished_run_without_its_report_gets_it() {
     let (out, whole) = (Folder::new("no-page"), Folder::new("no-page-whole"));

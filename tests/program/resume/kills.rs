@@ -20,7 +20,8 @@ fn kills_at_random_moments_lose_nothing() {
     kill_at_random("kills", 20, None);
 }
 
-/// The same of a file that grows in place, as large ones do: from the first flush on, or after some.
+/// The same of a file that grows in place, as large ones do: from the first flush on, or after
+/// some.
 #[test]
 fn kills_at_random_moments_lose_nothing_of_a_file_that_grows_in_place() {
     kill_at_random("kills-in-place", 21, Some("0"));
@@ -74,7 +75,8 @@ fn kill_job(job: Job<'_>, name: &str, seed: u64, in_place: Option<&str>) {
     let (mut killed, mut ended, mut with_file) = (0, 0, 0);
     let folder = Folder::new(name);
     while killed < kills {
-        // Short ones too: a kill may meet the making of the file, or its replacement by the resumed one.
+        // Short ones too: a kill may meet the making of the file, or its replacement by the resumed
+        // one.
         let share: f64 = rng.random_range(0.0f64..1.0);
         let wait = length.mul_f64(share * share);
         let mut command = job.command(&folder.0, &["--resume"]);

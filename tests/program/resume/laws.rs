@@ -1,4 +1,5 @@
-//! Every shipped law in turn: its internal variables, bonds and the wear it is owed go on with the same bits.
+//! Every shipped law in turn: its internal variables, bonds and the wear it is owed go on with the
+//! same bits.
 
 use super::common::Folder;
 use super::state::goes_on;

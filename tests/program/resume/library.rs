@@ -1,5 +1,5 @@
-//! A run of the library with an observer and a process that are written here: they stand in its files, its checkpoints and its
-//! summary, and a callback stops it.
+//! A run of the library with an observer and a process that are written here: they stand in its
+//! files, its checkpoints and its summary, and a callback stops it.
 
 use super::common::{Folder, marked, same};
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
@@ -70,7 +70,8 @@ impl<S: Space> Observer<S> for MeanGap {
     }
 }
 
-/// Pushes a ball along x with a force that dies away with the impulse that it gave: F = F0 (1 - J/J0).
+/// Pushes a ball along x with a force that dies away with the impulse that it gave: F = F0 (1 -
+/// J/J0).
 #[derive(Debug)]
 struct Push {
     body: usize,
@@ -160,8 +161,8 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
     assert!(summary.stopped.is_none());
-    // Three pairs of balls are half a millimetre apart; half a step, at whose end gaps are measured, takes the ball that is pushed
-    // nearer to one of them by h v/2, v = h F0/m.
+    // Three pairs of balls are half a millimetre apart; half a step, at whose end gaps are
+    // measured, takes the ball that is pushed nearer to one of them by h v/2, v = h F0/m.
     let kept = PreviousResults::open(&folder.0.join("results.h5")).unwrap();
     let names = ["mean_gap", "kinetic", "external_work"].map(str::to_owned);
     let columns = kept.statistics(&names, 600).unwrap();
@@ -174,7 +175,8 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     assert!((found / mean - 1.0).abs() < 1e-12);
     assert_eq!(summary.measure_units["mean_gap_of_run"], "m");
     assert!(folder.0.join("mean_gap.txt").exists());
-    // J = J0 (1 - (1 - h F0/J0)^n), and the work of the push is the gain of kinetic energy: impacts with e = 1 lose none.
+    // J = J0 (1 - (1 - h F0/J0)^n), and the work of the push is the gain of kinetic energy: impacts
+    // with e = 1 lose none.
     let given = LIMIT * (1.0 - (1.0 - 1e-4 * FORCE / LIMIT).powi(600));
     assert!(given > 0.5 * LIMIT && mass > 0.0);
     let e = &summary.energy;
@@ -226,7 +228,8 @@ fn a_run_does_not_go_on_without_its_observers() {
     resume(&folder, Some(MeanGap::default())).unwrap_or_else(|e| panic!("{e}"));
 }
 
-/// What a process of a user does in a step cannot be undone unless it says so: the run does not estimate its error then.
+/// What a process of a user does in a step cannot be undone unless it says so: the run does not
+/// estimate its error then.
 #[test]
 fn steps_with_a_process_that_does_not_permit_it_are_not_repeated() {
     let folder = Folder::new("library-repeats");

@@ -1,4 +1,5 @@
-//! Limits that the system sets to a run: on its time and on the size of its files. It ends with a sentence, and goes on where there is room.
+//! Limits that the system sets to a run: on its time and on the size of its files. It ends with a
+//! sentence, and goes on where there is room.
 
 use super::common::{Folder, Job, last_frame, said, same};
 use fretwork::record::checkpoint::Kind;
@@ -52,7 +53,8 @@ fn block() -> u64 {
     block
 }
 
-/// The table grows beyond the limit, and the results do not: their state is kept, and the run goes on without the limit.
+/// The table grows beyond the limit, and the results do not: their state is kept, and the run goes
+/// on without the limit.
 #[test]
 fn a_table_that_may_not_grow_leaves_a_state() {
     let (whole, out) = (Folder::new("limit-whole"), Folder::new("limit"));

@@ -1,4 +1,5 @@
-//! Runs with half-spaces of heat that are extended: the depth that follows from `time.end` stays what it was.
+//! Runs with half-spaces of heat that are extended: the depth that follows from `time.end` stays
+//! what it was.
 
 use super::common::{Folder, Job, said, same};
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! Checkpoints: what is kept of a run, and that a run which was stopped ends in the bits of one that was not.
+//! Checkpoints: what is kept of a run, and that a run which was stopped ends in the bits of one
+//! that was not.
 
 mod cases;
 mod common;

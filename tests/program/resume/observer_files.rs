@@ -1,5 +1,6 @@
-//! An observer of a user of the library with a table and pictures of its own: they are in the folder of the run, go on with a
-//! resumed run, and those of an older run are removed when a run starts over.
+//! An observer of a user of the library with a table and pictures of its own: they are in the
+//! folder of the run, go on with a resumed run, and those of an older run are removed when a run
+//! starts over.
 
 use super::common::{Folder, files, same};
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
@@ -17,7 +18,8 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// The largest speed of the balls every ten steps, as a table; and pictures in which each ball has a colour of its own.
+/// The largest speed of the balls every ten steps, as a table; and pictures in which each ball has
+/// a colour of its own.
 #[derive(Debug, Default)]
 struct Speeds {
     rows: Vec<(f64, f64)>,
@@ -86,7 +88,8 @@ fn cradle() -> (Loaded, Built<Dim3>) {
     (loaded, built)
 }
 
-/// Runs to the end, or until a step; from the start, or from where the run in the folder was stopped.
+/// Runs to the end, or until a step; from the start, or from where the run in the folder was
+/// stopped.
 fn run(folder: &Folder, until: Option<u64>, resumed: bool) -> Summary {
     let (loaded, built) = cradle();
     let options = RunOptions {

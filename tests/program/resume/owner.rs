@@ -1,4 +1,5 @@
-//! A folder is one run's: another that begins there, or goes on, or a page that is made of it meanwhile, is refused and changes nothing.
+//! A folder is one run's: another that begins there, or goes on, or a page that is made of it
+//! meanwhile, is refused and changes nothing.
 
 use super::common::{Folder, IN_PLACE, Job, files, last_frame, said, same};
 use fretwork::record::checkpoint::Kind;
@@ -58,7 +59,8 @@ fn a_folder_is_one_runs() {
         }
         // Held still, so that it does not end meanwhile.
         let stop = |number: i32| {
-            // SAFETY: no memory is touched; the child has not been waited for, so the number is its own.
+            // SAFETY: no memory is touched; the child has not been waited for, so the number is its
+            // own.
             assert_eq!(unsafe { libc::kill(child.id() as libc::pid_t, number) }, 0);
         };
         stop(libc::SIGSTOP);
@@ -100,7 +102,8 @@ impl Held {
         held.signal(libc::SIGSTOP);
         // The signal is on its way; until it has arrived the run may still make a file.
         let mut status = 0;
-        // SAFETY: the status is this function's own, and a stopped child is not taken from its owner.
+        // SAFETY: the status is this function's own, and a stopped child is not taken from its
+        // owner.
         let stopped =
             unsafe { libc::waitpid(held.0.id() as libc::pid_t, &raw mut status, libc::WUNTRACED) };
         assert!(stopped > 0 && libc::WIFSTOPPED(status), "status {status}");
@@ -108,7 +111,8 @@ impl Held {
     }
 
     fn signal(&self, number: i32) {
-        // SAFETY: no memory is touched; the child has not been waited for, so the number is its own.
+        // SAFETY: no memory is touched; the child has not been waited for, so the number is its
+        // own.
         assert_eq!(unsafe { libc::kill(self.0.id() as libc::pid_t, number) }, 0);
     }
 
@@ -126,7 +130,8 @@ impl Held {
     }
 }
 
-/// Who removes or moves the folder of a run takes it from the run: it writes nothing more there, and another run is not disturbed.
+/// Who removes or moves the folder of a run takes it from the run: it writes nothing more there,
+/// and another run is not disturbed.
 #[test]
 fn a_folder_that_is_removed_or_moved_is_no_runs() {
     let whole = Folder::new("lost-whole");
@@ -175,7 +180,8 @@ fn a_finished_run_is_not_owned_by_who_looks_at_it() {
     assert!(!lock.exists());
 }
 
-/// A damaged state of a finished run is not a run to be started over: neither at its end nor with a later one.
+/// A damaged state of a finished run is not a run to be started over: neither at its end nor with a
+/// later one.
 #[test]
 fn a_damaged_state_of_a_finished_run_is_refused_and_nothing_is_replaced() {
     const LATER: [&str; 4] = [SETS[0], SETS[1], SETS[2], "time.end=0.2"];

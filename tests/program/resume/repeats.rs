@@ -1,4 +1,5 @@
-//! Repeated steps: they leave no trace in a run, and what they say of its error is right where it is known.
+//! Repeated steps: they leave no trace in a run, and what they say of its error is right where it
+//! is known.
 
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
@@ -10,7 +11,8 @@ use fretwork::step::coupling::Coupling;
 use fretwork_observe::error_estimate::{Change, ErrorEstimate, Repeats};
 use std::path::Path;
 
-/// Steps of a simulation of which some are repeated with other settings, and of one of which none are.
+/// Steps of a simulation of which some are repeated with other settings, and of one of which none
+/// are.
 fn leave_no_trace<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
     let (mut whole, mut repeated) = (one.simulation, other.simulation);
     for s in [&mut whole, &mut repeated] {
@@ -111,8 +113,9 @@ fn a_run_with_repeated_steps_has_the_same_statistics() {
     }
 }
 
-/// A block that slides to a stop, with theta = 1: its path in n steps of h is n h v - mu g h^2 n (n + 1)/2, so that friction takes too
-/// little by a share that is linear in h, and the estimate is exact.
+/// A block that slides to a stop, with theta = 1: its path in n steps of h is n h v - mu g h^2 n
+/// (n + 1)/2, so that friction takes too little by a share that is linear in h, and the estimate is
+/// exact.
 #[test]
 fn the_error_of_a_step_of_first_order_is_found() {
     for length in [1, 3, 6] {

@@ -1,4 +1,5 @@
-//! SIGINT, SIGTERM, and the signals of a terminal and of limits: a run ends at the end of its step with a summary, says how to go on, and ends in the same bits then.
+//! SIGINT, SIGTERM, and the signals of a terminal and of limits: a run ends at the end of its step
+//! with a summary, says how to go on, and ends in the same bits then.
 
 use super::common::{Folder, Job, last_frame, same};
 use fretwork::record::checkpoint::Kind;

@@ -127,8 +127,8 @@ fn a_state_of_another_scene_is_not_taken() {
     assert!(all(&other) == before);
 }
 
-/// A column that sweeps do not cross in their share of a step, nor Newton: what `auto` learns of that is a part of the state.
-/// Two threads give the bits of one.
+/// A column that sweeps do not cross in their share of a step, nor Newton: what `auto` learns of
+/// that is a part of the state. Two threads give the bits of one.
 #[test]
 fn what_auto_learned_goes_on_with_the_same_bits() {
     const DISKS: usize = 10_000;
@@ -179,8 +179,9 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     assert!(all(&whole) == all(&threads), "two threads give other bits");
 }
 
-/// Phases that set friction and the tolerance of the solver for a block on a plane, pulled by a slanting gravity: the state tells what
-/// is in force, and gives it to a scene that was built again; it is no state of a scene without the phases.
+/// Phases that set friction and the tolerance of the solver for a block on a plane, pulled by a
+/// slanting gravity: the state tells what is in force, and gives it to a scene that was built
+/// again; it is no state of a scene without the phases.
 #[test]
 fn what_phases_have_set_goes_on() {
     let phases = r#"phases=[
@@ -213,7 +214,8 @@ fn what_phases_have_set_goes_on() {
     assert!(all(&whole) == before);
 }
 
-/// Bonds formed and broken in the last step are read by processes before the next one: they are part of the state.
+/// Bonds formed and broken in the last step are read by processes before the next one: they are
+/// part of the state.
 #[test]
 fn bonds_of_the_last_step_are_part_of_the_state() {
     let scene = || match built("verification/healing", &[]) {
@@ -246,8 +248,8 @@ fn bonds_of_the_last_step_are_part_of_the_state() {
     assert_eq!(keys(&resumed), keys(&whole));
 }
 
-/// The motion of the walls in the last step is a part of the state: what is read between a resumption and the next step is what
-/// was read before.
+/// The motion of the walls in the last step is a part of the state: what is read between a
+/// resumption and the next step is what was read before.
 #[test]
 fn readings_of_the_last_step_are_the_same_after_a_resumption() {
     let scene = || match built("wheel_rail_rigid", &[]) {
@@ -263,7 +265,8 @@ fn readings_of_the_last_step_are_the_same_after_a_resumption() {
     assert_eq!(whole.state.received, resumed.state.received);
 }
 
-/// A state whose numbers are those of no scene, behind a checksum that is right, is refused before a step is made.
+/// A state whose numbers are those of no scene, behind a checksum that is right, is refused before
+/// a step is made.
 #[test]
 fn a_state_of_no_scene_is_refused() {
     use fretwork::geometry::space::Dim3;

@@ -3,8 +3,8 @@
 use super::{Folder, json, numbers, values};
 use serde_json::Value;
 
-/// A block on a floor, with tangential springs of 0.8 MPa (N/m per metre of depth) at each of its two contacts, pressed by 100 N/m and moved to
-/// and fro.
+/// A block on a floor, with tangential springs of 0.8 MPa (N/m per metre of depth) at each of its
+/// two contacts, pressed by 100 N/m and moved to and fro.
 const BLOCK: &str = r#"(
     name: "a block moved to and fro", dimension: 2, time: (step: 1e-4, end: 0.25),
     solver: (norm: Power, tolerance: 1e-6, max_iterations: 5000),
@@ -20,8 +20,9 @@ const BLOCK: &str = r#"(
     friction: (body: "block", start: 0.05),
 )"#;
 
-/// With the stiffness K of the springs the block slips where K d > mu N. Its loop has then the area 4 mu N (d - mu N/K): the regime is gross slip from
-/// E_d/(4 Q d) = 1 - mu N/(K d) = 0.2 on, a drive K d of 1.25 mu N.
+/// With the stiffness K of the springs the block slips where K d > mu N. Its loop has then the area
+/// 4 mu N (d - mu N/K): the regime is gross slip from E_d/(4 Q d) = 1 - mu N/(K d) = 0.2 on, a
+/// drive K d of 1.25 mu N.
 #[test]
 fn a_map_of_regimes_has_coulombs_bound() {
     let folder = Folder::new("regimes");
@@ -119,8 +120,9 @@ const DISKS: &str = r#"(
     grains: [Lattice(material: "glass", count: 6, radius: (0.003, 0.006), low: [0.0, 0.0], high: [0.2, 0.02])],
 )"#;
 
-/// A floor of velocity V slides below disks until they roll, at V/3: whatever their friction is and however they fall, slip dissipates m V^2/6, as much as
-/// their energy is then. A law of two coefficients that are equal is Coulomb's law, without friction nothing is dissipated.
+/// A floor of velocity V slides below disks until they roll, at V/3: whatever their friction is and
+/// however they fall, slip dissipates m V^2/6, as much as their energy is then. A law of two
+/// coefficients that are equal is Coulomb's law, without friction nothing is dissipated.
 #[test]
 fn laws_differ_by_what_they_dissipate() {
     let folder = Folder::new("laws");

@@ -28,7 +28,8 @@ fn a_run_is_made_by_one_of_two_processes() {
     assert_eq!(folder.runs().len(), 1);
 }
 
-/// The commands of the list, from another folder and with blanks and quotes in paths, make every run once.
+/// The commands of the list, from another folder and with blanks and quotes in paths, make every
+/// run once.
 #[cfg(unix)]
 #[test]
 fn a_list_of_commands_makes_every_run() {

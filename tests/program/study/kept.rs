@@ -48,7 +48,8 @@ fn the_table_is_what_the_runs_left() {
     assert_eq!(csv.lines().count(), 5);
 }
 
-/// One more value is one more run; the same value spelled otherwise is none; another material is all of them.
+/// One more value is one more run; the same value spelled otherwise is none; another material is
+/// all of them.
 #[test]
 fn only_what_is_new_is_run() {
     let folder = Folder::new("new");
@@ -74,7 +75,8 @@ fn only_what_is_new_is_run() {
     assert_eq!(folder.runs().len(), 6);
 }
 
-/// A case that draws nothing has perturbed steps in place of seeds, also where the study sets its whole `time`.
+/// A case that draws nothing has perturbed steps in place of seeds, also where the study sets its
+/// whole `time`.
 #[test]
 fn perturbed_steps_take_the_place_of_seeds() {
     let folder = Folder::new("perturbed");
@@ -113,7 +115,8 @@ fn failed_runs_are_rows() {
     // The table of settings says how its runs ended.
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
     assert!(page.contains("<th scope=\"row\">2</th><td>1</td><td>rejected</td>"));
-    // A combination that the case refuses, though it takes each value alone, and a run that takes too long.
+    // A combination that the case refuses, though it takes each value alone, and a run that takes
+    // too long.
     let set = r#"set: ["interfaces.all.parameters.contact.mu=${0.5 - sign}"]"#;
     folder.study(r#"Values(name: "sign", values: [0.1, 1.0])"#, set);
     let study = folder.run();
@@ -138,7 +141,8 @@ fn failed_runs_are_rows() {
     assert_eq!(values(&study, "status")[0], "stopped");
 }
 
-/// Runs of another study by another program, case or file are not mistaken for its own, nor its tables replaced by empty ones.
+/// Runs of another study by another program, case or file are not mistaken for its own, nor its
+/// tables replaced by empty ones.
 #[test]
 fn tables_are_not_replaced_by_empty_ones() {
     let folder = Folder::new("empty");

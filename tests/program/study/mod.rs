@@ -1,5 +1,6 @@
-//! `fretwork study` through the program: what is run and what is not run again, tables recomputed from what the runs left, other
-//! engines' units of work, what a study says against closed forms, and wrong input.
+//! `fretwork study` through the program: what is run and what is not run again, tables recomputed
+//! from what the runs left, other engines' units of work, what a study says against closed forms,
+//! and wrong input.
 
 mod compared;
 mod engines;

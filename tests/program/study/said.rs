@@ -3,8 +3,9 @@
 use super::{Folder, mu, numbers, values};
 use serde_json::Value;
 
-/// A MAC bond opened far: damage releases w (1 - 1/100) times an area of 0.5 m^2/m, whatever its stiffness, if it is opened to ten times the
-/// opening of its strength; see cases/verification/bond_mode_1.ron.
+/// A MAC bond opened far: damage releases w (1 - 1/100) times an area of 0.5 m^2/m, whatever its
+/// stiffness, if it is opened to ten times the opening of its strength; see
+/// cases/verification/bond_mode_1.ron.
 const BOND: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/cases/verification/bond_mode_1.ron"
@@ -20,8 +21,9 @@ fn bond(folder: &Folder, factors: &str, more: &str) -> Value {
     folder.run()
 }
 
-/// The energy released is w A to a few per cent: linear in w over two ranges of w, and the restitution of the solver does not matter.
-/// With w uniform the total index of w is 1, that of a factor without effect 0.
+/// The energy released is w A to a few per cent: linear in w over two ranges of w, and the
+/// restitution of the solver does not matter. With w uniform the total index of w is 1, that of a
+/// factor without effect 0.
 #[test]
 fn sobol_indices_find_what_matters() {
     let folder = Folder::new("indices");
@@ -98,8 +100,8 @@ fn means_have_students_intervals() {
     assert_eq!(rows.len(), 2);
 }
 
-/// Points of the designs: as many as are asked for, in their ranges; a longer Sobol sequence begins with the shorter one, whose runs
-/// are there.
+/// Points of the designs: as many as are asked for, in their ranges; a longer Sobol sequence begins
+/// with the shorter one, whose runs are there.
 #[test]
 fn designs_have_their_points() {
     let folder = Folder::new("designs");
@@ -131,7 +133,8 @@ fn designs_have_their_points() {
     assert_eq!(numbers(&study, "friction"), [0.3, 0.1, 0.5]);
 }
 
-/// No spreadsheet takes a heading for a formula, and the table of a study reads back as points of it.
+/// No spreadsheet takes a heading for a formula, and the table of a study reads back as points of
+/// it.
 #[test]
 fn headings_are_no_formulas_and_read_back() {
     let folder = Folder::new("headings");
@@ -151,7 +154,8 @@ fn headings_are_no_formulas_and_read_back() {
     assert_eq!(numbers(&folder.run(), "=1+1"), [0.4, 0.5]);
 }
 
-/// The value of a case that its file does not give, a default of a law, is unknown; the levels beside it are numbers.
+/// The value of a case that its file does not give, a default of a law, is unknown; the levels
+/// beside it are numbers.
 #[test]
 fn levels_beside_a_default_are_numbers() {
     let folder = Folder::new("default");

@@ -2,8 +2,8 @@
 
 use super::{Folder, frontier_is_what_nothing_dominates, number, settings, study};
 
-/// A case that asks for nothing is its own fixed setting; a run that is asked for a tenth of a per cent refines its step until it is nearer to
-/// the reference of a sixteenth of the step.
+/// A case that asks for nothing is its own fixed setting; a run that is asked for a tenth of a per
+/// cent refines its step until it is nearer to the reference of a sixteenth of the step.
 #[test]
 fn runs_that_choose_their_settings_are_compared_with_fixed_ones() {
     let folder = Folder::new("accuracy");

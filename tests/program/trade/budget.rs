@@ -13,7 +13,8 @@ fn in_a_group(mut command: Command) -> Command {
     command
 }
 
-/// Command lines of the processes that name a folder; none where the system does not list them as Linux does.
+/// Command lines of the processes that name a folder; none where the system does not list them as
+/// Linux does.
 fn running(folder: &str) -> Vec<String> {
     let list = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let lines = list.filter_map(|p| std::fs::read(p.path().join("cmdline")).ok());
@@ -25,7 +26,8 @@ fn running(folder: &str) -> Vec<String> {
 fn ends_with_the_budget_and_goes_on_after_an_interruption() {
     let folder = Folder::new("budget");
     let out = folder.out();
-    // The finest step takes 280,000 steps, longer than the budget on any machine; the case's own some 1700.
+    // The finest step takes 280,000 steps, longer than the budget on any machine; the case's own
+    // some 1700.
     let long = [
         BOND,
         "--set",

@@ -71,8 +71,8 @@ fn errors_fall_with_the_step_against_a_closed_form() {
     let picture = std::fs::read(Path::new(&out).join("trade.png")).unwrap_or_default();
     assert!(picture.starts_with(b"\x89PNG") && picture.len() > 5000);
 
-    // Again, without the truth, from the runs that are there: the reference's own error is what its neighbour differs by, and
-    // what is claimed with it must hold against the truth.
+    // Again, without the truth, from the runs that are there: the reference's own error is what its
+    // neighbour differs by, and what is claimed with it must hold against the truth.
     let again = study(&[&common[..], &["--output", "energy.fracture=1%"]].concat());
     assert_eq!(
         (&again["runs"]["fresh"], &again["runs"]["reused"]),

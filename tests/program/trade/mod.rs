@@ -1,5 +1,6 @@
-//! `fretwork trade` through the program: errors against a closed form, statistics recomputed from what the runs left, the
-//! frontier by its definition, resuming, the budget, interruption, and wrong input.
+//! `fretwork trade` through the program: errors against a closed form, statistics recomputed from
+//! what the runs left, the frontier by its definition, resuming, the budget, interruption, and
+//! wrong input.
 
 mod accuracy;
 mod budget;
@@ -12,9 +13,9 @@ use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-/// A MAC bond (C = 1e12 N/m3, w = 0.1 J/m2, b = 0) opened from 0 to 10 u0, u0 = sqrt(w/C): beyond u0 beta = (u0/u)^2, and
-/// damage releases w (1 - beta) A = 0.1 (1 - 1/100) A. A = 0.5 m2/m: the effective radius of two disks of 1 m, times the
-/// unit depth.
+/// A MAC bond (C = 1e12 N/m3, w = 0.1 J/m2, b = 0) opened from 0 to 10 u0, u0 = sqrt(w/C): beyond
+/// u0 beta = (u0/u)^2, and damage releases w (1 - beta) A = 0.1 (1 - 1/100) A. A = 0.5 m2/m: the
+/// effective radius of two disks of 1 m, times the unit depth.
 pub const BOND: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/cases/verification/bond_mode_1.ron"

@@ -124,7 +124,8 @@ fn each_rung_is_the_case_with_more_that_deforms() {
     );
 }
 
-/// A load under which disks pass through each other: the report tells which rows are of runs that warn about themselves.
+/// A load under which disks pass through each other: the report tells which rows are of runs that
+/// warn about themselves.
 #[test]
 fn rows_of_runs_that_are_not_trustworthy_are_marked() {
     let folder = Folder::new("doubts");
@@ -171,7 +172,8 @@ fn doubted_runs(out: &str, setting: &Value) -> usize {
         .count()
 }
 
-/// From the other ends of the ladder: rigid contacts get springs of the materials, grains and half-spaces become rigid.
+/// From the other ends of the ladder: rigid contacts get springs of the materials, grains and
+/// half-spaces become rigid.
 #[test]
 fn every_rung_leads_to_the_others() {
     let folder = Folder::new("ladder");

@@ -5,7 +5,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Disks that are thrown at each other in a box. Nothing is drawn, but every collision of disks spreads a difference.
+/// Disks that are thrown at each other in a box. Nothing is drawn, but every collision of disks
+/// spreads a difference.
 const BILLIARD: &str = r#"(
     name: "a billiard",
     dimension: 2,
@@ -116,8 +117,8 @@ fn errors_are_told_from_scatter() {
     );
 }
 
-/// Runs whose steps differ by parts in 1e10 stand for seeds where nothing is drawn and collisions are chaotic; a bond that
-/// opens is not, see above.
+/// Runs whose steps differ by parts in 1e10 stand for seeds where nothing is drawn and collisions
+/// are chaotic; a bond that opens is not, see above.
 #[test]
 fn chaos_without_draws_has_intervals() {
     let folder = Folder::new("billiard");

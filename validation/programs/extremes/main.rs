@@ -1,9 +1,10 @@
 //! Extreme scenes with a physical criterion each.
 //!
-//! `cargo run --release --example extremes` runs all of them and prints the table of `docs/dev/extremes.md`;
-//! arguments select rows by the beginning of their names (`-- mass step`). Each row declares its expected
-//! result: `met` if its criterion is met; `reported` if a limit is reached and the program reports the cause and
-//! what to change; anything else is `BROKEN` and gives exit code 1. `-- quick` omits rows that take minutes.
+//! `cargo run --release --example extremes` runs all of them and prints the table of
+//! `docs/dev/extremes.md`; arguments select rows by the beginning of their names (`-- mass step`).
+//! Each row declares its expected result: `met` if its criterion is met; `reported` if a limit is
+//! reached and the program reports the cause and what to change; anything else is `BROKEN` and
+//! gives exit code 1. `-- quick` omits rows that take minutes.
 
 mod bench;
 mod rows;

@@ -1,10 +1,10 @@
-//! Figures of Renouf's lecture on projected gradients (2007; after Renouf and Alart, Comput. Methods Appl.
-//! Mech. Eng. 194, 2005), from runs of Fretwork: error against iteration for one step of a packing,
-//! iterations and time along a quasi-static and a dynamic process, and macroscopic agreement in a biaxial
-//! test.
+//! Figures of Renouf's lecture on projected gradients (2007; after Renouf and Alart, Comput.
+//! Methods Appl. Mech. Eng. 194, 2005), from runs of Fretwork: error against iteration for one step
+//! of a packing, iterations and time along a quasi-static and a dynamic process, and macroscopic
+//! agreement in a biaxial test.
 //!
-//! `cargo run --release --example source_figures -- [OUT]`, from the root of the project, writes to OUT
-//! (docs) `solver_figures.md` and `figures/solver_*.png`.
+//! `cargo run --release --example source_figures -- [OUT]`, from the root of the project, writes to
+//! OUT (docs) `solver_figures.md` and `figures/solver_*.png`.
 
 mod charts;
 mod page;
@@ -23,8 +23,8 @@ const COLLAPSE: &str = "cases/collapse.ron";
 /// Twice the step of the case, with more iterations in a step: solvers are compared.
 const COARSE: &str = "time.step=5e-4";
 
-/// Smaller sample of the biaxial case; its walls are closer, so that 0.8 s give the same strain. The alert
-/// distance is the default, with which the published figures were made.
+/// Smaller sample of the biaxial case; its walls are closer, so that 0.8 s give the same strain.
+/// The alert distance is the default, with which the published figures were made.
 const SMALLER: [&str; 6] = [
     "detection=()",
     "grains.0.count=500",
@@ -95,7 +95,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dynamic = all(COLLAPSE, &[COARSE.to_owned()])?;
     charts::dynamic(&dynamic, &figures.join("solver_dynamic.png"))?;
 
-    // Samples of other seeds, by both solvers, since agreement is judged against the scatter of samples.
+    // Samples of other seeds, by both solvers, since agreement is judged against the scatter of
+    // samples.
     let mut others = Vec::new();
     for seed in ["seed=12", "seed=13"] {
         let sets = [smaller.clone(), vec![seed.into()]].concat();
@@ -111,7 +112,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Takes the contact problem of one step of the compression, writes and reads it as a file, and solves it.
+/// Takes the contact problem of one step of the compression, writes and reads it as a file, and
+/// solves it.
 fn single(mu: f64) -> Result<Single, Box<dyn Error>> {
     /// In the middle of the compression (s).
     const WHEN: f64 = 0.6;

@@ -2,9 +2,10 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, parameters};
 
 parameters! {
-    /// On u = sqrt(<u_n>^2 + |u_t|^2) with B = |u_t|/u_n: onset d_0 = d_3 d_s sqrt((1 + B^2)/(d_s^2 + (B d_3)^2)),
-    /// d_3 = strength_n/K, d_s = strength_t/K; G_c = g_1 + (g_2 - g_1)(B^2/(1 + B^2))^eta; end d_f = 2 G_c/(K d_0);
-    /// D = d_f (u - d_0)/(u (d_f - d_0)), never decreasing. The defaults are for AS4/PEEK.
+    /// On u = sqrt(<u_n>^2 + |u_t|^2) with B = |u_t|/u_n: onset d_0 = d_3 d_s sqrt((1 +
+    /// B^2)/(d_s^2 + (B d_3)^2)), d_3 = strength_n/K, d_s = strength_t/K; G_c = g_1 + (g_2 -
+    /// g_1)(B^2/(1 + B^2))^eta; end d_f = 2 G_c/(K d_0); D = d_f (u - d_0)/(u (d_f - d_0)), never
+    /// decreasing. The defaults are for AS4/PEEK.
     pub struct CamanhoDavila {
         k: "Pa/m" = 1e15, 1.0, 1e30, "stiffness, the same in both directions";
         strength_n: "Pa" = 8e7, 1e-30, 1e30, "strength in mode I";
@@ -38,7 +39,8 @@ impl Law for CamanhoDavila {
                 ));
             }
         }
-        // In mixed mode the energy at onset may exceed the fracture energy, and 1 - D may round to 0.
+        // In mixed mode the energy at onset may exceed the fracture energy, and 1 - D may round
+        // to 0.
         for step in 0..=90 {
             let angle = f64::from(step).to_radians();
             let (onset, energy) = self.mix(angle.cos(), angle.sin());
@@ -57,7 +59,8 @@ impl Law for CamanhoDavila {
 }
 
 impl CamanhoDavila {
-    /// Onset and fracture energy for the mode mix of a normal (not negative) and a tangential opening.
+    /// Onset and fracture energy for the mode mix of a normal (not negative) and a tangential
+    /// opening.
     fn mix(&self, n: f64, t: f64) -> (f64, f64) {
         let u = n.hypot(t);
         let (c, s) = if u > 0.0 { (n / u, t / u) } else { (1.0, 0.0) };
@@ -101,8 +104,8 @@ mod tests {
     use super::*;
     use fretwork_law::testing;
 
-    /// AS4/PEEK: G_c of 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by integration of
-    /// the traction at a fixed mode mix.
+    /// AS4/PEEK: G_c of 0.98799, 1.12300 and 1.41952 N/mm at G_II/G_T of 0.2, 0.5 and 0.8, by
+    /// integration of the traction at a fixed mode mix.
     #[test]
     fn mixed_modes_take_the_energy_of_benzeggagh_and_kenane() {
         let law = CamanhoDavila::default();
@@ -128,8 +131,8 @@ mod tests {
         assert!((law.mix(0.0, 1.0).0 / ds - 1.0).abs() < 1e-12);
     }
 
-    /// K d_0^2/2 is 0.8 and 845 J/m^2 in the pure modes, below the energies, but 1.066 at 30 degrees, where
-    /// 1/(c^2/0.8 + s^2/845) exceeds 1 + 999 s^20 = 1.001.
+    /// K d_0^2/2 is 0.8 and 845 J/m^2 in the pure modes, below the energies, but 1.066 at 30
+    /// degrees, where 1/(c^2/0.8 + s^2/845) exceeds 1 + 999 s^20 = 1.001.
     #[test]
     fn a_mix_that_snaps_is_refused() {
         let law = CamanhoDavila {

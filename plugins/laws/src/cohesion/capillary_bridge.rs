@@ -1,11 +1,12 @@
-//! A liquid bridge between two grains: forms in contact, decreases with the gap, breaks at a distance.
+//! A liquid bridge between two grains: forms in contact, decreases with the gap, breaks at a
+//! distance.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, parameters};
 
 parameters! {
-    /// Spheres: F = k R for gap <= 0 and k R exp(-gap/lambda) up to d_max = (1 + angle/2) V^(1/3), with
-    /// k = 2 pi gamma cos(angle), R = sqrt(R_i R_j), here 2 r with r the reduced radius (exact for equal spheres),
-    /// and lambda = 0.9/sqrt(2) sqrt(V/R). Disks: F = 2 gamma cos(angle) per length over d_max = (1 + angle/2) sqrt(V),
-    /// V then the area of the bridge.
+    /// Spheres: F = k R for gap <= 0 and k R exp(-gap/lambda) up to d_max = (1 + angle/2) V^(1/3),
+    /// with k = 2 pi gamma cos(angle), R = sqrt(R_i R_j), here 2 r with r the reduced radius (exact
+    /// for equal spheres), and lambda = 0.9/sqrt(2) sqrt(V/R). Disks: F = 2 gamma cos(angle) per
+    /// length over d_max = (1 + angle/2) sqrt(V), V then the area of the bridge.
     pub struct CapillaryBridge {
         gamma: "N/m" = 0.072, 0.0, 1e30, "surface tension";
         angle: "rad" = 0.0, 0.0, 1.57, "contact angle";

@@ -2,7 +2,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, parameters};
 
 parameters! {
-    /// Spheres: F = 2 pi w R in contact, decreasing as (1 + gap/z_0)^-2 with the gap; R is the reduced radius.
+    /// Spheres: F = 2 pi w R in contact, decreasing as (1 + gap/z_0)^-2 with the gap; R is the
+    /// reduced radius.
     pub struct Dmt {
         w: "J/m^2" = 0.1, 0.0, 1e30, "work of adhesion";
         z_0: "m" = 4e-10, 1e-12, 1.0, "range of the attraction";

@@ -2,9 +2,10 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 
 parameters! {
-    /// Traction (1 - D) k x in tension and in compression, moment (1 - D) k_r theta over the area. The spring
-    /// carries compression until the gap closes, so a bond formed at a gap g is compressed by g before the contact is
-    /// rigid: grains at a gap over a first body are its compliant surface layer, like the bristles of a brush.
+    /// Traction (1 - D) k x in tension and in compression, moment (1 - D) k_r theta over the area.
+    /// The spring carries compression until the gap closes, so a bond formed at a gap g is
+    /// compressed by g before the contact is rigid: grains at a gap over a first body are its
+    /// compliant surface layer, like the bristles of a brush.
     pub struct ElasticFoundation {
         k_n: "Pa/m" = 1e13, 0.0, 1e30, "normal stiffness, both ways";
         k_t: "Pa/m" = 1e13, 0.0, 1e30, "tangential stiffness";

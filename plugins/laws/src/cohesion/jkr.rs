@@ -1,12 +1,14 @@
-//! Johnson, Kendall and Roberts: soft spheres that form a neck before they separate. Rigid in compression here.
+//! Johnson, Kendall and Roberts: soft spheres that form a neck before they separate. Rigid in
+//! compression here.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, Variable, parameters};
 use std::f64::consts::PI;
 
 parameters! {
-    /// Once the spheres touch, the attraction follows the neck. With the pull-off P_c = 3 pi w R/2 and the
-    /// contact radius x = a/a_0, a_0^3 = 9 pi w R^2/(2 E): F = 4 P_c (x^(3/2) - x^3) attracts at the approach
-    /// d = (a_0^2/R)(x^2 - (2/3) x^(1/2)). At d = 0 it is 8/9 of the pull-off; under imposed displacement the
-    /// neck breaks at 5/9 of it, d = -(3/4)(pi^2 w^2 R/E^2)^(1/3). R is the reduced radius.
+    /// Once the spheres touch, the attraction follows the neck. With the pull-off P_c = 3 pi w R/2
+    /// and the contact radius x = a/a_0, a_0^3 = 9 pi w R^2/(2 E): F = 4 P_c (x^(3/2) - x^3)
+    /// attracts at the approach d = (a_0^2/R)(x^2 - (2/3) x^(1/2)). At d = 0 it is 8/9 of the
+    /// pull-off; under imposed displacement the neck breaks at 5/9 of it, d = -(3/4)(pi^2 w^2
+    /// R/E^2)^(1/3). R is the reduced radius.
     pub struct Jkr {
         w: "J/m^2" = 0.1, 0.0, 1e30, "work of adhesion";
         modulus: "Pa" = 1e11, 1.0, 1e30, "reduced modulus E*";

@@ -2,8 +2,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 
 parameters! {
-    /// Stiffness degrades with the square of the intensity of adhesion. In compression the traction continues
-    /// linearly, from which the host finds its zero; only the tensile part acts.
+    /// Stiffness degrades with the square of the intensity of adhesion. In compression the traction
+    /// continues linearly, from which the host finds its zero; only the tensile part acts.
     pub struct Mac {
         c_n: "Pa/m" = 1e12, 0.0, 1e30, "normal stiffness C_N of the intact bond";
         c_t: "Pa/m" = 1e12, 0.0, 1e30, "tangential stiffness C_T of the intact bond";
@@ -47,7 +47,8 @@ mod tests {
         }
     }
 
-    /// Drives one bond with the b = 0 damage of the model, beta = w/(C u^2), and returns the traction.
+    /// Drives one bond with the b = 0 damage of the model, beta = w/(C u^2), and returns the
+    /// traction.
     fn envelope(law: &Mac, w: f64, u: f64) -> f64 {
         let beta = (w / (law.c_n * u * u)).min(1.0);
         law.traction(&at([u, 0.0, 0.0], 1.0 - beta), &[]).traction[0]

@@ -1,12 +1,14 @@
-//! Potyondy and Cundall's parallel bond: a short beam of cement in tension, shear, bending and torsion.
+//! Potyondy and Cundall's parallel bond: a short beam of cement in tension, shear, bending and
+//! torsion.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 use std::f64::consts::PI;
 
 parameters! {
-    /// Stresses k_n u_n and k_t u_t over the area A, moments k_n I theta in bending and k_t J theta in torsion.
-    /// In 3D A = pi R^2, I = pi R^4/4, J = 2 I; in 2D A = 2 R, I = 2 R^3/3 per depth. It breaks at once if the
-    /// edge fails in tension: F_n/A + |M_b| R/I > sigma_c, or in shear: |F_t|/A + |M_t| R/J > tau_c. The contact carries
-    /// compression; R follows from the contact's area.
+    /// Stresses k_n u_n and k_t u_t over the area A, moments k_n I theta in bending and k_t J theta
+    /// in torsion. In 3D A = pi R^2, I = pi R^4/4, J = 2 I; in 2D A = 2 R, I = 2 R^3/3 per depth.
+    /// It breaks at once if the edge fails in tension: F_n/A + |M_b| R/I > sigma_c, or in shear:
+    /// |F_t|/A + |M_t| R/J > tau_c. The contact carries compression; R follows from the contact's
+    /// area.
     pub struct ParallelBond {
         k_n: "Pa/m" = 1e14, 1.0, 1e30, "normal stiffness over the area";
         k_t: "Pa/m" = 1e14, 1.0, 1e30, "shear stiffness over the area";

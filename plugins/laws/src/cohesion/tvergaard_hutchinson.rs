@@ -3,9 +3,10 @@ use crate::trapezoid::Trapezoid;
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, parameters, require};
 
 parameters! {
-    /// For the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p, then linear to
-    /// u_u; energy = strength (u_u + u_p - u_i)/2. `u_p` = u_i + plateau (u_longest - u_i), where the longest
-    /// plateau that the energy allows ends at u_i/2 + energy/strength. Unloading is to the origin.
+    /// For the opening u = sqrt(<u_n>^2 + |u_t|^2): K u to u_i = strength/K, the strength to u_p,
+    /// then linear to u_u; energy = strength (u_u + u_p - u_i)/2. `u_p` = u_i + plateau
+    /// (u_longest - u_i), where the longest plateau that the energy allows ends at u_i/2 +
+    /// energy/strength. Unloading is to the origin.
     pub struct TvergaardHutchinson {
         k: "Pa/m" = 1e13, 1.0, 1e30, "stiffness, the same in both directions";
         strength: "Pa" = 1e6, 1e-30, 1e30, "traction of the plateau";
@@ -33,7 +34,8 @@ impl Law for TvergaardHutchinson {
             squared < 2.0 * self.k * self.energy,
             "strength^2/(2 k) must be below the energy: the elastic part alone holds more",
         )?;
-        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be lost by round-off relative to 1.
+        // 1 - D is strength/(k u) on the plateau: below about 1e-12 it would be lost by round-off
+        // relative to 1.
         require(
             squared >= 1e-12 * self.k * self.energy,
             "k is so high that 1 - D cannot be told from 0: lower k, or raise the strength",

@@ -2,8 +2,8 @@
 use fretwork_law::{CohesionLaw, Law, Site, Traction, parameters};
 
 parameters! {
-    /// Spheres: F = A R/(6 z^2); parallel cylinders, per length: F = A sqrt(R)/(8 sqrt(2) z^(5/2)), with R the
-    /// reduced radius, z = gap + z_0 (z_0 in contact).
+    /// Spheres: F = A R/(6 z^2); parallel cylinders, per length: F = A sqrt(R)/(8 sqrt(2) z^(5/2)),
+    /// with R the reduced radius, z = gap + z_0 (z_0 in contact).
     pub struct VanDerWaals {
         hamaker: "J" = 1e-19, 0.0, 1.0, "Hamaker's constant A";
         z_0: "m" = 4e-10, 1e-12, 1.0, "distance in contact";
@@ -42,7 +42,8 @@ impl CohesionLaw for VanDerWaals {
 mod tests {
     use super::*;
 
-    /// The force is minus the slope of the energy -A R/(6 z), or per length of -A sqrt(R)/(12 sqrt(2) z^(3/2)).
+    /// The force is minus the slope of the energy -A R/(6 z), or per length of -A sqrt(R)/(12
+    /// sqrt(2) z^(3/2)).
     #[test]
     fn the_force_is_the_slope_of_the_energy() {
         let law = VanDerWaals::default();

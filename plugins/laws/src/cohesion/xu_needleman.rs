@@ -1,13 +1,16 @@
-//! Xu and Needleman's exponential cohesion, with history: it unloads to the origin and stays broken.
+//! Xu and Needleman's exponential cohesion, with history: it unloads to the origin and stays
+//! broken.
 use fretwork_law::{CohesionLaw, Law, Site, Traction, abi, bounded, parameters};
 
 parameters! {
-    /// With x = u_n/delta_n, y = |u_t|/delta_t and phi = e strength delta_n, the potential of the paper with q = 1, where the work
-    /// of separation is phi in both modes (r then has no effect): phi (1 - (1 + x) exp(-x - y^2)). Its share of phi that was
-    /// reached is the damage D, which never decreases; t = (1 - D) d psi_0/d u with psi_0 = phi (x - ln(1 + x) + y^2), so that
-    /// t_n = (phi/delta_n) x exp(-x - y^2) and t_t = (2 phi/delta_t) y (1 + x) exp(-x - y^2) while D grows, the tractions of the
-    /// paper, and any path to full separation takes phi. In compression x is 0: the contact carries that. Where 1 - D
-    /// falls to `left` the bond is broken.
+    /// With x = u_n/delta_n, y = |u_t|/delta_t and phi = e strength delta_n, the potential of the
+    /// paper with q = 1, where the work of separation is phi in both modes (r then has no effect):
+    /// phi (1 - (1 + x) exp(-x - y^2)). Its share of phi that was reached is the damage D, which
+    /// never decreases; t = (1 - D) d psi_0/d u with psi_0 = phi (x - ln(1 + x) + y^2), so that
+    /// t_n = (phi/delta_n) x exp(-x - y^2) and t_t = (2 phi/delta_t) y (1 + x) exp(-x - y^2) while
+    /// D grows, the tractions of the paper, and any path to full separation takes phi. In
+    /// compression x is 0: the contact carries that. Where 1 - D falls to `left` the bond is
+    /// broken.
     pub struct XuNeedleman {
         strength: "Pa" = 1e6, 1e-30, 1e30, "normal strength, reached at delta_n";
         delta_n: "m" = 1e-6, 1e-30, 1e30, "normal opening at the strength";
@@ -125,7 +128,8 @@ mod tests {
         phi + phi * (-x).exp() * (normal - shear * (-y * y).exp())
     }
 
-    /// Damage and traction after the opening is led to these places, in `steps` steps each, and the work done.
+    /// Damage and traction after the opening is led to these places, in `steps` steps each, and the
+    /// work done.
     fn led(law: &XuNeedleman, places: &[[f64; 2]], steps: u32) -> (f64, [f64; 2], f64) {
         let at = |[n, t]: [f64; 2], damage: f64| Site {
             opening: [n, 0.6 * t, -0.8 * t],
@@ -166,7 +170,8 @@ mod tests {
                         (potential(a, 1.0, r) - potential(b, 1.0, r)) / (2.0 * d)
                     };
                     let expected = [
-                        // The potential continues into compression, where the law leaves the load to the contact.
+                        // The potential continues into compression, where the law leaves the load
+                        // to the contact.
                         slope([n + d, t], [n - d, t]),
                         slope([n, t + d], [n, t - d]),
                     ];

@@ -36,8 +36,8 @@ impl ContactLaw for LinearContact {
 mod tests {
     use super::*;
 
-    /// A mass on the spring, in 20,000 steps of the velocity Verlet scheme, parts with the restitution asked for when its force is
-    /// zero.
+    /// A mass on the spring, in 20,000 steps of the velocity Verlet scheme, parts with the
+    /// restitution asked for when its force is zero.
     #[test]
     fn impacts_rebound_as_asked() {
         for restitution in [0.05, 0.3, 0.6, 0.9, 1.0] {

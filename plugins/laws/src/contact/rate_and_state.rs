@@ -1,13 +1,14 @@
 //! Rate-and-state friction: mu = mu_0 + a ln(V/V_0) + b ln(V_0 theta/D_c).
 //!
-//! The state is stored as psi = ln(V_0 theta/D_c): it starts at zero, the steady state at V_0, whatever the
-//! parameters, and neither theta's range nor its logarithm can overflow. With x = V theta/D_c,
+//! The state is stored as psi = ln(V_0 theta/D_c): it starts at zero, the steady state at V_0,
+//! whatever the parameters, and neither theta's range nor its logarithm can overflow. With x = V
+//! theta/D_c,
 //! * aging law, d theta/dt = 1 - x: theta tends to D_c/V as exp(-V t/D_c);
 //! * slip law, d theta/dt = -x ln x: psi tends to ln(V_0/V) as exp(-V t/D_c).
 //!
-//! Both are integrated exactly over a step at its velocity u_th. The state of a contact without load does not
-//! change. The direct effect a is that of the velocity at the end of the step, for which the host asks again; below v_min
-//! friction is that at v_min, which holds a contact.
+//! Both are integrated exactly over a step at its velocity u_th. The state of a contact without
+//! load does not change. The direct effect a is that of the velocity at the end of the step, for
+//! which the host asks again; below v_min friction is that at v_min, which holds a contact.
 use fretwork_law::{ContactLaw, Friction, Law, Site, Variable, parameters, require};
 
 parameters! {
@@ -136,7 +137,8 @@ mod tests {
         }
     }
 
-    /// One step compared with the differential equation of theta, integrated by the classical Runge-Kutta scheme.
+    /// One step compared with the differential equation of theta, integrated by the classical
+    /// Runge-Kutta scheme.
     #[test]
     fn a_step_solves_the_equation() {
         for law in both() {

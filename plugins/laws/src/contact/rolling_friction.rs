@@ -2,8 +2,8 @@
 use fretwork_law::{ContactLaw, Friction, Law, Site, parameters};
 
 parameters! {
-    /// Each length is a constant plus a fraction of the reduced radius r1 r2/(r1 + r2), which is half the radius
-    /// between equal bodies and the radius itself against a flat one.
+    /// Each length is a constant plus a fraction of the reduced radius r1 r2/(r1 + r2), which is
+    /// half the radius between equal bodies and the radius itself against a flat one.
     pub struct RollingFriction {
         mu: "" = 0.3, 0.0, 1e6, "friction coefficient";
         rolling: "m" = 0.0, 0.0, 1e6, "constant part of the rolling friction length";

@@ -1,9 +1,10 @@
 //! Static and dynamic friction: mu_s while the contact sticks, mu_d while it slides.
 //!
-//! Sticking is determined from the velocity (no internal variable): a contact sticks up to v_s, since a solver leaves
-//! a small velocity. Above it the coefficient decreases along a ramp of width v_r, since with a jump a
-//! contact near v_s would change its coefficient at every step. Choose v_r above h (mu_s - mu_d) p_n/(h m), the
-//! change of velocity that the full decrease causes in one step.
+//! Sticking is determined from the velocity (no internal variable): a contact sticks up to v_s,
+//! since a solver leaves a small velocity. Above it the coefficient decreases along a ramp of width
+//! v_r, since with a jump a contact near v_s would change its coefficient at every step. Choose v_r
+//! above h (mu_s - mu_d) p_n/(h m), the change of velocity that the full decrease causes in one
+//! step.
 use fretwork_law::{ContactLaw, Friction, Law, Site, parameters, require};
 
 parameters! {
@@ -65,8 +66,9 @@ mod tests {
         assert!((at(&law, [0.0, 1e3, 0.0]) - 0.3).abs() < 1e-15);
     }
 
-    /// A block pulled with a force between both coefficients stays at rest if it sticks and keeps sliding if it slides;
-    /// one that decelerates comes to rest without its friction ever decreasing again.
+    /// A block pulled with a force between both coefficients stays at rest if it sticks and keeps
+    /// sliding if it slides; one that decelerates comes to rest without its friction ever
+    /// decreasing again.
     #[test]
     fn does_not_chatter() {
         let law = StaticDynamic::default();

@@ -2,8 +2,8 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, parameters, require};
 
 parameters! {
-    /// dD = rate (|P| - p_fatigue)/(P_max - p_fatigue) d|P| while the carried traction |P| rises above
-    /// p_fatigue, with P_max = p_limit (1 - D) + p_residual D; |P| >= P_max breaks the bond.
+    /// dD = rate (|P| - p_fatigue)/(P_max - p_fatigue) d|P| while the carried traction |P| rises
+    /// above p_fatigue, with P_max = p_limit (1 - D) + p_residual D; |P| >= P_max breaks the bond.
     pub struct CzmFatigue {
         p_limit: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
         p_residual: "Pa" = 1e5, 0.0, 1e30, "strength as damage nears one";
@@ -51,7 +51,8 @@ impl DamageLaw for CzmFatigue {
         if p <= from || span <= 0.0 {
             return d;
         }
-        // The increase integrated exactly at this D: a step may be as large as the loading of a cycle.
+        // The increase integrated exactly at this D: a step may be as large as the loading of a
+        // cycle.
         let mean = 0.5 * ((p - self.p_fatigue) + (from - self.p_fatigue)) / span;
         (d + self.rate * mean * (p - from)).min(1.0)
     }
@@ -69,7 +70,8 @@ mod tests {
         }
     }
 
-    /// One increase from 0 to P at small rate: D = rate (P - F)^2/(2 (P_max - F)), in any number of steps.
+    /// One increase from 0 to P at small rate: D = rate (P - F)^2/(2 (P_max - F)), in any number of
+    /// steps.
     #[test]
     fn a_rise_damages_by_its_integral() {
         let law = CzmFatigue {

@@ -2,9 +2,10 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters, require};
 
 parameters! {
-    /// In MELODY's own damage d, u_max(d) = (p_limit/K)(1 - d) + u_limit d carries p_limit (1 - d) +
-    /// p_residual d. The traction thus decreases linearly from (p_limit/K, p_limit) to (u_limit, p_residual), where
-    /// the bond breaks; D of the host is the loss of the secant stiffness, (1 - D)^m = traction/(K u).
+    /// In MELODY's own damage d, u_max(d) = (p_limit/K)(1 - d) + u_limit d carries p_limit (1 -
+    /// d) + p_residual d. The traction thus decreases linearly from (p_limit/K, p_limit) to
+    /// (u_limit, p_residual), where the bond breaks; D of the host is the loss of the secant
+    /// stiffness, (1 - D)^m = traction/(K u).
     pub struct CzmLinear {
         p_limit: "Pa" = 1e6, 1e-30, 1e30, "traction at which damage begins";
         p_residual: "Pa" = 1e5, 0.0, 1e30, "traction at which the bond breaks";

@@ -2,9 +2,9 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// traction = strength exp(-(u - u_0)/l) beyond u_0 = strength/K, with l from
-    /// energy = strength u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail
-    /// that is cut off has the energy left (energy - strength u_0/2).
+    /// traction = strength exp(-(u - u_0)/l) beyond u_0 = strength/K, with l from energy = strength
+    /// u_0/2 + strength l. Below `left` times the strength the bond is broken; the tail that is cut
+    /// off has the energy left (energy - strength u_0/2).
     pub struct ExponentialSoftening {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";
@@ -57,7 +57,8 @@ mod tests {
         }
     }
 
-    /// Over the range of K of real interfaces: at K = 1e10 half of the energy is stored before the onset.
+    /// Over the range of K of real interfaces: at K = 1e10 half of the energy is stored before the
+    /// onset.
     #[test]
     fn the_area_holds_from_soft_to_stiff() {
         let law = ExponentialSoftening {

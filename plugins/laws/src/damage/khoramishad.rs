@@ -1,9 +1,11 @@
-//! Fatigue with cycles counted by time, from the largest strain of a cycle: Khoramishad and co-workers.
+//! Fatigue with cycles counted by time, from the largest strain of a cycle: Khoramishad and
+//! co-workers.
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// dD/dN = alpha (e - threshold)^beta with e = opening/reference the strain of the maximum load, which
-    /// the scene applies (a cycle jump: the maximum of the load is applied steadily and N = frequency t).
+    /// dD/dN = alpha (e - threshold)^beta with e = opening/reference the strain of the maximum
+    /// load, which the scene applies (a cycle jump: the maximum of the load is applied steadily and
+    /// N = frequency t).
     pub struct Khoramishad {
         alpha: "" = 1.5, 0.0, 1e30, "damage a cycle at unit strain above the threshold";
         beta: "" = 2.0, 1e-3, 100.0, "exponent";

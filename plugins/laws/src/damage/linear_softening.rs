@@ -3,8 +3,8 @@ use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
     /// The traction decreases with the opening u from `strength` at u_0 = strength/K to zero at
-    /// u_f = 2 energy/strength. If the bond is so compliant that u_f <= u_0 it breaks at the strength, and
-    /// dissipates the stored energy strength^2/(2K).
+    /// u_f = 2 energy/strength. If the bond is so compliant that u_f <= u_0 it breaks at the
+    /// strength, and dissipates the stored energy strength^2/(2K).
     pub struct LinearSoftening {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction at which damage begins";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";

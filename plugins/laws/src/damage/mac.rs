@@ -2,11 +2,11 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// With b = 0 and a cohesion of exponent m = 2 a bond that opens without limit dissipates exactly w. Its
-    /// intensity of adhesion decreases as 1/u^2 and never reaches 0 by itself: below `beta_broken` the bond
-    /// counts as broken (0 disables this). The energy stored at that moment, at most
-    /// beta_broken w/2, must be added to the fracture energy by the host, and the bond has then dissipated
-    /// w (1 - beta_broken/2).
+    /// With b = 0 and a cohesion of exponent m = 2 a bond that opens without limit dissipates
+    /// exactly w. Its intensity of adhesion decreases as 1/u^2 and never reaches 0 by itself: below
+    /// `beta_broken` the bond counts as broken (0 disables this). The energy stored at that moment,
+    /// at most beta_broken w/2, must be added to the fracture energy by the host, and the bond has
+    /// then dissipated w (1 - beta_broken/2).
     pub struct Mac {
         w: "J/m^2" = 0.1, 0.0, 1e30, "Dupre's energy: fracture energy of the bond";
         b: "J s/m^2" = 0.0, 0.0, 1e30, "viscosity of damage";
@@ -24,8 +24,8 @@ impl Law for Mac {
     const REFERENCE: &'static str = "Y. Monerie, V. Acary, Formulation dynamique d'un modele de zone cohesive tridimensionnel, Rev. Eur. Elements Finis 10 (2001); M. Raous, L. Cangemi, M. Cocou, Comput. Methods Appl. Mech. Engrg 177 (1999) 383-399";
 
     fn fracture_energy(&self, _angle: f64) -> Option<f64> {
-        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction that depends on m, that at an opening by one
-        // that depends on the stiffness.
+        // Viscosity increases it with the speed; the cut at beta_broken reduces it by a fraction
+        // that depends on m, that at an opening by one that depends on the stiffness.
         let tail = self.beta_broken <= 5e-3 && self.opening_broken >= NEVER;
         (self.b == 0.0 && tail).then_some(self.w)
     }
@@ -66,7 +66,8 @@ impl Mac {
 
 impl DamageLaw for Mac {
     fn grow(&self, site: &Site, intact: &Intact, _state: &mut [f64]) -> f64 {
-        // `max` and `min` rather than `clamp`, so that a NaN damage reaches the host, which reports it.
+        // `max` and `min` rather than `clamp`, so that a NaN damage reaches the host, which reports
+        // it.
         let d = self.damage(site.damage, site.h, intact);
         let d = d.max(site.damage).min(1.0);
         let broken = 1.0 - d < self.beta_broken || site.opening[0] > self.opening_broken;

@@ -2,10 +2,10 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, parameters};
 
 parameters! {
-    /// While the opening grows below its envelope the stiffness K+ = (1 - D)^m K decreases by
-    /// dK+ = -K+ du/length; unloading is to the origin. The envelope softens linearly from `strength` with
-    /// fracture energy `energy`. (In the paper the reloading stiffness is incremental; here it is the secant
-    /// one, since a bond's stored energy must follow from D.)
+    /// While the opening grows below its envelope the stiffness K+ = (1 - D)^m K decreases by dK+ =
+    /// -K+ du/length; unloading is to the origin. The envelope softens linearly from `strength`
+    /// with fracture energy `energy`. (In the paper the reloading stiffness is incremental; here it
+    /// is the secant one, since a bond's stored energy must follow from D.)
     pub struct Nguyen {
         strength: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
         energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy of the envelope";

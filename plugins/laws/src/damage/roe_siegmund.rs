@@ -2,10 +2,11 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, Variable, parameters};
 
 parameters! {
-    /// dD = (|du|/length) (T/T_max - endurance)+ once the accumulated opening has passed `start`, with T the
-    /// traction that the bond carries and T_max = strength (1 - D). D is never below that of the monotonic
-    /// envelope, linear softening from `strength` with fracture energy `energy`; a bond that stores more than
-    /// the energy at its strength breaks. Monotonic loading also accumulates cyclic damage and so needs less energy.
+    /// dD = (|du|/length) (T/T_max - endurance)+ once the accumulated opening has passed `start`,
+    /// with T the traction that the bond carries and T_max = strength (1 - D). D is never below
+    /// that of the monotonic envelope, linear softening from `strength` with fracture energy
+    /// `energy`; a bond that stores more than the energy at its strength breaks. Monotonic loading
+    /// also accumulates cyclic damage and so needs less energy.
     pub struct RoeSiegmund {
         strength: "Pa" = 1e6, 1e-30, 1e30, "strength of the new bond";
         energy: "J/m^2" = 5.0, 1e-30, 1e30, "fracture energy of the envelope";
@@ -53,8 +54,8 @@ mod tests {
     use super::*;
     use fretwork_law::testing::{Bond, opened, pull};
 
-    /// For m = 1 the load K u/strength does not depend on D: over a cycle 0 - u - 0 it integrates to
-    /// 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
+    /// For m = 1 the load K u/strength does not depend on D: over a cycle 0 - u - 0 it integrates
+    /// to 2 (K u^2/(2 s) - C u + s C^2/(2 K))/length.
     #[test]
     fn a_cycle_damages_by_its_integral() {
         let law = RoeSiegmund::default();

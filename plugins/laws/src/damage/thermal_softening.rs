@@ -2,10 +2,11 @@
 use fretwork_law::{DamageLaw, Intact, Law, Site, abi, parameters, require};
 
 parameters! {
-    /// With x = (T - T_0)/(T_m - T_0) between 0 and 1: the traction that the bond carries with damage D, (1 - D)^n t_0, falls to (1 - x^m) t_0, so D
-    /// is at least 1 - (1 - x^m)^(1/n); and the bond breaks where what it carries leaves the envelope of the strengths times s = 1 - x^k, t_n > s
-    /// tensile_strength or |t_t| > s (cohesion + friction p). Softening stays: a bond that cools is not stiffer again, so that no energy comes from
-    /// heat.
+    /// With x = (T - T_0)/(T_m - T_0) between 0 and 1: the traction that the bond carries with
+    /// damage D, (1 - D)^n t_0, falls to (1 - x^m) t_0, so D is at least 1 - (1 - x^m)^(1/n); and
+    /// the bond breaks where what it carries leaves the envelope of the strengths times s = 1 -
+    /// x^k, t_n > s tensile_strength or |t_t| > s (cohesion + friction p). Softening stays: a bond
+    /// that cools is not stiffer again, so that no energy comes from heat.
     pub struct ThermalSoftening {
         tensile_strength: "Pa" = 1e8, 0.0, 1e30, "normal traction at which a cold bond breaks";
         cohesion: "Pa" = 1e8, 0.0, 1e30, "shear traction at which a cold bond breaks without pressure";

@@ -3,9 +3,10 @@ use crate::trapezoid::Trapezoid;
 use fretwork_law::{DamageLaw, Intact, Law, Site, parameters};
 
 parameters! {
-    /// From u_0 = strength/K a plateau to u_p, then linear to u_f; energy = strength (u_f + u_p - u_0)/2.
-    /// `plateau` places u_p between u_0 and the longest plateau that the energy allows,
-    /// u_0/2 + energy/strength (where u_f = u_p). A bond that stores more than the energy at its strength breaks.
+    /// From u_0 = strength/K a plateau to u_p, then linear to u_f; energy = strength (u_f + u_p -
+    /// u_0)/2. `plateau` places u_p between u_0 and the longest plateau that the energy allows,
+    /// u_0/2 + energy/strength (where u_f = u_p). A bond that stores more than the energy at its
+    /// strength breaks.
     pub struct Trapezoidal {
         strength: "Pa" = 3e5, 1e-30, 1e30, "traction of the plateau";
         energy: "J/m^2" = 0.5, 1e-30, 1e30, "fracture energy, the area under the curve";

@@ -1,12 +1,15 @@
-//! Heat and current through the contact circle of two elastic spheres: G = 2 k a, with Hertz' radius a.
+//! Heat and current through the contact circle of two elastic spheres: G = 2 k a, with Hertz'
+//! radius a.
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters};
 use std::f64::consts::PI;
 
 parameters! {
-    /// G = 2 k a with k = 2 k_1 k_2/(k_1 + k_2) and a = (3 F R/(4 E*))^(1/3), R the reduced radius, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2. In
-    /// 2D, where the spreading resistance of a cylinder is not finite, heat is counted from the strip of half-width a = (4 F R/(pi E*))^(1/2) to the
-    /// distance 2 R on either side, the radius of equal cylinders: G = pi k/(2 asinh(2 R/a)) per metre of depth. The electrical conductance is the
-    /// same with 1/rho for k, rho = (rho_1 + rho_2)/2.
+    /// G = 2 k a with k = 2 k_1 k_2/(k_1 + k_2) and a = (3 F R/(4 E*))^(1/3), R the reduced radius,
+    /// 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2. In 2D, where the spreading resistance of a
+    /// cylinder is not finite, heat is counted from the strip of half-width a = (4 F R/(pi
+    /// E*))^(1/2) to the distance 2 R on either side, the radius of equal cylinders: G = pi k/(2
+    /// asinh(2 R/a)) per metre of depth. The electrical conductance is the same with 1/rho for k,
+    /// rho = (rho_1 + rho_2)/2.
     pub struct BatchelorObrien {
         young_1: "Pa" = 2.1e11, 1e-300, 1e300, "Young's modulus of the first material";
         poisson_1: "" = 0.3, -0.99, 0.5, "Poisson's ratio of the first material";

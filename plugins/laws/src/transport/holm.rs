@@ -2,8 +2,9 @@
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters};
 
 parameters! {
-    /// R = (rho_1 + rho_2)/(4 a) through a circle of area F/H; heat in the same way, G = 2 k a. In 2D a strip of width F/H, from which the current is
-    /// counted to the distance 2 R on either side, R the reduced radius: g = pi/(2 rho asinh(2 R/a)) per metre of depth.
+    /// R = (rho_1 + rho_2)/(4 a) through a circle of area F/H; heat in the same way, G = 2 k a. In
+    /// 2D a strip of width F/H, from which the current is counted to the distance 2 R on either
+    /// side, R the reduced radius: g = pi/(2 rho asinh(2 R/a)) per metre of depth.
     pub struct Holm {
         hardness: "Pa" = 2.6e9, 1e-300, 1e300, "H, hardness of the softer body";
     }

@@ -3,9 +3,11 @@ use crate::GAS;
 use fretwork_law::{Conductance, Law, Site, TransportLaw, Variable, abi, parameters};
 
 parameters! {
-    /// The share c of the spot that the film covers follows dc/dt = (1 - c)/tau - c |ds/dt|/lambda, with the slip s; tau follows Arrhenius' law where an
-    /// activation energy is given, tau exp(Q/R_g (1/T - 1/T_0)). The covered part has the resistance of the film in series with Holm's
-    /// constriction, the rest Holm's alone, each over its share of the spot of area F/H. Heat goes through the whole spot.
+    /// The share c of the spot that the film covers follows dc/dt = (1 - c)/tau - c |ds/dt|/lambda,
+    /// with the slip s; tau follows Arrhenius' law where an activation energy is given, tau
+    /// exp(Q/R_g (1/T - 1/T_0)). The covered part has the resistance of the film in series with
+    /// Holm's constriction, the rest Holm's alone, each over its share of the spot of area F/H.
+    /// Heat goes through the whole spot.
     pub struct OxideFilm {
         hardness: "Pa" = 2.6e9, 1e-300, 1e300, "H, hardness of the softer body";
         film: "ohm m^2" = 1e-9, 0.0, 1e30, "resistance of the film over its area";
@@ -86,7 +88,8 @@ mod tests {
         assert!(faster.covered(0.0, 0.1, 0.0, 400.0) > 10.0 * law.covered(0.0, 0.1, 0.0, 400.0));
     }
 
-    /// 1 N on 1 GPa: metal 2e-7/(2 a) = 5.605 mohm; a film of 1e-9 ohm m^2 over 1e-9 m^2 adds 1 ohm.
+    /// 1 N on 1 GPa: metal 2e-7/(2 a) = 5.605 mohm; a film of 1e-9 ohm m^2 over 1e-9 m^2 adds 1
+    /// ohm.
     #[test]
     fn film_is_in_series_with_the_constriction() {
         let law = OxideFilm {

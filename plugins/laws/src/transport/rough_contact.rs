@@ -2,8 +2,10 @@
 use fretwork_law::{Conductance, Law, Site, TransportLaw, parameters, require};
 
 parameters! {
-    /// G/A = 1.25 k (m/sigma) (P/H)^0.95 + k_g/(d + Y + M), with the pressure P over the area A of the contact, k the conductivity of the pair, and d
-    /// the gap, beyond which the second term falls linearly to zero at `reach`. The electrical conductance is the first term with 1/rho for k.
+    /// G/A = 1.25 k (m/sigma) (P/H)^0.95 + k_g/(d + Y + M), with the pressure P over the area A of
+    /// the contact, k the conductivity of the pair, and d the gap, beyond which the second term
+    /// falls linearly to zero at `reach`. The electrical conductance is the first term with 1/rho
+    /// for k.
     pub struct RoughContact {
         roughness: "m" = 1e-6, 1e-300, 1e30, "sigma, root mean square height of both surfaces together";
         slope: "" = 0.1, 1e-12, 10.0, "m, mean absolute slope of both surfaces together";
@@ -57,7 +59,8 @@ impl TransportLaw for RoughContact {
 mod tests {
     use super::*;
 
-    /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K): 1.25 50 1e5 1e-2.85 = 8828 W/(m^2 K), and the gas 0.026/3.37e-6 = 7715.
+    /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K): 1.25 50 1e5 1e-2.85 = 8828 W/(m^2
+    /// K), and the gas 0.026/3.37e-6 = 7715.
     #[test]
     fn spots_and_gas_add() {
         let law = RoughContact::default();

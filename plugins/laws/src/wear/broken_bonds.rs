@@ -34,8 +34,8 @@ impl WearLaw for BrokenBonds {
             state[0] = BONDED;
             return 0.0;
         }
-        // D is 1 without a bond too. A bond that breaks in its first step never has a smaller D here, but it has
-        // an opening, unlike contacts that were never bonded.
+        // D is 1 without a bond too. A bond that breaks in its first step never has a smaller D
+        // here, but it has an opening, unlike contacts that were never bonded.
         let opened = site.opening != [0.0; 3];
         if state[0] == BONDED || (state[0] == NEVER && opened) {
             state[0] = BOOKED;
@@ -51,7 +51,8 @@ mod tests {
 
     const LAW: BrokenBonds = BrokenBonds { thickness: 0.5 };
 
-    /// Drives one contact of 3 m^2 through damages and openings, and returns the volume of each step.
+    /// Drives one contact of 3 m^2 through damages and openings, and returns the volume of each
+    /// step.
     fn history(steps: &[(f64, f64)]) -> Vec<f64> {
         let mut state = [BrokenBonds::VARIABLES[0].initial];
         steps

@@ -3,8 +3,9 @@ use crate::GAS;
 use fretwork_law::{Law, Site, WearLaw, abi, parameters};
 
 parameters! {
-    /// V = K F s/H with K = d A exp(-Q/(R_g T))/(f^2 rho^2 xi^2 U), at most 1: the share of encounters of a spot of diameter d, each of d/U, in which
-    /// the oxide reaches the thickness xi. U is the sliding speed, T the temperature of the contact, flash temperature included.
+    /// V = K F s/H with K = d A exp(-Q/(R_g T))/(f^2 rho^2 xi^2 U), at most 1: the share of
+    /// encounters of a spot of diameter d, each of d/U, in which the oxide reaches the thickness
+    /// xi. U is the sliding speed, T the temperature of the contact, flash temperature included.
     pub struct Oxidation {
         arrhenius: "kg^2/(m^4 s)" = 1e6, 0.0, 1e60, "A, Arrhenius' constant of parabolic oxidation: of steel in Lim and Ashby's wear maps";
         activation: "J/mol" = 1.38e5, 0.0, 1e8, "Q, activation energy, as A";
@@ -52,7 +53,8 @@ mod tests {
         law.volume(&site, &mut [])
     }
 
-    /// Arrhenius' law between two temperatures; below the bound the volume is that of the time, not of the slip.
+    /// Arrhenius' law between two temperatures; below the bound the volume is that of the time, not
+    /// of the slip.
     #[test]
     fn follows_arrhenius() {
         let law = Oxidation::default();

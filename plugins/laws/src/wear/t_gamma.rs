@@ -1,12 +1,14 @@
-//! Wear of wheel and rail by T gamma: the regimes of the University of Sheffield for R8T on 900A steel.
+//! Wear of wheel and rail by T gamma: the regimes of the University of Sheffield for R8T on 900A
+//! steel.
 //!
-//! Mass lost per metre rolled and area of contact, against x = T gamma/A, the energy per metre and area:
-//! 5.3 x (mild, x < 10.4 N/mm^2), 55 (severe), in ug/(m mm^2). Sources differ beyond 77.2 N/mm^2 (catastrophic):
-//! 55 + 61.9 (x - 77.2), which is continuous and the default; 61.9 x - 4778.7, which begins at zero; 61.9 x.
-//! They have the same slope, so `catastrophic_start` selects one: 0.055, 0, or 4.7787 kg/m^3.
+//! Mass lost per metre rolled and area of contact, against x = T gamma/A, the energy per metre and
+//! area: 5.3 x (mild, x < 10.4 N/mm^2), 55 (severe), in ug/(m mm^2). Sources differ beyond 77.2
+//! N/mm^2 (catastrophic): 55 + 61.9 (x - 77.2), which is continuous and the default; 61.9 x -
+//! 4778.7, which begins at zero; 61.9 x. They have the same slope, so `catastrophic_start` selects
+//! one: 0.055, 0, or 4.7787 kg/m^3.
 //!
-//! A contact rolls `speed` h in a step, so T gamma is its friction work over that distance. The map is for
-//! wheel on rail: `area` should be that of the patch between the first bodies.
+//! A contact rolls `speed` h in a step, so T gamma is its friction work over that distance. The map
+//! is for wheel on rail: `area` should be that of the patch between the first bodies.
 use fretwork_law::{Law, Site, WearLaw, parameters, require};
 
 parameters! {

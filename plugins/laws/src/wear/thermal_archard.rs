@@ -1,9 +1,10 @@
-//! Archard's law with a hardness that falls with the temperature of the contact, flash temperature included.
+//! Archard's law with a hardness that falls with the temperature of the contact, flash temperature
+//! included.
 use fretwork_law::{Law, Site, WearLaw, abi, parameters, require};
 
 parameters! {
-    /// V = K F s/H(T) with H = H_0 (1 - x^m), x = (T - T_0)/(T_m - T_0) between 0 and 1, but not below `least` of H_0: from mild wear to that of
-    /// surfaces that melt.
+    /// V = K F s/H(T) with H = H_0 (1 - x^m), x = (T - T_0)/(T_m - T_0) between 0 and 1, but not
+    /// below `least` of H_0: from mild wear to that of surfaces that melt.
     pub struct ThermalArchard {
         k: "" = 1e-5, 0.0, 1e3, "K, wear coefficient";
         hardness: "Pa" = 2.6e9, 1.0, 1e30, "H_0, hardness of the softer body when cold";

@@ -1,4 +1,5 @@
-//! Hertz's pressure, cell by cell, from cases that leave the solver to its defaults, or set a part of it.
+//! Hertz's pressure, cell by cell, from cases that leave the solver to its defaults, or set a part
+//! of it.
 
 use super::*;
 use fretwork::solve::local::solver::Method;
@@ -6,7 +7,8 @@ use fretwork::solve::local::solver::Method;
 /// E* of two bodies of `contact_steel` (Pa).
 const MODULUS: f64 = 0.5 * 209.92e9 / (1.0 - 0.28 * 0.28);
 
-/// A cylinder of R 40 mm under 200 N/mm, without a ramp, cells of 20 um; with more fields of the case, its mass (kg/m) and its drives.
+/// A cylinder of R 40 mm under 200 N/mm, without a ramp, cells of 20 um; with more fields of the
+/// case, its mass (kg/m) and its drives.
 fn pressed(more: &str, mass: f64, dofs: &str) -> Simulation<Dim2> {
     let cells = "material: \"steel\", x: (from: -6e-4, to: 6e-4, size: 2e-5), depth: 1e-2";
     let text = format!(
@@ -21,7 +23,8 @@ fn pressed(more: &str, mass: f64, dofs: &str) -> Simulation<Dim2> {
     built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-/// Largest difference of a cell's pressure from Hertz's ellipse about the centre of pressure within 0.9 a, over p0.
+/// Largest difference of a cell's pressure from Hertz's ellipse about the centre of pressure within
+/// 0.9 a, over p0.
 fn off(s: &Simulation<Dim2>, (load, radius, size): (f64, f64, f64)) -> f64 {
     let a = (4.0 * load * radius / (PI * MODULUS)).sqrt();
     let p0 = 2.0 * load / (PI * a);
@@ -43,8 +46,8 @@ const LINE: (f64, f64, f64) = (2e5, 40e-3, 2e-5);
 const STILL: &str = "y: Force(-2e5)";
 const TO_AND_FRO: &str = "x: Displacement(Sine(amplitude: 20e-6, frequency: 20)), y: Force(-2e5)";
 
-/// The load moves a light holder at metres a second where nothing holds it: against that velocity, residuals that leave pressures of
-/// single cells wrong by half are nothing.
+/// The load moves a light holder at metres a second where nothing holds it: against that velocity,
+/// residuals that leave pressures of single cells wrong by half are nothing.
 #[test]
 fn single_cells_have_the_pressure_of_hertz() {
     for (more, mass) in [
@@ -79,8 +82,8 @@ fn cells_have_it_after_cycles_too() {
     }
 }
 
-/// A tolerance that is no tolerance leaves pressures wrong, but no cell without a contact: a point that is pressed behind the surface is
-/// still one that touches.
+/// A tolerance that is no tolerance leaves pressures wrong, but no cell without a contact: a point
+/// that is pressed behind the surface is still one that touches.
 #[test]
 fn a_loose_tolerance_loses_no_contact() {
     for method in [Method::Newton, Method::Auto] {

@@ -48,8 +48,8 @@ pub fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
     }
 }
 
-/// The rotation of a grain at rest whose weight pulls along the ground, with steps far longer than its period (rad): about -z in the plane, about y
-/// in space.
+/// The rotation of a grain at rest whose weight pulls along the ground, with steps far longer than
+/// its period (rad): about -z in the plane, about y in space.
 fn bent<S: Dimensional>(ground: Ground, young: f64) -> (f64, f64) {
     // Away from the sides of facets: a contact with the next one has no bond.
     let mut s = ground.under::<S>(
@@ -97,7 +97,8 @@ fn a_bond_bends_a_grain_as_on_rigid_ground() {
     bends::<Dim3>(&[Ground::Block(Strain::Small, 4, Touching::Surface("top"))]);
 }
 
-/// A sphere that swings about the normal, with w^2 = k_t J/I, by the theta scheme: as on rigid ground.
+/// A sphere that swings about the normal, with w^2 = k_t J/I, by the theta scheme: as on rigid
+/// ground.
 #[test]
 fn a_bond_twists_a_sphere_as_on_rigid_ground() {
     for ground in [

@@ -1,6 +1,8 @@
-//! What elements give way under a couple. A continuum turns without bound under a couple at a point, by M/(E L^2) in the plane and M/(E L^3) in
-//! space where it is spread over a length L (K. L. Johnson, "Contact Mechanics" (1985), section 2.2 and 3.2: displacements of a point force fall with log r
-//! and 1/r, those of a couple are their derivative, and the rotation the second). So what a facet turns by a moment is a matter of its size.
+//! What elements give way under a couple. A continuum turns without bound under a couple at a
+//! point, by M/(E L^2) in the plane and M/(E L^3) in space where it is spread over a length L (K.
+//! L. Johnson, "Contact Mechanics" (1985), section 2.2 and 3.2: displacements of a point force fall
+//! with log r and 1/r, those of a couple are their derivative, and the rotation the second). So
+//! what a facet turns by a moment is a matter of its size.
 
 use super::*;
 use fretwork::bodies::SystemStep;
@@ -8,8 +10,8 @@ use fretwork::geometry::space::Dim3;
 
 const YOUNG: f64 = 1e9;
 
-/// Rotation by a moment of one, of a facet in the middle of the upper side of a held block of `n` elements along its length, about an axis, in a step that is
-/// static (rad/(N m); rad/N in 2D).
+/// Rotation by a moment of one, of a facet in the middle of the upper side of a held block of `n`
+/// elements along its length, about an axis, in a step that is static (rad/(N m); rad/N in 2D).
 fn gives_way<S: Dimensional>(n: usize, axis: usize) -> f64 {
     let mut s = Ground::Block(Strain::Small, n, Touching::Surface("top")).under::<S>(
         &Rolling {
@@ -52,7 +54,8 @@ fn a_facet_turns_the_more_the_smaller_it_is() {
     }
 }
 
-/// How much slower or faster a disk is slowed down on soft ground, and how much further a bond bends, by the size of the elements.
+/// How much slower or faster a disk is slowed down on soft ground, and how much further a bond
+/// bends, by the size of the elements.
 #[test]
 fn what_the_size_of_elements_does_to_the_shipped_laws() {
     let (length, speed, young) = (0.05 * R, 0.02, 1e7);

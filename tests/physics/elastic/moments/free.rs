@@ -4,7 +4,8 @@ use super::bonds::section;
 use super::*;
 use fretwork::geometry::space::{Dim3, Space};
 
-/// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a (D + 1)-th of each element at its corners.
+/// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a
+/// (D + 1)-th of each element at its corners.
 fn angular<S: Space>(s: &Simulation<S>) -> S::Spin {
     let system = s.state.systems.get(0).unwrap();
     let mesh = system.deformed_mesh().unwrap();
@@ -61,8 +62,8 @@ fn bonded<S: Space>(step: f64) -> Rolling {
     }
 }
 
-/// Forces of contacts act in the middle of a step by the velocities at its start, those of strain by both: what angular momentum is off falls with the
-/// square of the step.
+/// Forces of contacts act in the middle of a step by the velocities at its start, those of strain
+/// by both: what angular momentum is off falls with the square of the step.
 fn keeps<S: Dimensional>(strain: Strain) {
     let time = 5e-3;
     let off = [1e-4, 5e-5, 2.5e-5].map(|step| {
@@ -91,8 +92,9 @@ fn a_bond_keeps_angular_momentum() {
     }
 }
 
-/// What a bond that bends hands over from the grain to the block, which is stiff against it: the oscillator of k_n I between two moments of inertia, which
-/// starts at rest with the relative spin w, has J w (1 - cos omega t) of it by then.
+/// What a bond that bends hands over from the grain to the block, which is stiff against it: the
+/// oscillator of k_n I between two moments of inertia, which starts at rest with the relative spin
+/// w, has J w (1 - cos omega t) of it by then.
 fn hands_over<S: Dimensional>() {
     let (step, time, k_n, between) = (5e-5, 5e-3, 1e5, 14.0);
     let case = bonded::<S>(step);

@@ -1,4 +1,5 @@
-//! Laws that resist rotation on first bodies that deform: what touches turns as its facet there, and a half-space does not turn.
+//! Laws that resist rotation on first bodies that deform: what touches turns as its facet there,
+//! and a half-space does not turn.
 
 mod bonds;
 mod compliance;
@@ -96,7 +97,8 @@ fn soft(young: f64) -> Elasticity {
 enum Ground {
     /// A plane that does not deform.
     Rigid,
-    /// A block with this number of cells along its length, held below, which touches by its surface or by its points.
+    /// A block with this number of cells along its length, held below, which touches by its surface
+    /// or by its points.
     Block(Strain, usize, Touching<'static>),
     /// A half-space of this number of cells, which touches so.
     HalfSpace(usize, Cells),

@@ -1,13 +1,16 @@
-//! Rolling and spinning friction of a disk and a sphere on stiff ground that deforms: as on rigid ground.
+//! Rolling and spinning friction of a disk and a sphere on stiff ground that deforms: as on rigid
+//! ground.
 //!
-//! With the friction length l, a disk (b = 1/2) or a sphere (b = 2/5) of radius R that rolls is slowed down by
+//! With the friction length l, a disk (b = 1/2) or a sphere (b = 2/5) of radius R that rolls is
+//! slowed down by
 //!
 //! ```text
 //! a = g l/R/(1 + b)                  on a slope a = (g l/R cos phi - g sin phi)/(1 + b), rolling from tan phi = l/R on
 //! ```
 //!
-//! from m a = T, b m R^2 a/R = l N - T R with the friction T and the force N = m g of the ground. A sphere that spins about the normal loses the angular
-//! momentum l int N dt. Source: K. L. Johnson, "Contact Mechanics" (1985), section 8.1, of the moment of rolling resistance.
+//! from m a = T, b m R^2 a/R = l N - T R with the friction T and the force N = m g of the ground. A
+//! sphere that spins about the normal loses the angular momentum l int N dt. Source: K. L. Johnson,
+//! "Contact Mechanics" (1985), section 8.1, of the moment of rolling resistance.
 
 use super::*;
 use fretwork::geometry::space::Dim3;

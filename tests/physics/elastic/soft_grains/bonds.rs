@@ -69,7 +69,8 @@ fn bonds_stand_for_the_side() {
     }
 }
 
-/// A square on a plane: the largest area of a bond over the mass of the square, along the normal; rigid and soft alike.
+/// A square on a plane: the largest area of a bond over the mass of the square, along the normal;
+/// rigid and soft alike.
 #[test]
 fn check_estimates_bonds_of_grains_that_deform() {
     let mut s = Soft {

@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// A disk that falls on a floor: its momentum is the impulse of the floor less that of its weight, and the ledger closes.
+/// A disk that falls on a floor: its momentum is the impulse of the floor less that of its weight,
+/// and the ledger closes.
 fn lands(case: &Soft, nu: f64) {
     let mut s = case.build_with::<Dim2>(nu);
     let h = s.options.scheme.h;

@@ -19,7 +19,8 @@ fn collision(offset: f64, mu: f64, young: f64, step: f64) -> Soft {
     }
 }
 
-/// Momentum is kept, and so is angular momentum but for the couple of tangential impulses over the gaps; energy never grows.
+/// Momentum is kept, and so is angular momentum but for the couple of tangential impulses over the
+/// gaps; energy never grows.
 #[test]
 fn two_disks_collide() {
     for mu in [0.0, 0.5] {
@@ -61,7 +62,8 @@ fn two_disks_collide() {
     }
 }
 
-/// Without damping a central impact of disks that are slow against their waves keeps nearly all energy: the velocities are exchanged.
+/// Without damping a central impact of disks that are slow against their waves keeps nearly all
+/// energy: the velocities are exchanged.
 #[test]
 fn a_central_impact_is_nearly_elastic() {
     for young in [1e6, 1e8] {

@@ -1,4 +1,5 @@
-//! Grains that deform: a disk between plates, impact, spin, piles, and contacts with all other shapes.
+//! Grains that deform: a disk between plates, impact, spin, piles, and contacts with all other
+//! shapes.
 //!
 //! The scenes are cases as a user writes them. `soft` deforms, `rigid` and `stone` do not.
 
@@ -186,7 +187,8 @@ fn wall(name: &str, normal: &[f64], at: &[f64], more: &str) -> String {
     )
 }
 
-/// Momentum, and angular momentum about the origin, of one grain, with its moment of inertia from the mesh without load.
+/// Momentum, and angular momentum about the origin, of one grain, with its moment of inertia from
+/// the mesh without load.
 fn momenta<S: Space>(s: &Simulation<S>, system: usize) -> (S::Vector, S::Spin) {
     let grain = s.state.systems.get(system).unwrap();
     let mesh = grain.deformed_mesh().unwrap();
@@ -231,7 +233,8 @@ fn velocity_of<S: Space>(s: &Simulation<S>, system: usize) -> S::Vector {
     S::Vector::from_slice(&s.state.systems.get(system).unwrap().velocity()[..S::D])
 }
 
-/// The force of the contacts of a body in the last step along an axis, on the others (N; N/m in 2D).
+/// The force of the contacts of a body in the last step along an axis, on the others (N; N/m in
+/// 2D).
 fn force_on_others<S: Space>(s: &Simulation<S>, body: usize, axis: usize) -> f64 {
     let contacts = s.state.network.contacts.iter();
     let sum: f64 = contacts

@@ -11,8 +11,9 @@ fn advance<S: Dimensional>(s: &mut Simulation<S>, steps: usize) {
     }
 }
 
-/// A square on a slope tips about its lower corner, against a rolling friction length l, where (a/2)(sin phi - cos phi) > l cos phi; then with the
-/// angular acceleration of the difference over its moment of inertia about the corner, 2 M a^2/3.
+/// A square on a slope tips about its lower corner, against a rolling friction length l, where
+/// (a/2)(sin phi - cos phi) > l cos phi; then with the angular acceleration of the difference over
+/// its moment of inertia about the corner, 2 M a^2/3.
 #[test]
 fn rolling_friction_holds_a_block_until_it_tips() {
     let (side, length, time) = (0.02, 0.002, 0.02);
@@ -58,8 +59,9 @@ fn rolling_friction_holds_a_block_until_it_tips() {
     }
 }
 
-/// A cube that spins on a plane without friction but for a spinning friction length l loses the angular momentum l int P dt, where the force P of
-/// the plane is the weight and what lifts the cube; then it stays.
+/// A cube that spins on a plane without friction but for a spinning friction length l loses the
+/// angular momentum l int P dt, where the force P of the plane is the weight and what lifts the
+/// cube; then it stays.
 fn spinning_cube(method: Method) -> Simulation<Dim3> {
     let mut s = Soft {
         step: 2e-4,
@@ -130,8 +132,8 @@ fn cantilever(method: Method, tolerance: f64, steps: usize) -> Simulation<Dim2> 
     s
 }
 
-/// Bonds in tension alone let the block turn about its lower edge by theta: moments of normal forces k_n A_k theta y_k and of bending
-/// k_n (A_k^3/12) theta carry M g a/2.
+/// Bonds in tension alone let the block turn about its lower edge by theta: moments of normal
+/// forces k_n A_k theta y_k and of bending k_n (A_k^3/12) theta carry M g a/2.
 #[test]
 fn bending_of_bonds_carries_a_cantilever() {
     let s = cantilever(Method::Auto, 1e-11, 400);
@@ -197,8 +199,8 @@ fn methods_agree_on_moments() {
     }
 }
 
-/// The same cube on a block of finite elements that deforms too, in small and in large strain: normals are upright but for what falls with the
-/// modulus.
+/// The same cube on a block of finite elements that deforms too, in small and in large strain:
+/// normals are upright but for what falls with the modulus.
 #[test]
 fn spinning_friction_acts_between_two_that_deform() {
     for (strain, young) in [

@@ -91,7 +91,8 @@ fn soft_grains_carry_all_other_shapes() {
         0,
         0.049,
     );
-    // A corner between two others points into the middle of an edge, and the middle of an edge onto a corner.
+    // A corner between two others points into the middle of an edge, and the middle of an edge onto
+    // a corner.
     let guides = wall("left", &[1.0, 0.0], &[-0.02, 0.0], "")
         + &wall("right", &[-1.0, 0.0], &[0.02, 0.0], "");
     let frictionless = |bodies: &str, grains: &str| Soft {
@@ -133,7 +134,8 @@ fn soft_grains_carry_all_other_shapes() {
     );
 }
 
-/// A soft disk on bodies of finite elements, by their surface and by their points, and on a half-space.
+/// A soft disk on bodies of finite elements, by their surface and by their points, and on a
+/// half-space.
 #[test]
 fn soft_grains_lie_on_deformable_bodies() {
     let far = wall("far", &[0.0, 1.0], &[0.0, -1.0], "");

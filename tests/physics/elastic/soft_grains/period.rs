@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Two grains that meet at a place, moved by half of a period or not: the same forces and velocities.
+/// Two grains that meet at a place, moved by half of a period or not: the same forces and
+/// velocities.
 #[test]
 fn grains_meet_across_the_period() {
     let pairs: [(&str, [&str; 2]); 4] = [

@@ -67,7 +67,8 @@ fn rests<S: Dimensional>(what: &str, grains: &str, elements: usize, steps: usize
     s
 }
 
-/// Deepest vertex of one grain inside of another (m), by crossings of a ray and distances from edges.
+/// Deepest vertex of one grain inside of another (m), by crossings of a ray and distances from
+/// edges.
 fn overlap_of_outlines(s: &Simulation<Dim2>) -> f64 {
     let outlines: Vec<Vec<Vector2<f64>>> = s
         .shapes

@@ -23,9 +23,10 @@ fn pressed_disk(elements: usize, force: f64) -> Simulation<Dim2> {
     s
 }
 
-/// Approach of the plates 2 P/(pi E*) (2 ln(4 R/a) - 1) with a^2 = 4 P R/(pi E*), E* = E/(1 - nu^2) (K. L. Johnson, Contact Mechanics, 1985,
-/// equations 5.56 and 4.43), and at the centre of the disk sigma_x = 2 P/(pi D), sigma_y = -6 P/(pi D) (S. P. Timoshenko and J. N. Goodier,
-/// Theory of Elasticity, article 41).
+/// Approach of the plates 2 P/(pi E*) (2 ln(4 R/a) - 1) with a^2 = 4 P R/(pi E*), E* = E/(1 - nu^2)
+/// (K. L. Johnson, Contact Mechanics, 1985, equations 5.56 and 4.43), and at the centre of the disk
+/// sigma_x = 2 P/(pi D), sigma_y = -6 P/(pi D) (S. P. Timoshenko and J. N. Goodier, Theory of
+/// Elasticity, article 41).
 #[test]
 fn a_disk_between_plates() {
     let modulus = 1e6 / (1.0 - NU * NU);

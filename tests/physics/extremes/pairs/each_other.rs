@@ -4,8 +4,8 @@ use super::in_space::SOLID;
 use super::in_the_plane::FLAT;
 use super::*;
 
-/// Throws each grain at the middle of each other one, half of the time across a period: what it is thrown at is hit, or the run says
-/// that it may not have been.
+/// Throws each grain at the middle of each other one, half of the time across a period: what it is
+/// thrown at is hit, or the run says that it may not have been.
 fn throw_at_each_other<S: Dimensional>(grains: &[(&str, Grain)]) {
     let mut rng = Pcg64::seed_from_u64(20);
     let mut silent = Vec::new();

@@ -49,7 +49,8 @@ fn new_folder(test: &str) -> std::path::PathBuf {
     folder
 }
 
-/// Triangles of a sheet of squares with these heights, and of a closed plate of this thickness (m), as text of an STL file.
+/// Triangles of a sheet of squares with these heights, and of a closed plate of this thickness (m),
+/// as text of an STL file.
 fn stl(folder: &std::path::Path, name: &str, triangles: &[[[f64; 3]; 3]]) -> std::path::PathBuf {
     use std::fmt::Write as _;
     let mut text = String::from("solid s\n");

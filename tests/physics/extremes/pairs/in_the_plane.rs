@@ -78,7 +78,8 @@ fn grains_stay_in_front_of_every_wall_in_the_plane() {
     throw_all::<Dim2>(&FLAT, None, &flat_walls(), &SPEEDS, 6);
 }
 
-/// Walls that deform and wear. What deforms is not hit in its middle, whose motion is taken for that of the whole.
+/// Walls that deform and wear. What deforms is not hit in its middle, whose motion is taken for
+/// that of the whole.
 pub(super) fn flat_soft_walls() -> Vec<Wall> {
     let mut rng = Pcg64::seed_from_u64(9);
     let rough: Vec<String> = (-40..=40)

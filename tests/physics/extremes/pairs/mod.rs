@@ -1,6 +1,6 @@
-//! Every pair of shapes at displacements of 0.3 to 100 radii in a step, from the side, turning, with either of them moving: a grain
-//! stays in front of what it meets, or the run says that it may not have. The same of what deforms and what wears, up to ten radii a
-//! step.
+//! Every pair of shapes at displacements of 0.3 to 100 radii in a step, from the side, turning,
+//! with either of them moving: a grain stays in front of what it meets, or the run says that it may
+//! not have. The same of what deforms and what wears, up to ten radii a step.
 
 use super::bench::{Sketch, place, up, volume};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
@@ -28,8 +28,9 @@ const SOFT_SPEEDS: [f64; 5] = [0.1, 0.4, 1.4, 3.0, 10.0];
 const AFTER: usize = 3;
 /// How far a centre may be behind the nearest vertex of a surface that is not flat (radii).
 const BEHIND: f64 = 0.2;
-/// One of how many throws may be told although all of it is seen: what is hit at a corner turns by about its displacement over its
-/// radius, and its corners move on arcs of which a step knows the tangents.
+/// One of how many throws may be told although all of it is seen: what is hit at a corner turns by
+/// about its displacement over its radius, and its corners move on arcs of which a step knows the
+/// tangents.
 const SEEN_TOLD: usize = 8;
 /// Share of the energy that a throw may gain by the error of the solver.
 const GAIN: f64 = 1e-6;
@@ -44,7 +45,8 @@ enum Made {
     Rigid,
     /// The same, whose surface recedes by up to this depth (m) before it is hit and while it is.
     Worn(f64),
-    /// The same, which wears by the law of the interface: in a hit by about this share of the grain.
+    /// The same, which wears by the law of the interface: in a hit by about this share of the
+    /// grain.
     Wearing(f64),
     /// A body of finite elements, held at its bottom, of this Young's modulus (Pa).
     Elements(f64),
@@ -60,8 +62,8 @@ struct Wall {
     shapes: String,
     /// Origin of its frame: along x, out of plane and upwards (m).
     origin: [f64; 3],
-    /// It ends at this distance along x from the place that is hit (m): what is beyond has left it sideways. Where heights are measured
-    /// from vertices, at this distance from the nearest one.
+    /// It ends at this distance along x from the place that is hit (m): what is beyond has left it
+    /// sideways. Where heights are measured from vertices, at this distance from the nearest one.
     half: f64,
 }
 
@@ -103,8 +105,9 @@ impl Wall {
         }
     }
 
-    /// Height of the centre of a grain above the wall (m); infinite beside it. Of a wall that is not flat, or does not stay so, it is that
-    /// above the nearest vertex and what a centre may be behind that.
+    /// Height of the centre of a grain above the wall (m); infinite beside it. Of a wall that is
+    /// not flat, or does not stay so, it is that above the nearest vertex and what a centre may be
+    /// behind that.
     fn height<S: Space>(&self, s: &Simulation<S>, grain: usize) -> f64 {
         let last = S::D - 1;
         let bodies = &s.state.bodies;
@@ -150,8 +153,9 @@ enum End {
     ToldSeen,
 }
 
-/// A throw: displacement in a step (m), its direction from the vertical (rad), distance from the place that is hit (m), angle of the
-/// grain and its rate (rad, rad/s), and whether the wall moves instead.
+/// A throw: displacement in a step (m), its direction from the vertical (rad), distance from the
+/// place that is hit (m), angle of the grain and its rate (rad, rad/s), and whether the wall moves
+/// instead.
 struct Throw {
     step: f64,
     tilt: f64,
@@ -176,13 +180,15 @@ impl Throw {
         }
     }
 
-    /// Whether grains of this reach are still apart at the first detection, this share of a step after the start, `distance` being that
-    /// of their centres along the throw, and `reach` what they need of it (m): then all of the meeting is seen.
+    /// Whether grains of this reach are still apart at the first detection, this share of a step
+    /// after the start, `distance` being that of their centres along the throw, and `reach` what
+    /// they need of it (m): then all of the meeting is seen.
     fn is_seen(&self, distance: f64, reach: f64, first: f64) -> bool {
         distance - first * self.step > reach
     }
 
-    /// The scene of a grain that is thrown at a wall, of this Young's modulus (Pa) where it deforms.
+    /// The scene of a grain that is thrown at a wall, of this Young's modulus (Pa) where it
+    /// deforms.
     fn sketch<S: Space>(&self, grain: Grain, soft: Option<f64>, wall: &Wall) -> Sketch {
         let way = [self.tilt.sin(), -self.tilt.cos()];
         let at = place::<S>(-self.from * way[0], 0.003, -self.from * way[1]);
@@ -246,7 +252,8 @@ impl Throw {
         sketch
     }
 
-    /// Throws the grain, and returns whether it is held, or the end that the run is silent about. Balls that are seen are held.
+    /// Throws the grain, and returns whether it is held, or the end that the run is silent about.
+    /// Balls that are seen are held.
     fn run<S: Dimensional>(
         &self,
         name: &str,
@@ -285,8 +292,8 @@ impl Throw {
             most = most.max(s.state.energy.kinetic + s.state.energy.elastic);
         }
         if s.state.network.step_size.warning().is_some() {
-            // All walls are flat at this scale, and below zero. An impact turns others than balls, and another corner may turn into the
-            // wall in the same step.
+            // All walls are flat at this scale, and below zero. An impact turns others than balls,
+            // and another corner may turn into the wall in the same step.
             let seen = self.is_seen(self.from, R / self.tilt.cos(), first);
             // One that deforms has corners too.
             let ball = soft.is_none() && ["disk", "sphere"].contains(&name);
@@ -305,8 +312,8 @@ impl Throw {
     }
 }
 
-/// Throws each grain at each wall, `times` times at each speed. What meets before the first detection may be told, and what
-/// turns a corner into the wall; all others are held.
+/// Throws each grain at each wall, `times` times at each speed. What meets before the first
+/// detection may be told, and what turns a corner into the wall; all others are held.
 fn throw_all<S: Dimensional>(
     grains: &[(&str, Grain)],
     soft: Option<f64>,
@@ -345,7 +352,8 @@ fn throw_all<S: Dimensional>(
         silent.len(),
         silent.join("\n")
     );
-    // Places to start from are spread over two steps: a quarter of them at most is nearer than half of a step.
+    // Places to start from are spread over two steps: a quarter of them at most is nearer than half
+    // of a step.
     assert!(4 * told < total, "{told} of {total} told");
     assert!(
         SEEN_TOLD * seen < total,
@@ -358,8 +366,9 @@ fn bumps(rng: &mut Pcg64) -> f64 {
     rng.random_range(-0.2..0.0) * R
 }
 
-/// Nothing but points would be in the way of a grain that is thinner than the gaps between them, however it is made: in the plane 5 mm,
-/// in space 9.2 mm between four of them, and 10.6 mm by the largest area of a point.
+/// Nothing but points would be in the way of a grain that is thinner than the gaps between them,
+/// however it is made: in the plane 5 mm, in space 9.2 mm between four of them, and 10.6 mm by the
+/// largest area of a point.
 #[test]
 fn grains_that_fit_between_points_are_refused() {
     let throw = Throw {

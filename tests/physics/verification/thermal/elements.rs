@@ -70,7 +70,8 @@ fn grain_on_elements(table: &mut Table) {
     table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
 }
 
-/// Two blocks whose meshes do not match: through their contacts flows what the law says, between the temperatures of the two.
+/// Two blocks whose meshes do not match: through their contacts flows what the law says, between
+/// the temperatures of the two.
 fn two_meshes(table: &mut Table) {
     let case = "elastic/patch";
     let sets = [
@@ -93,7 +94,8 @@ fn two_meshes(table: &mut Table) {
     assert!(seen.all(|t| (300.0..=400.0).contains(&t)));
 }
 
-/// A block of finite elements lifts a load, by each measure of strain; the answer is the same where heat makes one step for several.
+/// A block of finite elements lifts a load, by each measure of strain; the answer is the same where
+/// heat makes one step for several.
 fn elements(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     let runs: [(&[&str], f64); 4] = [
@@ -139,7 +141,8 @@ fn elements(table: &mut Table) {
     }
 }
 
-/// The same between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy comes from the heat.
+/// The same between two plates: sigma = -E alpha dT/(1 - nu) in plane strain, and its energy comes
+/// from the heat.
 fn held_elements(table: &mut Table) {
     let case = "thermal/mesh_expansion";
     for (strain, tolerance) in [
@@ -220,7 +223,8 @@ fn bent(table: &mut Table) {
     assert!(xx < 0.05 && yy < 0.05 && xy < 0.05, "{xx} {yy} {xy}");
 }
 
-/// A free block in space, with damping and theta 1/2: it grows evenly without stress by each measure of strain, and the same where steps are repeated.
+/// A free block in space, with damping and theta 1/2: it grows evenly without stress by each
+/// measure of strain, and the same where steps are repeated.
 fn in_space(table: &mut Table) {
     let case = "thermal/mesh_expansion_3d";
     for strain in ["Small", "Corotational", "NeoHookean"] {

@@ -97,7 +97,8 @@ fn lifted(table: &mut Table) {
     );
 }
 
-/// Where heat makes one step for several of the mechanics, the growth is spread over these, and for another step the rise is the same.
+/// Where heat makes one step for several of the mechanics, the growth is spread over these, and for
+/// another step the rise is the same.
 fn several_steps(table: &mut Table) {
     let case = "thermal/expanding_column";
     for sets in [&["heat.every=10"][..], &["time.step=4e-3"]] {
@@ -111,7 +112,8 @@ fn several_steps(table: &mut Table) {
         let rise = last - HEIGHT;
         let quantity = format!("{}: rise (m)", sets[0]);
         table.compare(case, &quantity, ALPHA * RISE * HEIGHT, rise, 5e-5);
-        // The rate at the start is alpha dT L/(0.1766 s), that of one step at a time ten times as much.
+        // The rate at the start is alpha dT L/(0.1766 s), that of one step at a time ten times as
+        // much.
         let rate = ALPHA * RISE * HEIGHT / (7850.0 * 450.0 * 1e-3 / 2e4);
         assert!(fastest < 1.1 * rate, "{}: {fastest} of {rate}", sets[0]);
         let closes = s.energies().relative_residual();
@@ -125,8 +127,9 @@ fn several_steps(table: &mut Table) {
     }
 }
 
-/// The rise does not depend on where contacts begin to be seen, and on the tolerance by no more than the error of velocities that it allows, which is
-/// relative to the velocity that the load would reach in a step without contacts.
+/// The rise does not depend on where contacts begin to be seen, and on the tolerance by no more
+/// than the error of velocities that it allows, which is relative to the velocity that the load
+/// would reach in a step without contacts.
 fn settings(table: &mut Table) {
     let case = "thermal/expanding_column";
     let free_velocity = 1e3 * 1e-3 / 0.1;
@@ -144,7 +147,8 @@ fn settings(table: &mut Table) {
     }
 }
 
-/// In space a cube, and a cluster of eight balls that is as high, lift the load as the column of disks does.
+/// In space a cube, and a cluster of eight balls that is as high, lift the load as the column of
+/// disks does.
 fn solids(table: &mut Table) {
     let case = "thermal/expanding_column";
     let balls: Vec<String> = (0..8)
@@ -243,8 +247,8 @@ fn bonded(table: &mut Table) {
     }
 }
 
-/// A square on springs between a floor and a load, which friction holds: its corners move outwards by alpha dT a, against the tangential stiffness of
-/// the contacts, 0.8 of the normal one.
+/// A square on springs between a floor and a load, which friction holds: its corners move outwards
+/// by alpha dT a, against the tangential stiffness of the contacts, 0.8 of the normal one.
 fn polygon(table: &mut Table) {
     let case = "thermal/expanding_column";
     let sets = [
@@ -288,8 +292,8 @@ fn polygon(table: &mut Table) {
     );
 }
 
-/// First bodies of balls expand about their position, so that what lies on them rises: one disk, and two of one body that hold a grain between them, on
-/// which nothing slides.
+/// First bodies of balls expand about their position, so that what lies on them rises: one disk,
+/// and two of one body that hold a grain between them, on which nothing slides.
 fn first_body(table: &mut Table) {
     let case = "thermal/expanding_column";
     let pin = |balls: &str| {

@@ -174,7 +174,8 @@ fn half_space(table: &mut Table) {
     );
 }
 
-/// A warm grain on a cold floor, through their contact: T = T_0 + dT exp(-G t/C), of first order in the step for theta = 1 and of second for 1/2.
+/// A warm grain on a cold floor, through their contact: T = T_0 + dT exp(-G t/C), of first order in
+/// the step for theta = 1 and of second for 1/2.
 fn order_in_step(table: &mut Table) {
     let case = "thermal/expanding_column";
     let sets = [

@@ -11,7 +11,8 @@ pub fn all(table: &mut Table) {
     start(table);
 }
 
-/// Conductances over 18 decades, steps far beyond the thermal time and far below it, absolute zero, grains that touch nothing.
+/// Conductances over 18 decades, steps far beyond the thermal time and far below it, absolute zero,
+/// grains that touch nothing.
 fn extremes(table: &mut Table) {
     let case = "thermal/cubic";
     for conductance in ["1e-9", "1e-3", "1e3", "1e9"] {
@@ -93,7 +94,8 @@ const RUBBED: [&str; 5] = [
     "heat.initial=300.0",
 ];
 
-/// The heat of friction goes to the sides in proportion to their effusivities, or in halves, and all of it where one is insulated.
+/// The heat of friction goes to the sides in proportion to their effusivities, or in halves, and
+/// all of it where one is insulated.
 fn partition(table: &mut Table) {
     let case = "thermal/two_half_spaces";
     let (steel, oxide) = (effusivity(), (4.0f64 * 650.0 * 5000.0).sqrt());
@@ -138,8 +140,9 @@ fn partition(table: &mut Table) {
     table.compare(case, "a quarter of it", 0.25, share[0] + share[1], 1e-9);
 }
 
-/// Jaeger's band under each contact: its width is the force over the hardness, it moves at half of the speed over each body, and the rises in either
-/// alone are in parallel; with the clock all of it is as much slower.
+/// Jaeger's band under each contact: its width is the force over the hardness, it moves at half of
+/// the speed over each body, and the rises in either alone are in parallel; with the clock all of
+/// it is as much slower.
 fn flash(table: &mut Table) {
     let case = "thermal/two_half_spaces";
     let (steel, oxide) = (effusivity(), (4.0f64 * 650.0 * 5000.0).sqrt());

@@ -65,8 +65,8 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    /// Compares the result with the expectation. Non-finite numbers, or a ledger that does not close, always
-    /// count as broken.
+    /// Compares the result with the expectation. Non-finite numbers, or a ledger that does not
+    /// close, always count as broken.
     pub fn new(expected: Expected, met: bool, sound: bool, told: &[(Cause, String)]) -> Self {
         let mut words: Vec<&str> = told.iter().map(|(_, words)| words.as_str()).collect();
         // One message may report two causes.

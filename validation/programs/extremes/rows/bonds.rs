@@ -34,8 +34,8 @@ fn stiffness<S: Dimensional>() -> Vec<Row> {
 fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
     let value = format!("{k:.0e} Pa/m, theta = {theta}");
     let mass = 1e3 * volume::<S>(0.1);
-    // The bond's area determines the time step: a tenth of the period, and at least 1 ms if oscillations are
-    // damped.
+    // The bond's area determines the time step: a tenth of the period, and at least 1 ms if
+    // oscillations are damped.
     let area = 0.1f64.powi(S::D as i32 - 1);
     let period = std::f64::consts::TAU * (mass / (k * area)).sqrt();
     let step = if theta < 1.0 {

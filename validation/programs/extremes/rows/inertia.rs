@@ -8,8 +8,9 @@ use super::super::bench::{
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
 
-/// A tolerance bounds the square of the fraction of the work that is not transmitted: docs/design.md. If a
-/// fraction of the weight is missing in each step, the small ball moves by that fraction of g h^2 per step.
+/// A tolerance bounds the square of the fraction of the work that is not transmitted:
+/// docs/design.md. If a fraction of the weight is missing in each step, the small ball moves by
+/// that fraction of g h^2 per step.
 const BEARS: &str = "the force on the floor is (m1 + m2) g and that at the contact m2 g, to the square root of the tolerance (1e-10 if none is given); the overlap is below 1e-6 of the radius plus the displacement by that fraction of g";
 
 pub const MASS: Group = Group {

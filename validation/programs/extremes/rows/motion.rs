@@ -79,9 +79,9 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
     .into()
 }
 
-/// A box of 0.1 m at a speed given in box sides per step, starting slightly more than the alert distance
-/// above the surface at the end of a step: with a side down on a flat surface, or an edge down above a
-/// valley.
+/// A box of 0.1 m at a speed given in box sides per step, starting slightly more than the alert
+/// distance above the surface at the end of a step: with a side down on a flat surface, or an edge
+/// down above a valley.
 fn corners<S: Dimensional>() -> Vec<Row> {
     let thrown = |(sides, valley, expected): (f64, bool, Expected)| {
         let v = sides * 0.1 / Sketch::default().step;

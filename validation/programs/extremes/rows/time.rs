@@ -59,7 +59,8 @@ fn short_steps_in_space() -> Vec<Row> {
     falling::<Dim3>(&SHORT, 200)
 }
 
-/// Spheres become wedged, with more unknowns than degrees of freedom, and in the longest step some overlap remains.
+/// Spheres become wedged, with more unknowns than degrees of freedom, and in the longest step some
+/// overlap remains.
 fn long_steps_in_space() -> Vec<Row> {
     let coarse = held_though(&[Unconverged]);
     let long = [(1e-2, coarse), (0.1, coarse), (1.0, told(&[Unconverged]))];

@@ -1,5 +1,5 @@
-//! Elastic spheres in contact: Hertz' normal force, Mindlin and Deresiewicz' tangential force with partial slip. In two
-//! dimensions elastic cylinders, whose normal stiffness is nearly constant.
+//! Elastic spheres in contact: Hertz' normal force, Mindlin and Deresiewicz' tangential force with
+//! partial slip. In two dimensions elastic cylinders, whose normal stiffness is nearly constant.
 
 mod profile;
 
@@ -11,9 +11,10 @@ use std::f64::consts::FRAC_PI_4;
 use std::ffi::CStr;
 
 parameters! {
-    /// With 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2, contact radius a = sqrt(R d):
-    /// F = 4/3 E* sqrt(R) d^(3/2); tangential stiffness without slip k_0 = 8 G* a; slip from the rim inwards, annulus by annulus, for any
-    /// history of load and displacement. In 2D F = pi/4 E* d and k_t/k_n = 4 G*/E*, as for spheres.
+    /// With 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 and 1/G* = (2 - nu_1)/G_1 + (2 - nu_2)/G_2,
+    /// contact radius a = sqrt(R d): F = 4/3 E* sqrt(R) d^(3/2); tangential stiffness without slip
+    /// k_0 = 8 G* a; slip from the rim inwards, annulus by annulus, for any history of load and
+    /// displacement. In 2D F = pi/4 E* d and k_t/k_n = 4 G*/E*, as for spheres.
     pub struct HertzMindlin {
         young_1: "Pa" = 2.1e11, 1e-300, 1e300, "Young's modulus of the first material";
         poisson_1: "" = 0.3, -0.99, 0.5, "Poisson's ratio of the first material";
@@ -83,7 +84,8 @@ const WHOLE: f64 = 1.0 - 1e-3;
 
 /// What the geometry of a contact of spheres makes of its profile.
 struct Sphere {
-    /// k_0 (N/m), 8 G* sqrt(R), the factor of [`Profile::sums`] (N/m^1.5), and beta for a friction coefficient of 1.
+    /// k_0 (N/m), 8 G* sqrt(R), the factor of [`Profile::sums`] (N/m^1.5), and beta for a friction
+    /// coefficient of 1.
     k_0: f64,
     scale: f64,
     beta: f64,
@@ -117,7 +119,8 @@ impl HertzMindlin {
     }
 }
 
-/// The profile that a contact remembers. Its parts are along and across the tangential force, which the host turns with the pair.
+/// The profile that a contact remembers. Its parts are along and across the tangential force, which
+/// the host turns with the pair.
 fn remembered(state: &[f64], force: Pair) -> Profile {
     let [x, y] = unit(force);
     let mut corners = [(0.0, [0.0; 2]); KEPT - 1];
@@ -176,7 +179,8 @@ impl Sphere {
         let after = self.force(&profile);
         let expected = self.k_0 * dot(by, by);
         let share = dot(minus(after, before), by) / expected;
-        // Where all of it slips the host holds the force at its bound, which the damping of the step decides.
+        // Where all of it slips the host holds the force at its bound, which the damping of the
+        // step decides.
         let slope = if norm(after) >= WHOLE * bound || !share.is_finite() {
             1.0
         } else {
@@ -192,13 +196,16 @@ impl Sphere {
         }
     }
 
-    /// The profile after a step that ended with this force, of which the displacement by the mean velocity is a guess.
+    /// The profile after a step that ended with this force, of which the displacement by the mean
+    /// velocity is a guess.
     fn follow(&self, law: &HertzMindlin, site: &Site, state: &[f64]) -> Profile {
-        /// Rounds, the share of the force to which it is met, and the least slope between two rounds over k_0.
+        /// Rounds, the share of the force to which it is met, and the least slope between two
+        /// rounds over k_0.
         const ROUNDS: usize = 12;
         const CLOSE: f64 = 1e-6;
         const FLATTEST: f64 = 0.1;
-        // The force is that of the overlap at the start of the step where it decreases: the next step takes what parts.
+        // The force is that of the overlap at the start of the step where it decreases: the next
+        // step takes what parts.
         let (d, bound) = (site.overlap.max(state[OVERLAP]), law.mu * self.force_n);
         let wanted = site.spring_t;
         let size = norm(wanted);
@@ -310,7 +317,8 @@ mod tests {
         }
     }
 
-    /// K. L. Johnson, eqs. 4.22 to 4.24: a^3 = 3 P R/(4 E*), d = a^2/R; the slope is that of the force.
+    /// K. L. Johnson, eqs. 4.22 to 4.24: a^3 = 3 P R/(4 E*), d = a^2/R; the slope is that of the
+    /// force.
     #[test]
     fn force_is_that_of_hertz() {
         let [modulus, _] = STEEL.moduli();
@@ -322,7 +330,8 @@ mod tests {
         assert!(((more - s.force_n) / 1e-10 / s.stiffness_n - 1.0).abs() < 1e-4);
     }
 
-    /// Mindlin's ratio of stiffnesses of two like spheres, 2 (1 - nu)/(2 - nu) (K. L. Johnson, section 7.2).
+    /// Mindlin's ratio of stiffnesses of two like spheres, 2 (1 - nu)/(2 - nu) (K. L. Johnson,
+    /// section 7.2).
     #[test]
     fn tangential_stiffness_is_that_of_mindlin() {
         for dimension in [2, 3] {

@@ -1,11 +1,14 @@
-//! The tangential displacement of a contact by radius: what the history of load and displacement left of stick and slip.
+//! The tangential displacement of a contact by radius: what the history of load and displacement
+//! left of stick and slip.
 //!
-//! By the method of dimensionality reduction a sphere in contact is a row of independent springs at the distances x from its middle. At an
-//! overlap d the spring at x is pressed by d - s, s = x^2/R, and carries a tangential displacement u up to the share beta of that, beyond which
-//! it slips; one that parts carries none. For contacts that are loaded and sheared in any order this is the theory of Cattaneo, Mindlin and
-//! Deresiewicz, annulus by annulus (V. L. Popov, M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction (2015) 5.4; J.
-//! Jaeger, Arch. Appl. Mech. 65 (1995) 478). Under a constant load u is piecewise linear in s, and so exact here; for other histories the
-//! least corners are left out.
+//! By the method of dimensionality reduction a sphere in contact is a row of independent springs at
+//! the distances x from its middle. At an overlap d the spring at x is pressed by d - s, s = x^2/R,
+//! and carries a tangential displacement u up to the share beta of that, beyond which it slips; one
+//! that parts carries none. For contacts that are loaded and sheared in any order this is the
+//! theory of Cattaneo, Mindlin and Deresiewicz, annulus by annulus (V. L. Popov, M. Hess, Method of
+//! Dimensionality Reduction in Contact Mechanics and Friction (2015) 5.4; J. Jaeger, Arch. Appl.
+//! Mech. 65 (1995) 478). Under a constant load u is piecewise linear in s, and so exact here; for
+//! other histories the least corners are left out.
 
 /// Tangential components (m, or N).
 pub type Pair = [f64; 2];
@@ -17,7 +20,8 @@ const MOST: usize = 3 * KEPT + 4;
 /// Excess over the bound that is rounding, as a share of it.
 const ROUNDING: f64 = 1e-12;
 
-/// u as a function of s: straight between corners, the last of which is the edge of the contact with u = 0.
+/// u as a function of s: straight between corners, the last of which is the edge of the contact
+/// with u = 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Profile {
     corners: [(f64, Pair); MOST],
@@ -66,7 +70,8 @@ impl Profile {
         out
     }
 
-    /// From corners in increasing order, of which the first is the middle; those beyond the edge are left out.
+    /// From corners in increasing order, of which the first is the middle; those beyond the edge
+    /// are left out.
     pub fn new(corners: &[(f64, Pair)], edge: f64) -> Self {
         let mut out = Self::flat(edge);
         out.count = 0;
@@ -192,7 +197,8 @@ impl Profile {
         }
     }
 
-    /// Leaves out a corner; the one before it makes up for what that changes of the force, but not by more displacement than there was.
+    /// Leaves out a corner; the one before it makes up for what that changes of the force, but not
+    /// by more displacement than there was.
     fn leave_out(&mut self, k: usize) {
         let ([x, y], [p, q]) = (self.part(k).0, self.part(k + 1).0);
         let most = norm(self.corners[k].1).max(norm(self.corners[k - 1].1));
@@ -209,8 +215,8 @@ impl Profile {
         }
     }
 
-    /// How far a corner is off the line between its neighbours, times the square of the width between these: what its loss displaces of the
-    /// force, with how far.
+    /// How far a corner is off the line between its neighbours, times the square of the width
+    /// between these: what its loss displaces of the force, with how far.
     fn bend(&self, k: usize) -> f64 {
         let [(s0, u0), (s, u), (s1, u1)] = [k - 1, k, k + 1].map(|k| self.corners[k]);
         if s1 <= s0 {
@@ -220,8 +226,8 @@ impl Profile {
         norm(off) * (s1 - s0).powi(2)
     }
 
-    /// The integrals of u (m^1.5) and of |u|^2 (m^2.5) over sqrt(s): the force and twice the energy, each over the shear modulus 8 G* and
-    /// sqrt(R).
+    /// The integrals of u (m^1.5) and of |u|^2 (m^2.5) over sqrt(s): the force and twice the
+    /// energy, each over the shear modulus 8 G* and sqrt(R).
     pub fn sums(&self) -> (Pair, f64) {
         let (mut force, mut squares) = ([0.0; 2], 0.0);
         for k in 1..self.count {
@@ -305,7 +311,8 @@ mod tests {
         }
     }
 
-    /// The largest difference of the force from that of many springs, over the largest force, on a path of overlap and displacement.
+    /// The largest difference of the force from that of many springs, over the largest force, on a
+    /// path of overlap and displacement.
     fn off(beta: f64, path: impl Fn(f64) -> (f64, Pair)) -> f64 {
         const STEPS: usize = 1000;
         let (mut springs, mut profile) = (Springs::new(beta), Profile::flat(0.0));
@@ -325,7 +332,8 @@ mod tests {
         worst / largest
     }
 
-    /// Forces on paths of load and displacement against those of 1000 springs, for a small and a large friction.
+    /// Forces on paths of load and displacement against those of 1000 springs, for a small and a
+    /// large friction.
     #[test]
     fn follows_any_history_of_load_and_displacement() {
         let ramp = |t: f64, points: &[(f64, f64)]| {
