@@ -31,11 +31,19 @@ pub fn encode<T: Serialize + ?Sized>(state: &T) -> Result<Vec<u8>, CodeError> {
 /// # Errors
 /// The bytes do not represent a `T`.
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodeError> {
-    let (state, rest) = postcard::take_from_bytes(bytes).map_err(|e| CodeError(e.to_string()))?;
+    let (state, rest) = decode_first(bytes)?;
     if rest.is_empty() {
         return Ok(state);
     }
     Err(CodeError(format!("{} bytes too many", rest.len())))
+}
+
+/// Deserializes a state at the start of the bytes; returns it with the bytes after it.
+///
+/// # Errors
+/// The bytes do not begin with a `T`.
+pub fn decode_first<T: DeserializeOwned>(bytes: &[u8]) -> Result<(T, &[u8]), CodeError> {
+    postcard::take_from_bytes(bytes).map_err(|e| CodeError(e.to_string()))
 }
 
 #[cfg(test)]

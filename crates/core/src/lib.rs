@@ -4,7 +4,7 @@
 //! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra, shapes, distances), [`bodies`],
 //! [`contact`] (detection and what each contact remembers), [`solve`] (the contact problem and its solvers), [`laws`] (the
 //! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`] (temperatures and current), [`step`] (the time
-//! step), and [`process`] (what acts on a simulation at the named moments of a step). State goes to bytes and back by [`code`].
+//! step), [`process`] (what acts on a simulation at the named moments of a step), and [`view`] (a simulation without its dimension). State goes to bytes and back by [`code`].
 //!
 //! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the [`Options`](step::Options) of the
 //! computation, which no step changes, and its [`State`](step::State), which a checkpoint holds whole. It steps; its [`contacts`](step::Simulation::contacts),
@@ -64,6 +64,7 @@ pub mod program;
 pub mod solve;
 pub mod step;
 pub mod threads;
+pub mod view;
 pub mod wear;
 
 pub use step::fields;

@@ -31,7 +31,7 @@ pub mod nearest_places;
 pub mod observer;
 pub mod output;
 pub mod picture;
-pub mod placement;
+pub use fretwork_core::view::placement;
 pub mod quantity;
 pub mod resolution;
 pub mod run_state;

@@ -186,6 +186,11 @@ impl<S: Space> Contact<S> {
         }
     }
 
+    /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
+    pub fn counts(&self) -> bool {
+        !self.beyond || self.impulse != S::Vector::zero()
+    }
+
     /// Returns the slot of its memory, if any.
     pub fn memory(&self) -> Option<usize> {
         (self.slot != Self::NO_MEMORY).then_some(self.slot as usize)
@@ -266,11 +271,6 @@ const ENERGY: f64 = 3.0;
 /// About what it takes to look whether a contact counts (ns).
 const COUNT: f64 = 2.0;
 
-/// Whether a contact is within the alert distance or bonded, or predicted and with an impulse.
-fn counts<S: Space>(contact: &Contact<S>) -> bool {
-    !contact.beyond || contact.impulse != S::Vector::zero()
-}
-
 impl<S: Space> Network<S> {
     /// Gives a contact another normal; what it remembers along the surface turns with it.
     pub(crate) fn turn(&mut self, contact: usize, normal: &S::Vector) {
@@ -331,12 +331,12 @@ impl<S: Space> Network<S> {
     /// those with an impulse.
     pub fn contact_count(&self, parallel: bool) -> usize {
         let contacts = &self.contacts;
-        count(parallel, contacts.len(), COUNT, |k| counts(&contacts[k]))
+        count(parallel, contacts.len(), COUNT, |k| contacts[k].counts())
     }
 
     /// Iterates over the contacts that [`Self::contact_count`] counts.
     pub fn counted_contacts(&self) -> impl Iterator<Item = &Contact<S>> {
-        self.contacts.iter().filter(|c| counts(c))
+        self.contacts.iter().filter(|c| c.counts())
     }
 
     /// Returns the bond of a contact, intact or broken.

@@ -1,14 +1,14 @@
 //! Positions of the shapes and contacts of a simulation.
 
-pub use fretwork_core::contact::BondState;
-use fretwork_core::contact::{Contact, Key};
-use fretwork_core::geometry::convex::{ConvexCollider, Core};
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+pub use crate::contact::BondState;
+use crate::contact::{Contact, Key};
+use crate::geometry::convex::{ConvexCollider, Core};
+use crate::geometry::space::Space;
+use crate::step::Simulation;
 
 /// Centre of a convex part (m).
 pub fn piece_centre<S: Space>(s: &Simulation<S>, piece: &ConvexCollider<S>) -> S::Vector {
-    fretwork_core::contact::detect::piece_centre(piece, &s.state.bodies)
+    crate::contact::detect::piece_centre(piece, &s.state.bodies)
 }
 
 /// Corners of a convex part (m): its outline in 2D, its faces in 3D.
@@ -41,7 +41,7 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
         return ends_of_piece(s, contact);
     };
     let ball = &s.shapes.balls[candidate];
-    let a = fretwork_core::contact::detect::centre(ball, &s.state.bodies);
+    let a = crate::contact::detect::centre(ball, &s.state.bodies);
     let length = match key.surface() {
         Some(_) => ball.radius + contact.gap,
         None => {

@@ -1,0 +1,115 @@
+//! A simulation of either dimension.
+
+use super::{RunControl, RunView};
+use crate::geometry::space::{Dim2, Dim3, Space};
+use crate::step::{InDimension, Simulation};
+use std::any::Any;
+use std::ops::{Deref, DerefMut};
+
+/// A simulation of either dimension. It dereferences to [`RunControl`], by which it is stepped, and [`RunView`], by which it is
+/// read; [`AnySimulation::get`] gives the simulation in its dimension.
+#[derive(Debug)]
+pub enum AnySimulation {
+    /// Two dimensions.
+    Plane(Box<Simulation<Dim2>>),
+    /// Three dimensions.
+    Space(Box<Simulation<Dim3>>),
+}
+
+/// Evaluates an expression with the simulation in its dimension: `in_dimension!(simulation, |s| f(s))`, where `simulation` is an
+/// [`AnySimulation`](crate::view::AnySimulation), or a reference to one. The expression is compiled for both dimensions.
+#[macro_export]
+macro_rules! in_dimension {
+    ($simulation:expr, |$s:ident| $body:expr) => {
+        match $simulation {
+            $crate::view::AnySimulation::Plane($s) => $body,
+            $crate::view::AnySimulation::Space($s) => $body,
+        }
+    };
+}
+
+impl AnySimulation {
+    /// The simulation for reading.
+    pub fn view(&self) -> &dyn RunView {
+        in_dimension!(self, |s| &**s)
+    }
+
+    /// The simulation in dimension `S`; `None` if it has the other.
+    pub fn get<S: Space>(&self) -> Option<&Simulation<S>> {
+        let simulation: &dyn Any = in_dimension!(self, |s| &**s);
+        simulation.downcast_ref()
+    }
+
+    /// The simulation in dimension `S`, to be changed; `None` if it has the other.
+    pub fn get_mut<S: Space>(&mut self) -> Option<&mut Simulation<S>> {
+        let simulation: &mut dyn Any = in_dimension!(self, |s| &mut **s);
+        simulation.downcast_mut()
+    }
+
+    /// Takes the simulation out in dimension `S`.
+    ///
+    /// # Errors
+    /// The simulation itself, if it has the other dimension.
+    pub fn into_dimension<S: Space>(self) -> Result<Simulation<S>, Self> {
+        if self.get::<S>().is_none() {
+            return Err(self);
+        }
+        let simulation: Box<dyn Any> = in_dimension!(self, |s| s);
+        match simulation.downcast() {
+            Ok(simulation) => Ok(*simulation),
+            Err(_) => unreachable!("it has this dimension"),
+        }
+    }
+}
+
+impl<S: Space> From<Simulation<S>> for AnySimulation {
+    fn from(simulation: Simulation<S>) -> Self {
+        let simulation: Box<dyn Any> = Box::new(simulation);
+        match simulation.downcast() {
+            Ok(plane) => Self::Plane(plane),
+            Err(other) => match other.downcast() {
+                Ok(space) => Self::Space(space),
+                Err(_) => unreachable!("there are two and three dimensions"),
+            },
+        }
+    }
+}
+
+impl Deref for AnySimulation {
+    type Target = dyn RunControl;
+    fn deref(&self) -> &Self::Target {
+        in_dimension!(self, |s| &**s)
+    }
+}
+
+impl DerefMut for AnySimulation {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        in_dimension!(self, |s| &mut **s)
+    }
+}
+
+impl<'a> InDimension<'a> {
+    /// The simulation for reading.
+    pub fn view(self) -> &'a dyn RunView {
+        match self {
+            Self::Dim2(s) => s,
+            Self::Dim3(s) => s,
+        }
+    }
+}
+
+impl<S: Space> Simulation<S> {
+    /// The simulation without its dimension, for reading.
+    pub fn view(&self) -> &dyn RunView {
+        InDimension::of(self).view()
+    }
+}
+
+impl<'a> From<&'a AnySimulation> for InDimension<'a> {
+    fn from(simulation: &'a AnySimulation) -> Self {
+        match simulation {
+            AnySimulation::Plane(s) => Self::Dim2(s),
+            AnySimulation::Space(s) => Self::Dim3(s),
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Stepping a simulation, and saving and restoring its state.
+
+use super::RunView;
+use crate::code::{CodeError, decode_first, encode};
+use crate::geometry::space::{Space, VectorLike};
+use crate::solve::local::LocalProblem;
+use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, StepReport};
+
+/// A simulation that is stepped. Its methods are those of [`Simulation`], where their errors are described.
+pub trait RunControl: RunView + Send {
+    /// One step; see [`Simulation::step`].
+    ///
+    /// # Errors
+    /// As [`Simulation::step`].
+    fn step(&mut self) -> Result<StepReport, StepError>;
+    /// Detects the contacts at the current positions, without an alert distance.
+    fn detect(&mut self);
+    /// The processes that are due act; see [`Simulation::between_steps`].
+    ///
+    /// # Errors
+    /// As [`Simulation::between_steps`].
+    fn between_steps(&mut self) -> Result<(), StepError>;
+    /// The processes end; see [`Simulation::end`].
+    ///
+    /// # Errors
+    /// As [`Simulation::end`].
+    fn end(&mut self) -> Result<(), StepError>;
+    /// Whether phases or processes end the run before its time.
+    fn finished(&self) -> bool;
+    /// Whether the current phase is repeated later.
+    fn phase_recurs(&self) -> bool;
+    /// Whether a surface was worn through.
+    ///
+    /// # Errors
+    /// It was.
+    fn check_worn_through(&self) -> Result<(), StepError>;
+    /// How it is computed, to be changed.
+    fn options_mut(&mut self) -> &mut Options;
+    /// Goes on with another step (s); see [`Simulation::change_step`].
+    fn change_step(&mut self, h: f64);
+    /// Applies an impulse to a body and adds its work to the ledger; see [`Simulation::apply_impulse`].
+    fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]);
+    /// The problem of the last step, solved; see [`Simulation::local_problem`].
+    fn local_problem(&self) -> Option<LocalProblem>;
+
+    /// The state as bytes.
+    ///
+    /// # Errors
+    /// It cannot be put into bytes.
+    fn save(&self) -> Result<Vec<u8>, CodeError>;
+    /// Goes on from the state that [`RunControl::save`] put at the start of the bytes; returns the bytes after it, or `None` if
+    /// the state belongs to another case. See [`Simulation::restore`].
+    ///
+    /// # Errors
+    /// The bytes are of no state.
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError>;
+    /// The states of the processes.
+    ///
+    /// # Errors
+    /// One cannot be put into bytes.
+    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError>;
+    /// Restores the states of the processes.
+    ///
+    /// # Errors
+    /// They are of other processes.
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
+    /// Has `trial` make steps, with options that it may change, and restores the state before it; see [`Simulation::repeat`].
+    ///
+    /// # Errors
+    /// As [`Simulation::repeat`].
+    fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError>;
+}
+
+impl<S: Space> RunControl for Simulation<S> {
+    fn step(&mut self) -> Result<StepReport, StepError> {
+        self.step()
+    }
+    fn detect(&mut self) {
+        self.detect();
+    }
+    fn between_steps(&mut self) -> Result<(), StepError> {
+        self.between_steps()
+    }
+    fn end(&mut self) -> Result<(), StepError> {
+        self.end()
+    }
+    fn finished(&self) -> bool {
+        self.finished()
+    }
+    fn phase_recurs(&self) -> bool {
+        self.phase_recurs()
+    }
+    fn check_worn_through(&self) -> Result<(), StepError> {
+        self.check_worn_through()
+    }
+    fn options_mut(&mut self) -> &mut Options {
+        &mut self.options
+    }
+    fn change_step(&mut self, h: f64) {
+        self.change_step(h);
+    }
+    fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]) {
+        let angular = match S::D {
+            2 => S::Spin::from_slice(&angular[2..]),
+            _ => S::Spin::from_slice(&angular),
+        };
+        self.apply_impulse(body, &S::Vector::from_slice(&impulse), &angular);
+    }
+    fn local_problem(&self) -> Option<LocalProblem> {
+        self.local_problem()
+    }
+
+    fn save(&self) -> Result<Vec<u8>, CodeError> {
+        encode(&self.state)
+    }
+    fn restore<'a>(&mut self, bytes: &'a [u8]) -> Result<Option<&'a [u8]>, CodeError> {
+        let (state, rest) = decode_first(bytes)?;
+        Ok(self.restore(state).then_some(rest))
+    }
+    fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+        self.save_processes()
+    }
+    fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+        self.restore_processes(from)
+    }
+    fn repeat(&mut self, trial: &mut dyn FnMut(&mut dyn RunControl)) -> Result<(), RepeatError> {
+        self.repeat(|s| trial(s))
+    }
+}

@@ -1,0 +1,170 @@
+//! What a view shows: plain data, in three components.
+
+use crate::bodies::{Carrier, Driven};
+use crate::contact::{BondState, Key};
+
+/// Columns of the bodies, grains first, then first bodies. In 2D masses are per metre of depth.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyColumns<'a> {
+    /// Stable identities.
+    pub id: &'a [u64],
+    /// Masses (kg).
+    pub mass: &'a [f64],
+    /// Moments of inertia (kg m^2); the mean where they differ by axis.
+    pub inertia: &'a [f64],
+    /// Inverse moments of inertia, zero where rotation is imposed (1/(kg m^2)).
+    pub inverse_inertia: &'a [f64],
+    /// Length that scales spins to velocities: the radius of a grain (m).
+    pub length: &'a [f64],
+    /// Whether each body has been removed.
+    pub removed: &'a [bool],
+    /// The driven first bodies.
+    pub driven: &'a [Driven],
+    /// Which bodies stand for contactors of dynamical systems; empty where there are no systems.
+    pub carriers: &'a [Option<Carrier>],
+}
+
+impl BodyColumns<'_> {
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    /// The contactor that a body stands for, if it does.
+    pub fn carrier(&self, body: usize) -> Option<Carrier> {
+        self.carriers.get(body).copied().flatten()
+    }
+
+    /// The driven first body of a name.
+    pub fn driven_named(&self, name: &str) -> Option<&Driven> {
+        self.driven.iter().find(|d| d.name == name)
+    }
+}
+
+/// Where a body is and how it moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Centre of mass (m).
+    pub position: [f64; 3],
+    /// Orientation: an angle (rad) and zeros in the plane, a unit quaternion (w, x, y, z) in space.
+    pub rotation: [f64; 4],
+    /// Velocity of the centre of mass (m/s).
+    pub velocity: [f64; 3],
+    /// Angular velocity (rad/s).
+    pub spin: [f64; 3],
+}
+
+/// A ball of a body, or a point of one that deforms, which has the radius zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BallView {
+    /// Index of its body.
+    pub body: u32,
+    /// Index of its material.
+    pub material: u16,
+    /// Radius (m).
+    pub radius: f64,
+    /// Centre (m).
+    pub centre: [f64; 3],
+    /// Centre in the frame of the body (m).
+    pub offset: [f64; 3],
+    /// The piece of a surface that a point stands for, along its outward normal (m^2; m in 2D); zero for balls.
+    pub area: [f64; 3],
+}
+
+/// A convex piece of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PieceView {
+    /// Index of its body.
+    pub body: u32,
+    /// Index of its material.
+    pub material: u16,
+    /// Radius of the ball (2D: disk) of the same volume (m).
+    pub size: f64,
+    /// Rounding radius (m).
+    pub rounding: f64,
+    /// Its centre (m).
+    pub centre: [f64; 3],
+    /// Its centre in the frame of the body (m).
+    pub offset: [f64; 3],
+    /// Corners of its core about its centre, in the axes of the body (m).
+    pub corners: Vec<[f64; 3]>,
+    /// Corners of each face in space, anticlockwise from outside; empty in the plane.
+    pub faces: Vec<Vec<u32>>,
+}
+
+/// A surface of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceView {
+    /// Index of its body.
+    pub body: u32,
+    /// Index of its material.
+    pub material: u16,
+    /// Its origin in the frame of the body (m).
+    pub offset: [f64; 3],
+}
+
+/// A line of a shape: of a surface, or around a piece or one of its faces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Index of the body.
+    pub body: u32,
+    /// Its points (m).
+    pub points: Vec<[f64; 3]>,
+}
+
+/// A surface that recedes by wear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScarView<'a> {
+    /// Name of its body.
+    pub name: &'a str,
+    /// Index of the surface.
+    pub surface: usize,
+    /// Depth at which it is worn through (m).
+    pub thickness: f64,
+    /// Number of its vertices.
+    pub vertices: usize,
+    /// Worn volume (m^3; m^2 in 2D).
+    pub volume: f64,
+    /// Greatest depth (m).
+    pub deepest: f64,
+}
+
+/// A contact at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactView {
+    /// Its name in the scene.
+    pub key: Key,
+    /// The bodies: candidate, antagonist.
+    pub bodies: [u32; 2],
+    /// Place of its interface in the case.
+    pub interface: u16,
+    /// Where it touches, seen from the candidate (m).
+    pub point: [f64; 3],
+    /// Points of contact seen from the centres of mass of the bodies (m).
+    pub arms: [[f64; 3]; 2],
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: [f64; 3],
+    /// Distance at detection (m), positive when open.
+    pub gap: f64,
+    /// Reduced radius (m); zero where it is not known.
+    pub radius: f64,
+    /// Mean force of the last step on the candidate (N; N/m in 2D); the antagonist has its opposite.
+    pub force: [f64; 3],
+    /// Its part along the normal (N; N/m in 2D), positive in compression.
+    pub normal_force: f64,
+    /// Whether friction is at its bound.
+    pub slides: bool,
+    /// Whether its forces pass through the centres of both bodies.
+    pub central: bool,
+    /// Time at which it formed (s).
+    pub formed_at: f64,
+    /// The state of its bond.
+    pub bond: BondState,
+    /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
+    pub counts: bool,
+}
