@@ -110,7 +110,7 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
         uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,
     };
-    let drawn = write_outputs(&out, &observers.figures(&end));
+    let drawn = write_outputs(&out, &observers.figures(&end), end.table);
     drawn.unwrap_or_else(|e| panic!("{e}"));
     // Slice 0 is all of the time.
     let mut profile = read(&out.join("layer.csv"));

@@ -9,7 +9,7 @@
 //! picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
-use fretwork::report::{Axis, Chart, DrawChart, Series};
+use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::solve::local::solver::{self, Limits, Method, Outcome};
 use fretwork::solve::local::{Elimination, LocalProblem, Reduction, scale_free};
 use std::collections::BTreeMap;
@@ -366,6 +366,6 @@ fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>
         });
     }
     chart.y_range = Some((0.0, 1.02));
-    chart.draw(path)?;
+    draw_panels(&[chart], 1, path)?;
     Ok(())
 }

@@ -4,7 +4,7 @@ use crate::comparison::{Comparison, Failure, Inputs, Results, folder, markdown};
 use crate::published::Published;
 use crate::row::{CLOSE, Row, WIDE};
 use crate::table::Table;
-use fretwork::report::{Chart, DrawChart};
+use fretwork::report::{Chart, draw_panels};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -74,7 +74,8 @@ impl Section {
                 size_px: SIZE,
                 ..chart.clone()
             };
-            chart.draw(&root.join("docs/figures").join(file))?;
+            let path = root.join("docs/figures").join(file);
+            draw_panels(&[chart], 1, &path)?;
         }
         Ok(())
     }

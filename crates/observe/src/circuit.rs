@@ -289,9 +289,8 @@ impl<S: Space> Observer<S> for CircuitAccount {
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let summary = self.summary(end.simulation, end.wall);
-        let draw =
-            |c: CircuitSummary| figures::circuit::charts(end.title, end.table, c.window, S::D);
-        summary.map(draw).into_iter().collect()
+        let figure = |c: CircuitSummary| figures::circuit::charts(c.window);
+        summary.map(figure).into_iter().collect()
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

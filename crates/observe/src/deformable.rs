@@ -2,7 +2,7 @@
 //! and the tractions along what touches.
 
 use super::chart::{Axis, Chart, Series, Style};
-use super::map::of_contact;
+use super::figures::contact_map;
 use super::nearest_places::NearestPlaces;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
@@ -177,31 +177,21 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let newton = if S::D == 2 { "N/m" } else { "N" };
         let mut charts = Vec::new();
         for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 2) {
             charts.push(traction_chart(end.simulation, k, name));
         }
         for name in &self.holders {
-            let (displacement, force) = (end.table.column(name), end.table.column(&force(name)));
-            let moves = displacement.iter().any(|x| *x != displacement[0]);
-            if moves {
-                let (x, y) = (Axis::new("displacement", "m"), Axis::new("force", newton));
-                let points = displacement.into_iter().zip(force).collect();
-                let title = format!("Force of the holder against displacement, {name}");
-                charts.push(Chart::new(title, x, y).with(Series::new("", points)));
-            }
+            let (x, y) = (Axis::of_rows("displacement"), Axis::of_rows("force"));
+            let title = format!("Force of the holder against displacement, {name}");
+            let series = Series::rows("", name, force(name));
+            charts.push(Chart::new(title, x, y).with(series));
         }
-        charts
-            .iter_mut()
-            .for_each(|c| c.subtitle = Some(end.title.to_owned()));
-        let mut out = vec![Output::charts("deformable.png".to_owned(), charts, 2)];
+        let mut out = vec![Output::figure("deformable", charts, 2)];
         for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 3) {
             if let Some(state) = SurfaceState::of(end.simulation, k) {
-                out.push(Output::Maps {
-                    file: format!("{name}_slip.png"),
-                    maps: of_contact(name, &state, has_tractions(end.simulation, k), end.title),
-                });
+                let maps = contact_map::charts(name, &state, has_tractions(end.simulation, k));
+                out.push(Output::figure(format!("{name}_slip"), maps, 2));
             }
         }
         out
@@ -246,12 +236,12 @@ impl<S: Space> Observer<S> for Deformable {
         // What sticks and slips, and the pressure.
         let maps = systems.flat_map(|(k, name)| {
             let state = SurfaceState::of(s, k);
-            let maps = state.map(|state| of_contact(name, &state, has_tractions(s, k), ""));
+            let maps = state.map(|state| contact_map::charts(name, &state, has_tractions(s, k)));
             maps.into_iter().flatten().take(2)
         });
         vec![Picture {
             name: "slip",
-            shows: Shows::Maps(maps.collect()),
+            shows: Shows::Charts(maps.collect()),
         }]
     }
 

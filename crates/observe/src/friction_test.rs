@@ -176,7 +176,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let known = &end.uncertainty.friction_coefficient;
-        figures::friction_test(end.title, end.table, &self.state.cycles, known, S::D)
+        figures::friction_test(&self.state.cycles, known)
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

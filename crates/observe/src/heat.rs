@@ -4,7 +4,8 @@ mod checks;
 
 pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
 
-use super::chart::{Axis, Chart, Series};
+use super::chart::{Axis, Series};
+use super::figures::history;
 use super::observer::{Observer, RunEnd, put_measures};
 use super::output::Output;
 use super::picture::{Picture, Shows};
@@ -313,39 +314,28 @@ impl<S: Space> Observer<S> for HeatObserver {
         heat.first_bodies.iter().filter_map(surface).collect()
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let table = end.table;
-        let time = table.column("time");
-        let over_time = |name: &str| -> Vec<(f64, f64)> {
-            let values = table.column(name);
-            let pairs = time.iter().copied().zip(values);
-            pairs.filter(|(_, y)| y.is_finite()).collect()
-        };
-        let chart = |heading: &str, y: &str, unit: &str| {
-            let mut chart = Chart::new(heading, Axis::new("time", "s"), Axis::new(y, unit));
-            chart.subtitle = Some(end.title.to_owned());
-            chart
-        };
-        let mut temperatures = chart("Temperatures", "temperature", "K")
-            .with(Series::new("highest", over_time("temperature_max")))
-            .with(Series::new("mean of grains", over_time("temperature_mean")));
-        let mut flows = chart(
-            "Heat into first bodies",
-            "heat flow",
-            if self.flat { "W/m" } else { "W" },
-        );
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        let all = [
+            ("highest", "temperature_max"),
+            ("mean of grains", "temperature_mean"),
+        ];
+        let mut temperatures = history("Temperatures", Axis::of_rows("temperature"), &all);
+        let mut flows = history::<&str>("Heat into first bodies", Axis::of_rows("heat flow"), &[]);
         for name in &self.names {
-            let of = |quantity: &str| over_time(&format!("{name}_{quantity}"));
-            temperatures = temperatures.with(Series::new(name.clone(), of("temperature")));
-            flows = flows.with(Series::new(name.clone(), of("heat_flow")));
+            let of = |part: &str| Series::rows(name, "time", format!("{name}_{part}"));
+            temperatures.series.push(of("temperature"));
+            flows.series.push(of("heat_flow"));
         }
         let mut panels = vec![temperatures, flows];
         if self.circuit {
-            let unit = if self.flat { "ohm m" } else { "ohm" };
-            let resistance = chart("Contact resistance", "resistance", unit);
-            panels.push(resistance.with(Series::new(String::new(), over_time("resistance"))));
+            let resistance = Axis::of_rows("resistance");
+            panels.push(history(
+                "Contact resistance",
+                resistance,
+                &[("", "resistance")],
+            ));
         }
-        vec![Output::charts("heat.png".into(), panels, 1)]
+        vec![Output::figure("heat", panels, 1)]
     }
 
     fn file_names(&self) -> Vec<String> {

@@ -41,8 +41,9 @@ impl<S: Space> Observer<S> for CycleJumps {
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let s = end.simulation;
         let jumps = s.process::<Jumps>().into_iter();
-        let draw = |j: &Jumps| figures::jump::charts(end.title, &j.outcome(s), S::D);
-        jumps.map(draw).collect()
+        jumps
+            .map(|j| figures::jump::charts(&j.outcome(s), S::D))
+            .collect()
     }
 
     fn set_end(&mut self, _: f64, later: bool) -> Result<(), &'static str> {

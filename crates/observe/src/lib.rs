@@ -24,7 +24,6 @@ pub mod heat;
 pub mod jump;
 pub mod layer;
 pub mod loops;
-pub mod map;
 pub mod measure;
 pub mod mesh_fields;
 pub mod nearest_places;

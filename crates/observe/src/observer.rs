@@ -142,7 +142,8 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// Files and figures that it writes at the end of a run if the case asks for figures (`output.figures`).
+    /// Figures of the run, and tables that are written beside them if the case asks for figures (`output.figures`). Figures are
+    /// also asked for at the start of a run: its report has them wherever the run ends.
     fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         Vec::new()
     }
@@ -318,9 +319,15 @@ impl<S: Space> Observers<S> {
         self.list.iter().flat_map(|o| o.files(end)).collect()
     }
 
-    /// See [`Observer::figures`].
+    /// See [`Observer::figures`]; the title of the case heads every figure.
     pub fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        self.list.iter().flat_map(|o| o.figures(end)).collect()
+        let mut out: Vec<Output> = self.list.iter().flat_map(|o| o.figures(end)).collect();
+        for output in &mut out {
+            if let Output::Figure(figure) = output {
+                figure.charts.iter_mut().for_each(|c| c.head(end.title));
+            }
+        }
+        out
     }
 
     /// What each carries, see [`Observer::save`].

@@ -1,7 +1,15 @@
 //! What an observer shows in pictures of a moment, as data: who draws it is above this layer.
 
-use super::map::Map;
+use super::chart::Chart;
 use serde::{Deserialize, Serialize};
+
+/// Colours of what sticks, of what slips, and of what carries no force (red, green, blue). The first two differ in lightness
+/// too, and are told apart with every deficiency of colour vision.
+pub const STICKS: (u8, u8, u8) = (0, 90, 170);
+/// See [`STICKS`].
+pub const SLIPS: (u8, u8, u8) = (250, 225, 40);
+/// See [`STICKS`].
+pub const OPEN: (u8, u8, u8) = (231, 232, 235);
 
 /// What the colour of a grain says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -39,8 +47,8 @@ pub enum Shows {
     Chains(Vec<[u32; 2]>),
     /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces. In the plane only.
     Stress,
-    /// Maps of contacts, on a page of their own.
-    Maps(Vec<Map>),
+    /// Charts, on a page of their own.
+    Charts(Vec<Chart>),
     /// A value of each ball.
     Values {
         /// The values.

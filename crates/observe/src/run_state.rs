@@ -253,9 +253,12 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let entries = end.simulation.state.energy.entries();
+        let entries = entries.into_iter().map(|(name, ..)| name);
+        let joule = if S::D == 2 { "J/m" } else { "J" };
         vec![
-            figures::damage_ratio(end.title, end.table, &end.uncertainty.damage_ratio),
-            figures::energy_balance(end.title, end.table, &end.uncertainty.friction_energy, S::D),
+            figures::damage_ratio(&end.uncertainty.damage_ratio),
+            figures::energy_balance(entries, &end.uncertainty.friction_energy, joule),
         ]
     }
 
@@ -394,11 +397,6 @@ impl<S: Space> Observer<S> for DrivenBodies {
             .as_ref()
             .map(|(body, axis)| (body.as_str(), *axis));
         let drives = figures::drives(end.simulation, test);
-        vec![figures::force_displacement(
-            end.title,
-            end.table,
-            &drives,
-            S::D,
-        )]
+        vec![figures::force_displacement(&drives)]
     }
 }

@@ -144,7 +144,7 @@ impl<S: Space> Observer<S> for Scars {
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        figures::scars::charts(end.title, end.simulation)
+        figures::scars::charts(end.simulation)
     }
 }
 

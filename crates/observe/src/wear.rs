@@ -1,8 +1,11 @@
 //! Wear of first and third bodies, and mean flows of matter, from the start of the friction test on: what came before it, placing grains and pressing them
 //! together, is no flow of the contact.
 
+use super::chart::Axis;
+use super::figures::history;
 use super::first_bodies;
 use super::observer::{Observer, RunEnd};
+use super::output::Output;
 use super::statistics::Column;
 use super::summary::{self, Summary};
 use fretwork_core::code::{CodeError, decode, encode};
@@ -97,6 +100,20 @@ impl<S: Space> Observer<S> for Wear {
             load_path: None,
             bodies: first_bodies::wear(s),
         };
+    }
+
+    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+        let own = end.simulation.state.scars.iter();
+        let own = own.map(|scar| (scar.name.as_str(), format!("{}_worn", scar.name)));
+        let all = [
+            ("first bodies", "worn_first"),
+            ("between grains", "worn_third"),
+        ];
+        let all = all.map(|(label, column)| (label, column.to_owned()));
+        let series: Vec<(&str, String)> = all.into_iter().chain(own).collect();
+        let chart = history("Worn volume", Axis::of_rows("worn volume V"), &series)
+            .note("What the wear laws removed since the start.");
+        vec![Output::figure("worn_volume", [chart], 1)]
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

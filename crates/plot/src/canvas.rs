@@ -56,9 +56,6 @@ pub enum ReportError {
         /// Whether the axis is logarithmic.
         log: bool,
     },
-    /// The grid of a chart could not be drawn.
-    #[error("cannot draw the grid of the chart ({0}); check the ranges of its axes")]
-    Grid(String),
     /// The built-in fonts cannot be read.
     #[error("the fonts built into this program cannot be read; build it again from clean sources")]
     Font,
@@ -70,6 +67,26 @@ pub(super) type Rgb = [u8; 3];
 pub(super) const WHITE: Rgb = [255, 255, 255];
 pub(super) const INK: Rgb = [28, 30, 34];
 pub(super) const SOFT_INK: Rgb = [95, 99, 106];
+
+/// Width of a page in layout units. Text is 28 units high: 9 pt if the page is printed 16 cm wide.
+pub(super) const PAGE: f32 = 1400.0;
+/// Height of text in layout units.
+pub(super) const TEXT: f32 = 28.0;
+
+/// Wraps text into lines of a width, broken at spaces.
+pub(super) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if font::text_width(&format!("{line} {word}"), size) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
 
 /// Interpolates between two colours, with `t` in 0..1.
 pub(super) fn mix(a: Rgb, b: Rgb, t: f64) -> Rgb {
@@ -286,22 +303,22 @@ impl Canvas {
     }
 
     /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed fast, some ten times
-    /// as fast as tiny-skia's own writer.
-    pub fn save(&self, path: &Path) -> Result<(), ReportError> {
+    /// as fast as tiny-skia's own writer. What it shows stands in the file as the text `Description`, unless it is empty.
+    pub fn save(&self, path: &Path, shows: &str) -> Result<(), ReportError> {
         match notice::current() {
-            Some(text) => notice::banded(self, &text)?.write_file(path),
-            None => self.write_file(path),
+            Some(text) => notice::banded(self, &text)?.write_file(path, shows),
+            None => self.write_file(path, shows),
         }
     }
 
-    fn write_file(&self, path: &Path) -> Result<(), ReportError> {
+    fn write_file(&self, path: &Path, shows: &str) -> Result<(), ReportError> {
         let size = (self.pixmap.width(), self.pixmap.height());
         let pixels = self.pixmap.data().as_chunks::<4>().0;
         let mut rgb = vec![0; 3 * pixels.len()];
         for (to, from) in rgb.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
             *to = [from[0], from[1], from[2]];
         }
-        write_png(path, size, &rgb).map_err(|e| ReportError::Write {
+        write_png(path, size, &rgb, shows).map_err(|e| ReportError::Write {
             path: path.to_owned(),
             reason: reason(&e),
         })
@@ -309,7 +326,12 @@ impl Canvas {
 }
 
 /// Rows of red, green and blue bytes as a PNG file.
-fn write_png(path: &Path, size: (u32, u32), rgb: &[u8]) -> Result<(), png::EncodingError> {
+fn write_png(
+    path: &Path,
+    size: (u32, u32),
+    rgb: &[u8],
+    shows: &str,
+) -> Result<(), png::EncodingError> {
     let file = BufWriter::new(File::create(path)?);
     let mut encoder = png::Encoder::new(file, size.0, size.1);
     encoder.set_color(png::ColorType::Rgb);
@@ -317,6 +339,9 @@ fn write_png(path: &Path, size: (u32, u32), rgb: &[u8]) -> Result<(), png::Encod
     encoder.set_compression(png::Compression::Fast);
     // Differences between rows: choosing among all filters for each row takes longer than the rest and saves a tenth of the size.
     encoder.set_filter(png::Filter::Up);
+    if !shows.is_empty() {
+        encoder.add_itxt_chunk("Description".to_owned(), shows.to_owned())?;
+    }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(rgb)?;
     writer.finish()
@@ -371,7 +396,7 @@ mod tests {
     #[test]
     fn unwritable_path_is_named() {
         let path = Path::new("no-such-folder/picture.png");
-        let error = Canvas::new(10, 10).unwrap().save(path).unwrap_err();
+        let error = Canvas::new(10, 10).unwrap().save(path, "").unwrap_err();
         assert!(error.to_string().contains("no-such-folder"), "{error}");
     }
 

@@ -4,8 +4,7 @@ use std::path::Path;
 
 use tiny_skia::PathBuilder;
 
-use super::canvas::{Canvas, INK, ReportError, Rgb, SOFT_INK, mix};
-use super::chart::{PAGE, TEXT};
+use super::canvas::{Canvas, INK, PAGE, ReportError, Rgb, SOFT_INK, TEXT, mix};
 use super::font::{Anchor, TextStyle, text_width};
 use super::furniture::{self, caption_lines, centroid, push_bar};
 use super::paint::{self, Coloured, DAMAGED, SOUND, Scale};
@@ -73,17 +72,6 @@ pub struct Link {
     pub width: f64,
 }
 
-/// An arrow for a load or a motion.
-#[derive(Clone, Debug)]
-pub struct Arrow {
-    /// Tail, metres.
-    pub from: [f64; 2],
-    /// Tip, metres.
-    pub to: [f64; 2],
-    /// Text beside the tail; empty for none.
-    pub label: String,
-}
-
 /// A picture of the scene at one instant.
 #[derive(Clone, Debug)]
 pub struct Frame {
@@ -102,8 +90,6 @@ pub struct Frame {
     pub links: Vec<Link>,
     /// What sticks and slips, drawn over all others.
     pub zones: Vec<ZoneLine>,
-    /// Loads and motions.
-    pub arrows: Vec<Arrow>,
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
     pub scale: Option<Scale>,
     /// The 3D scene, drawn instead of bodies and disks.
@@ -206,7 +192,7 @@ impl Frame {
         }
         let under = top + field_height;
         if let Some(scale) = &self.scale {
-            paint::scale(&mut page, scale, [side, under + 40.0 * u], 360.0, u)?;
+            paint::colour_bar(&mut page, scale, [side, under + 40.0 * u], 360.0, u)?;
         }
         let closest_point = under + bar + 38.0 * u;
         let end = furniture::legend(&mut page, &self.links, [side, closest_point], u);
@@ -218,7 +204,7 @@ impl Frame {
             closest_point
         };
         furniture::scale_bar(&mut page, [right, row], scale, u);
-        page.save(path)
+        page.save(path, "")
     }
 
     fn draw_bodies(&self, field: &mut Canvas, map: &Map, u: f32) {
@@ -331,10 +317,6 @@ impl Frame {
                 field.text(&body.label, [x, y + 9.0 * u], &name.halo(STEEL));
             }
         }
-        for arrow in &self.arrows {
-            let (from, to) = (map.point(arrow.from), map.point(arrow.to));
-            furniture::arrow(field, from, to, &arrow.label, u);
-        }
     }
 }
 
@@ -399,7 +381,6 @@ mod tests {
             disks: disks.to_vec(),
             links: links.to_vec(),
             zones: Vec::new(),
-            arrows: Vec::new(),
             scale: None,
             scene: None,
             width_px: 400,

@@ -1,9 +1,8 @@
-//! Elements around the field of a picture: legend, scale bar, arrows, caption.
+//! Elements around the field of a picture: legend, scale bar, caption.
 
 use tiny_skia::PathBuilder;
 
-use super::canvas::{Canvas, INK, WHITE, mix};
-use super::chart::TEXT;
+use super::canvas::{Canvas, INK, TEXT, mix};
 use super::font::{Anchor, TextStyle, text_width};
 use super::frame::{BROKEN, CHAIN, Link, LinkState, PLAIN};
 use super::paint::{DAMAGED, SOUND};
@@ -88,37 +87,6 @@ fn round_length(longest: f64) -> (f64, String) {
     };
     let digits = (value * 1e3).round() / 1e3;
     (metres, format!("{digits} {unit}"))
-}
-
-/// Draws an arrow with a white rim, and its label beside the tail.
-pub(super) fn arrow(field: &mut Canvas, from: [f32; 2], to: [f32; 2], label: &str, u: f32) {
-    let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
-    let length = dx.hypot(dy);
-    if !(length > 0.0 && length.is_finite()) {
-        return;
-    }
-    let (x, y) = (dx / length, dy / length);
-    let head = (24.0 * u).min(0.6 * length);
-    let neck = [to[0] - head * x, to[1] - head * y];
-    let wing = |s: f32| [neck[0] - s * 0.42 * head * y, neck[1] + s * 0.42 * head * x];
-    let tip = [to, wing(1.0), wing(-1.0)];
-    field.stroke(&[from, neck], false, 9.0 * u, WHITE, None);
-    field.stroke(&tip, true, 4.0 * u, WHITE, None);
-    field.stroke(&[from, neck], false, 4.5 * u, INK, None);
-    field.polygon(&tip, INK);
-    let em = TEXT * u;
-    // Beside a steep arrow, behind the tail of a flat one.
-    let (at, anchor) = if y.abs() > x.abs() {
-        (
-            [from[0] + 14.0 * u, from[1] + 0.9 * em * y.signum().max(0.4)],
-            Anchor::Start,
-        )
-    } else {
-        let anchor = if x > 0.0 { Anchor::End } else { Anchor::Start };
-        ([from[0] - x * 12.0 * u, from[1] + 0.34 * em], anchor)
-    };
-    let style = TextStyle::new(em, INK).anchored(anchor).halo(WHITE);
-    field.text(label, at, &style);
 }
 
 /// Adds a straight bar to a path. All bars have the same winding, so that crossing ones do not cut holes into

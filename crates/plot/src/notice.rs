@@ -42,8 +42,8 @@ pub(super) fn banded(picture: &Canvas, text: &str) -> Result<Canvas, ReportError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::DrawChart;
     use crate::canvas::png_size;
+    use crate::draw_panels;
     use fretwork_observe::chart::{Axis, Chart, Series};
 
     #[test]
@@ -74,10 +74,10 @@ mod tests {
             .series
             .push(Series::new("b", vec![(0.0, 0.0), (1.0, 1.0)]));
         noted(Some("NOT TRUSTWORTHY".to_owned()), || {
-            chart.draw(&noted_file)
+            draw_panels(std::slice::from_ref(&chart), 1, &noted_file)
         })
         .unwrap();
-        chart.draw(&plain).unwrap();
+        draw_panels(&[chart], 1, &plain).unwrap();
         let (one, other) = (png_size(&plain), png_size(&noted_file));
         assert!(one.0 == other.0 && one.1 < other.1, "{one:?} {other:?}");
         for path in [plain, noted_file] {

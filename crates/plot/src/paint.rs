@@ -1,7 +1,6 @@
 //! Colours of grains.
 
-use super::canvas::{Canvas, INK, ReportError, Rgb, mix};
-use super::chart::TEXT;
+use super::canvas::{Canvas, INK, ReportError, Rgb, TEXT, mix};
 use super::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
 use fretwork_observe::picture::Paint;
@@ -70,7 +69,7 @@ fn value(v: f64) -> Rgb {
 }
 
 /// Draws a colour bar of a length in layout units with its ticks and name, from a point on the middle of the bar; the ticks are below.
-pub(super) fn scale(
+pub(super) fn colour_bar(
     page: &mut Canvas,
     scale: &Scale,
     [left, middle]: [f32; 2],
@@ -79,7 +78,7 @@ pub(super) fn scale(
 ) -> Result<(), ReportError> {
     let em = 0.9 * TEXT * u;
     let axis = Axis::new(scale.label.clone(), scale.unit.clone());
-    let fitted = super::axis::Scale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
+    let fitted = super::chart::Scale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
     let (length, thick) = ((length * u).round(), (22.0 * u).round());
     let (left, top) = ((left + 0.5 * em).round(), (middle - thick / 2.0).round());
     for i in 0..length as i32 {
@@ -93,7 +92,7 @@ pub(super) fn scale(
     page.frame([left, top, length, thick], 1.3 * u, INK);
     let style = TextStyle::new(em, INK);
     for (at, label) in &fitted.ticks {
-        let x = left + length * ((at - fitted.range.0) / (fitted.range.1 - fitted.range.0)) as f32;
+        let x = left + length * fitted.share(*at) as f32;
         page.rect([x - 0.8 * u, top + thick, 1.6 * u, 7.0 * u], INK);
         let base = top + thick + 7.0 * u + em;
         page.text(label, [x, base], &style.anchored(Anchor::Middle));
@@ -106,27 +105,12 @@ pub(super) fn scale(
     Ok(())
 }
 
-/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a colour bar.
-pub fn round_top(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
-    let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
-    let least = steps.iter().find(|s| **s * power >= value * (1.0 - 1e-9));
-    least.copied().unwrap_or(10.0) * power
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn light(c: Rgb) -> u32 {
         c.iter().map(|x| u32::from(*x)).sum()
-    }
-
-    #[test]
-    fn colour_bars_end_at_round_values() {
-        assert_eq!(round_top(0.2), 0.2);
-        assert!((round_top(0.0131) / 0.015 - 1.0).abs() < 1e-12);
-        assert!((round_top(880.0) / 1000.0 - 1.0).abs() < 1e-12);
     }
 
     #[test]

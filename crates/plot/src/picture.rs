@@ -258,7 +258,6 @@ impl Camera {
             disks,
             links,
             zones: along,
-            arrows: Vec::new(),
             scale,
             scene,
             width_px: self.width,

@@ -1,14 +1,17 @@
 //! What sticks and slips along surfaces: bands over a picture, and their legend.
 
-use super::canvas::{Canvas, INK, Rgb};
-use super::chart::TEXT;
+use super::canvas::{Canvas, INK, Rgb, TEXT};
 use super::font::{TextStyle, text_width};
 use super::furniture::push_bar;
+use fretwork_observe::picture;
 use tiny_skia::PathBuilder;
 
-/// Blue and yellow differ in lightness too, and are told apart with every deficiency of colour vision.
-pub(super) const STICKS: Rgb = [0, 90, 170];
-pub(super) const SLIPS: Rgb = [250, 225, 40];
+const STICKS: Rgb = rgb(picture::STICKS);
+const SLIPS: Rgb = rgb(picture::SLIPS);
+
+const fn rgb((r, g, b): (u8, u8, u8)) -> Rgb {
+    [r, g, b]
+}
 
 /// A part of the surface of a deformable body, with the body on its right.
 #[derive(Clone, Copy, Debug)]

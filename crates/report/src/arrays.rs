@@ -39,6 +39,8 @@ struct Head {
 pub(crate) struct Arrays {
     heads: Vec<Head>,
     bytes: Vec<u8>,
+    /// Names of arrays by the bits of their values, of those that were added to be found again.
+    known: HashMap<Vec<u64>, String>,
 }
 
 impl Arrays {
@@ -85,6 +87,24 @@ impl Arrays {
                 .bytes
                 .extend(values.iter().flat_map(|v| v.to_le_bytes())),
         }
+    }
+
+    /// Adds an array of numbers, unless the same is there; returns its name.
+    pub fn number(&mut self, values: &[f64]) -> String {
+        let bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
+        if let Some(name) = self.known.get(&bits) {
+            return name.clone();
+        }
+        let name = format!("#{}", self.known.len());
+        self.push_known(&name, Kind::F32, values);
+        name
+    }
+
+    /// Adds an array that [`Self::number`] finds again.
+    pub fn push_known(&mut self, name: &str, kind: Kind, values: &[f64]) {
+        self.push(name, kind, values);
+        let bits = values.iter().map(|v| v.to_bits()).collect();
+        self.known.entry(bits).or_insert_with(|| name.to_owned());
     }
 
     /// Leaves out the arrays that are the same in another set, bit by bit.

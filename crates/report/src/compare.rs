@@ -1,10 +1,12 @@
 //! Several runs side by side on one page.
 
+use crate::arrays::Arrays;
 use crate::folder::RunFolder;
 use crate::page::{Page, difference_table, escape, footer, item, section, value};
 use crate::results::{self, ResultRow};
 use crate::series::Series;
 use crate::{ReportError, figures, write};
+use fretwork_observe::chart::Figure;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -46,6 +48,10 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
         .zip(&mut gaps)
         .map(|(run, gaps)| Series::read(run, ROWS, gaps))
         .collect();
+    let described = runs.iter().zip(&series).zip(&mut gaps);
+    let described: Vec<Vec<Figure>> = described
+        .map(|((run, series), gaps)| figures::of_run(run, series, gaps))
+        .collect();
     let mut body = String::from(
         "<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n<h1>Runs side by side</h1>\n",
     );
@@ -63,7 +69,15 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
         &difference_table(runs, names),
     );
     body += &section("results", "Results", &result_table(runs, names));
-    let figures = common_figures(&series);
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut numbers = Arrays::default();
+    let columns = series.iter().zip(&names).enumerate();
+    let columns: Vec<Value> = columns
+        .map(|(k, (s, name))| figures::columns(name, &format!("{k}:"), s, &mut numbers))
+        .collect();
+    let drawn: Vec<(&str, Vec<Figure>)> = names.into_iter().zip(described).collect();
+    let mut figures = figures::overlaid(&drawn, &mut numbers);
+    figures.push(json!({"any": true}));
     let frames: String = (0..figures.len())
         .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
         .collect();
@@ -75,23 +89,11 @@ fn page(runs: &[RunFolder], names: &[String]) -> String {
     );
     body += "</main>\n";
     body += &footer("fretwork compare");
-    let head = |(series, name): (&Series, &String)| {
-        let mut head = series.head();
-        head["name"] = json!(name);
-        head
-    };
     Page {
         title: "Runs side by side - Fretwork".to_owned(),
         body,
-        data: json!({
-            "runs": series.iter().zip(names).map(head).collect::<Vec<Value>>(),
-            "figures": figures,
-        }),
-        blobs: series
-            .iter()
-            .enumerate()
-            .map(|(k, s)| (format!("series-{k}"), s.packed()))
-            .collect(),
+        data: json!({"runs": columns, "figures": figures}),
+        blobs: vec![("numbers".to_owned(), numbers.packed())],
         viewer: false,
     }
     .html()
@@ -175,60 +177,4 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
         "<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Results\"><table id=\"side-by-side\"><thead><tr><th scope=\"col\">Result</th>{heads}</tr></thead>\n\
          <tbody>\n{rows}</tbody></table></div>\n"
     )
-}
-
-/// Figures of columns that at least one run has and that change.
-fn common_figures(series: &[Series]) -> Vec<Value> {
-    let varies = |name: &str| series.iter().any(|s| s.varies(name));
-    let mut out = Vec::new();
-    let mut add = |title: &str, note: &str, kind: &str, x: &str, y: &str| {
-        if varies(y) && (x == "time" || varies(x)) {
-            out.push(
-                json!({"id": y, "title": title, "note": note, "kind": kind, "x": x, "y": [y]}),
-            );
-        }
-    };
-    add(
-        "Force against displacement, last cycle",
-        "The area of a loop is the energy of its cycle.",
-        "loops",
-        "delta",
-        "Q",
-    );
-    add(
-        "Friction over time",
-        "Ratio of tangential to normal force, row by row.",
-        "time",
-        "time",
-        "mu",
-    );
-    add(
-        "Damage ratio",
-        "Broken bonds over bonds made.",
-        "time",
-        "time",
-        "damage_ratio",
-    );
-    add(
-        "Energy of friction",
-        "Dissipated by friction since the start.",
-        "time",
-        "time",
-        "friction",
-    );
-    add(
-        "Worn volume",
-        "Removed from first bodies since the start.",
-        "time",
-        "time",
-        "worn_first",
-    );
-    let mut others: Vec<String> = series.iter().flat_map(figures::energies).collect();
-    others.sort();
-    others.dedup();
-    out.push(json!({
-        "id": "any", "title": "Any column of the statistics", "note": "Choose what is drawn over what.", "kind": "any",
-        "x": "time", "y": [others.into_iter().next().unwrap_or_else(|| "contacts".to_owned())],
-    }));
-    out
 }

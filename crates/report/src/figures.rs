@@ -1,201 +1,191 @@
-//! Which figures a page has: columns of the statistics by their meaning, cycles, tables across the layer.
+//! Figures in a page: the charts that observers and other programs describe, as its scripts read them. Numbers
+//! stand packed beside them.
 
+use crate::arrays::{Arrays, Kind};
 use crate::folder::RunFolder;
 use crate::series::Series;
-use crate::tables::Table;
-use serde::Serialize;
+use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series as Curve, Style};
 use serde_json::{Value, json};
 
-/// Share of the largest energy below which an entry of the ledger is not drawn.
-const NEGLIGIBLE: f64 = 1e-3;
-
-/// A figure, to be drawn by the page.
-#[derive(Clone, Debug, Serialize)]
-pub(crate) struct Figure {
-    /// Identity in the page.
-    pub id: &'static str,
-    /// Heading.
-    pub title: &'static str,
-    /// What to see in it.
-    pub note: &'static str,
-    /// `time` (columns over time, linked), `loops` (a column over another, by cycle), `cycles`, `table`, `any` (with choosers).
-    pub kind: &'static str,
-    /// Column of the horizontal axis.
-    pub x: String,
-    /// Columns of the vertical axis.
-    pub y: Vec<String>,
-    /// Numbers that are not in the statistics.
-    #[serde(skip_serializing_if = "Value::is_null")]
-    pub data: Value,
-}
-
-fn figure(
-    id: &'static str,
-    title: &'static str,
-    note: &'static str,
-    kind: &'static str,
-    x: &str,
-    y: Vec<String>,
-) -> Figure {
-    Figure {
-        id,
-        title,
-        note,
-        kind,
-        x: x.to_owned(),
-        y,
-        data: Value::Null,
+/// The figures that the observers of a run described, with numbers from its statistics.
+pub(crate) fn of_run(run: &RunFolder, rows: &Series, gaps: &mut Vec<String>) -> Vec<Figure> {
+    let text = std::fs::read_to_string(run.path.join(Figure::FILE));
+    let parsed = text
+        .map_err(|e| e.to_string())
+        .and_then(|t| serde_json::from_str::<Vec<Figure>>(&t).map_err(|e| e.to_string()));
+    match parsed {
+        Ok(figures) => figures.iter().map(|f| f.resolve(rows)).collect(),
+        Err(reason) => {
+            gaps.push(format!(
+                "Figures are missing, but for that of any column: {} cannot be read ({reason}). Runs of older versions have none.",
+                Figure::FILE
+            ));
+            Vec::new()
+        }
     }
 }
 
-/// The figures of a run; one with nothing to show is left out.
-pub(crate) fn of(run: &RunFolder, series: &Series, tables: &[Table]) -> Vec<Figure> {
-    let varying = |names: &[&str]| -> Vec<String> {
-        let names = names.iter().filter(|n| series.varies(n));
-        names.map(|n| (*n).to_owned()).collect()
-    };
-    let mut out = Vec::new();
-    if series.varies("delta") && series.varies("Q") {
-        out.push(figure(
-            "loops",
-            "Force against displacement",
-            "The area of a loop is the energy of its cycle; rounded corners after a reversal are elastic shear.",
-            "loops",
-            "delta",
-            vec!["Q".to_owned()],
-        ));
-    }
-    let time = |id, title, note, y: Vec<String>| figure(id, title, note, "time", "time", y);
-    out.push(time(
-        "friction",
-        "Friction over time",
-        "Ratio of tangential to normal force, row by row.",
-        varying(&["mu"]),
-    ));
-    out.push(time(
-        "forces",
-        "Forces on the tested body",
-        "Tangential force Q and normal force P.",
-        varying(&["Q", "P"]),
-    ));
-    if let Some(data) = by_cycle(&run.summary) {
-        out.push(Figure {
-            data,
-            ..figure(
-                "cycles",
-                "Friction by cycle",
-                "From forces, over each cycle; the plateau leaves the elastic travel out.",
-                "cycles",
-                "cycle",
-                vec![],
-            )
-        });
-    }
-    out.push(time(
-        "damage",
-        "Damage over time",
-        "Broken bonds over bonds made, and the mean damage of all bonds.",
-        varying(&["damage_ratio", "mean_damage"]),
-    ));
-    out.push(time(
-        "energy",
-        "Energies",
-        "Entries of the energy ledger above a thousandth of the largest.",
-        energies(series),
-    ));
-    let worn = |c: &&str| c.ends_with("_worn") || matches!(*c, "worn_first" | "worn_third");
-    let worn: Vec<&str> = series
-        .columns
+/// The charts of a run for the page.
+pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
+    let charts = figures
         .iter()
-        .map(|c| c.name.as_str())
-        .filter(worn)
-        .collect();
-    out.push(time(
-        "wear",
-        "Worn volume",
-        "What the wear laws removed since the start.",
-        varying(&worn),
-    ));
-    out.push(time(
-        "circuit",
-        "Masses of the tribological circuit",
-        "Source, attached, ejected, recirculated and lost since the start of the account; M is in the contact now.",
-        varying(&["M", "source", "attached", "ejected", "recirculated", "lost"]),
-    ));
-    out.push(time(
-        "biaxial",
-        "Biaxial test",
-        "Stress ratio and strains of the sample.",
-        varying(&["q_over_p", "sin_phi", "axial_strain", "volumetric_strain"]),
-    ));
-    out.retain(|f| f.kind != "time" || !f.y.is_empty());
-    for table in tables {
-        out.push(Figure {
-            data: table.json(),
-            ..figure("table", "Table", "", "table", "", vec![])
-        });
-    }
-    if series.columns.len() > 1 {
-        let first = ["mu", "kinetic", "contacts"]
-            .iter()
-            .find(|n| series.varies(n));
-        out.push(figure(
-            "any",
-            "Any column of the statistics",
-            "Choose what is drawn over what.",
-            "any",
-            "time",
-            first.map(|n| (*n).to_owned()).into_iter().collect(),
-        ));
-    }
-    out
+        .flat_map(|f| f.charts.iter().map(|c| (f.name.as_str(), c)));
+    charts.map(|(name, c)| chart(name, c, numbers)).collect()
 }
 
-/// Entries of the ledger, which stand together in the statistics, as far as they matter.
-pub(crate) fn energies(series: &Series) -> Vec<String> {
-    let at = |name: &str| series.columns.iter().position(|c| c.name == name);
-    let (Some(first), Some(last)) = (at("kinetic"), at("residual")) else {
-        return Vec::new();
-    };
-    let Some(ledger) = series.columns.get(first..last) else {
-        return Vec::new();
-    };
-    let size = |values: &[f64]| {
-        values
-            .iter()
-            .filter(|v| v.is_finite())
-            .fold(0.0, |m: f64, v| m.max(v.abs()))
-    };
-    let most = ledger.iter().map(|c| size(&c.values)).fold(0.0, f64::max);
-    let matters = ledger
+/// The charts of several runs over each other: of each that has more than one curve the entries name run and
+/// curve, and of cycles the last is drawn.
+pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
+    let mut all: Vec<(&str, Chart)> = Vec::new();
+    for (run, figure) in runs
         .iter()
-        .filter(|c| size(&c.values) > NEGLIGIBLE * most);
-    matters
-        .map(|c| c.name.clone())
-        .filter(|n| series.varies(n))
+        .flat_map(|(n, figures)| figures.iter().map(move |f| (n, f)))
+    {
+        for own in figure.charts.iter().filter(|c| c.field.is_none()) {
+            let same =
+                |(name, chart): &(&str, Chart)| *name == figure.name && chart.title == own.title;
+            let at = all.iter().position(same).unwrap_or_else(|| {
+                let mut empty = own.clone();
+                empty.series.clear();
+                (empty.subtitle, empty.colour_by_order) = (None, false);
+                (empty.x_range, empty.y_range) = (None, None);
+                all.push((&figure.name, empty));
+                all.len() - 1
+            });
+            let skipped = if own.colour_by_order {
+                own.series.len() - 1
+            } else {
+                0
+            };
+            let shown = &own.series[skipped..];
+            for series in shown {
+                let label = match shown.len() {
+                    1 => (*run).to_owned(),
+                    _ => format!("{run}: {}", series.label),
+                };
+                let series_of_all = &mut all[at].1.series;
+                series_of_all.push(Curve {
+                    label,
+                    colour: None,
+                    place: series_of_all.len(),
+                    ..series.clone()
+                });
+            }
+        }
+    }
+    all.iter()
+        .map(|(name, c)| chart(name, c, numbers))
         .collect()
 }
 
-/// Results by cycle; none with fewer than two.
-fn by_cycle(summary: &Value) -> Option<Value> {
-    let cycles: Vec<&Value> = summary["cycles"]
-        .as_array()?
-        .iter()
-        .filter(|c| c["complete"] == true)
-        .collect();
-    if cycles.len() < 2 {
-        return None;
+/// A chart for the page.
+pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
+    let points = || chart.series.iter().flat_map(|s| &s.points);
+    let xs = points()
+        .map(|p| p.0)
+        .chain(chart.x_range.into_iter().flat_map(<[f64; 2]>::from));
+    let intervals = chart.series.iter().flat_map(|s| &s.intervals);
+    let ys = points()
+        .map(|p| p.1)
+        .chain(intervals.flat_map(|i| [i.0, i.1]))
+        .chain(chart.y_range.into_iter().flat_map(<[f64; 2]>::from));
+    json!({
+        "figure": name,
+        "title": chart.title,
+        "note": note(chart),
+        "x": axis(&chart.x, xs, chart.x_range),
+        "y": axis(&chart.y, ys, chart.y_range),
+        "gradient": chart.colour_by_order,
+        "series": chart.series.iter().map(|s| series(s, numbers)).collect::<Vec<_>>(),
+        "field": chart.field.as_ref().map(|f| field(f, numbers)),
+    })
+}
+
+/// What to read in a chart, or else under which conditions it holds.
+fn note(chart: &Chart) -> &str {
+    match chart.note.as_str() {
+        "" => chart.subtitle.as_deref().unwrap_or_default(),
+        note => note,
     }
-    let column = |key: &str, label: &str| {
-        let values: Vec<&Value> = cycles.iter().map(|c| &c[key]).collect();
-        json!({"name": label, "values": values})
+}
+
+fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)>) -> Value {
+    let finite = values.map(f64::abs).filter(|v| v.is_finite());
+    let (exponent, label) = axis.scaled(finite.fold(0.0, f64::max));
+    json!({
+        "name": axis.name, "unit": axis.unit, "label": label, "factor": 10f64.powi(-exponent),
+        "log": axis.log, "whole": axis.whole, "range": range,
+    })
+}
+
+fn series(series: &Curve, numbers: &mut Arrays) -> Value {
+    let mut array = |of: fn(&(f64, f64)) -> f64, list: &[(f64, f64)]| match list.is_empty() {
+        true => Value::Null,
+        false => json!(numbers.number(&list.iter().map(of).collect::<Vec<_>>())),
     };
-    Some(json!({
-        "x": cycles.iter().map(|c| &c["cycle"]).collect::<Vec<_>>(),
-        "columns": [
-            column("friction_coefficient", "friction coefficient"),
-            column("plateau_ratio", "plateau Q/P"),
-            column("reversal_ratio", "peak at reversal Q/P"),
-        ],
-    }))
+    json!({
+        "label": series.label,
+        "x": array(|p| p.0, &series.points),
+        "y": array(|p| p.1, &series.points),
+        "low": array(|p| p.0, &series.intervals),
+        "high": array(|p| p.1, &series.intervals),
+        "line": series.style != Style::Markers,
+        "dashed": series.style == Style::Dashed,
+        "markers": matches!(series.style, Style::Markers | Style::LineMarkers),
+        "colour": series.colour,
+        "place": series.place,
+    })
+}
+
+fn field(field: &Field, numbers: &mut Arrays) -> Value {
+    let corners = || field.cells.iter().flatten();
+    let mut starts = vec![0.0];
+    starts.extend(field.cells.iter().scan(0, |sum, cell| {
+        *sum += cell.len();
+        Some(*sum as f64)
+    }));
+    let part = |numbers: &mut Arrays, of: fn(&[f64; 2]) -> f64| {
+        numbers.number(&corners().map(of).collect::<Vec<_>>())
+    };
+    let (x, y) = (part(numbers, |p| p[0]), part(numbers, |p| p[1]));
+    let (values, scale) = match &field.colours {
+        Colours::Classes { of, .. } => (of.iter().map(|k| *k as f64).collect(), Value::Null),
+        Colours::Values { values, scale } => {
+            let top = field.top();
+            (
+                values.clone(),
+                axis(scale, [top].into_iter(), Some((0.0, top))),
+            )
+        }
+    };
+    let classes = match &field.colours {
+        Colours::Classes { classes, .. } => classes.as_slice(),
+        Colours::Values { .. } => &[],
+    };
+    json!({
+        "starts": numbers.number(&starts), "x": x, "y": y, "values": numbers.number(&values),
+        "classes": classes, "scale": scale,
+        "arrows": field.arrows, "arrow_label": field.arrow_label,
+    })
+}
+
+/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers are named
+/// after `prefix`.
+pub(crate) fn columns(
+    name: &str,
+    prefix: &str,
+    statistics: &Series,
+    numbers: &mut Arrays,
+) -> Value {
+    let columns: Vec<Value> = statistics
+        .columns
+        .iter()
+        .map(|c| {
+            let id = format!("{prefix}{}", c.name);
+            let exact = matches!(c.name.as_str(), "time" | "step");
+            numbers.push_known(&id, if exact { Kind::F64 } else { Kind::F32 }, &c.values);
+            json!({"name": c.name, "unit": c.unit, "doc": c.doc, "values": id})
+        })
+        .collect();
+    json!({"name": name, "rows": statistics.rows, "every": statistics.every, "columns": columns})
 }

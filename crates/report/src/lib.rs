@@ -20,11 +20,10 @@ mod results;
 mod scene;
 mod series;
 mod sheet;
-mod tables;
 
 pub use compare::compare;
 pub use laws::{LawInfo, LawParameter};
-pub use sheet::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
+pub use sheet::{Block, Section, Sheet, SheetTable};
 
 use folder::RunFolder;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Columns of the statistics of a run, thinned out in time where there are many rows.
 
-use crate::arrays::{Arrays, Kind};
 use crate::folder::RunFolder;
-use serde_json::{Value, json};
+use fretwork_observe::chart::Columns;
+use std::rc::Rc;
 
 /// Rows that are read at a time.
 const BLOCK: usize = 1 << 16;
@@ -17,7 +17,7 @@ pub(crate) struct Column {
     /// Description.
     pub doc: String,
     /// Values of the rows that are kept.
-    pub values: Vec<f64>,
+    pub values: Rc<[f64]>,
 }
 
 /// The statistics of a run.
@@ -51,7 +51,7 @@ impl Series {
                         name,
                         unit,
                         doc,
-                        values,
+                        values: values.into(),
                     });
                 }
                 Err(reason) => gaps.push(format!("A column is missing: {reason}.")),
@@ -68,32 +68,12 @@ impl Series {
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|c| c.name == name)
     }
+}
 
-    /// Whether a column is there and takes more than one value.
-    pub fn varies(&self, name: &str) -> bool {
-        self.column(name).is_some_and(|c| {
-            let mut finite = c.values.iter().filter(|v| v.is_finite());
-            let first = finite.next();
-            finite.any(|v| Some(v) != first)
-        })
-    }
-
-    /// What the page needs beside the numbers.
-    pub fn head(&self) -> Value {
-        let column = |c: &Column| json!({"name": c.name, "unit": c.unit, "doc": c.doc});
-        let columns: Vec<Value> = self.columns.iter().map(column).collect();
-        json!({"rows": self.rows, "every": self.every, "columns": columns})
-    }
-
-    /// The numbers.
-    pub fn packed(&self) -> String {
-        let mut arrays = Arrays::default();
-        for c in &self.columns {
-            let exact = matches!(c.name.as_str(), "time" | "step");
-            let kind = if exact { Kind::F64 } else { Kind::F32 };
-            arrays.push(c.name.as_str(), kind, &c.values);
-        }
-        arrays.packed()
+impl Columns for Series {
+    fn column(&self, name: &str) -> Option<(&str, Rc<[f64]>)> {
+        let column = Self::column(self, name)?;
+        Some((&column.unit, column.values.clone()))
     }
 }
 

@@ -1,7 +1,10 @@
 //! Pages that are not of one run: sections of text, tables and figures.
 
+use crate::arrays::Arrays;
+use crate::figures;
 use crate::page::{Page, escape, footer, section};
 use crate::{ReportError, write};
+use fretwork_observe::chart::Chart;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -39,7 +42,7 @@ pub enum Block {
     /// A table.
     Table(SheetTable),
     /// A figure.
-    Figure(SheetFigure),
+    Figure(Chart),
 }
 
 /// A table of texts; the first column heads the rows.
@@ -51,38 +54,6 @@ pub struct SheetTable {
     pub heads: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<String>>,
-}
-
-/// A figure of curves or points over one axis.
-#[derive(Clone, Debug, Default)]
-pub struct SheetFigure {
-    /// Heading.
-    pub title: String,
-    /// What to see in it.
-    pub note: String,
-    /// Name and SI unit of the horizontal axis.
-    pub x: (String, String),
-    /// Name and SI unit of the vertical axis.
-    pub y: (String, String),
-    /// Whether the horizontal and the vertical axis are logarithmic; values are above zero then.
-    pub logarithmic: (bool, bool),
-    /// Its curves.
-    pub curves: Vec<SheetCurve>,
-}
-
-/// A curve of a figure.
-#[derive(Clone, Debug, Default)]
-pub struct SheetCurve {
-    /// Entry in the legend.
-    pub label: String,
-    /// Horizontal and vertical places.
-    pub points: Vec<(f64, f64)>,
-    /// Lower and upper ends of the intervals of the points; empty for none, not finite where one is not known.
-    pub intervals: Vec<(f64, f64)>,
-    /// Whether points are joined.
-    pub line: bool,
-    /// Whether points have markers.
-    pub markers: bool,
 }
 
 impl Sheet {
@@ -97,7 +68,7 @@ impl Sheet {
     }
 
     fn page(&self) -> Page {
-        let mut figures: Vec<Value> = Vec::new();
+        let (mut figures, mut numbers) = (Vec::new(), Arrays::default());
         let mut body = format!(
             "<a class=\"skip\" href=\"#section-0\">Skip to the contents</a>\n<header>\n<h1>{}</h1>\n<p class=\"doc\">{}</p>\n</header>\n",
             escape(&self.title),
@@ -121,7 +92,7 @@ impl Sheet {
                     };
                     open = figure;
                 }
-                inner += &html(block, &mut figures);
+                inner += &html(block, &mut figures, &mut numbers);
             }
             if open {
                 inner += "</div>\n";
@@ -134,12 +105,13 @@ impl Sheet {
             title: format!("{} - Fretwork", self.title),
             body,
             data: json!({"runs": [], "figures": figures}),
+            blobs: vec![("numbers".to_owned(), numbers.packed())],
             ..Page::default()
         }
     }
 }
 
-fn html(block: &Block, figures: &mut Vec<Value>) -> String {
+fn html(block: &Block, figures: &mut Vec<Value>, numbers: &mut Arrays) -> String {
     match block {
         Block::Text(text) => format!("<p class=\"lead\">{}</p>\n", escape(text)),
         Block::List(items) => {
@@ -151,8 +123,8 @@ fn html(block: &Block, figures: &mut Vec<Value>) -> String {
         }
         Block::Code(text) => format!("<pre tabindex=\"0\">{}</pre>\n", escape(text)),
         Block::Table(table) => table_html(table),
-        Block::Figure(figure) => {
-            figures.push(figure_json(figure));
+        Block::Figure(chart) => {
+            figures.push(figures::chart("", chart, numbers));
             format!(
                 "<figure class=\"chart\" id=\"figure-{}\"></figure>\n",
                 figures.len() - 1
@@ -186,46 +158,18 @@ fn table_html(table: &SheetTable) -> String {
     )
 }
 
-fn figure_json(figure: &SheetFigure) -> Value {
-    // JSON has no numbers that are not finite.
-    let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
-    let curves: Vec<Value> = figure
-        .curves
-        .iter()
-        .map(|c| {
-            json!({
-                "label": c.label,
-                "x": c.points.iter().map(|p| number(p.0)).collect::<Vec<_>>(),
-                "values": c.points.iter().map(|p| number(p.1)).collect::<Vec<_>>(),
-                "low": c.intervals.iter().map(|i| number(i.0)).collect::<Vec<_>>(),
-                "high": c.intervals.iter().map(|i| number(i.1)).collect::<Vec<_>>(),
-                "line": c.line, "markers": c.markers,
-            })
-        })
-        .collect();
-    json!({
-        "id": "curves", "kind": "curves", "title": figure.title, "note": figure.note,
-        "x": figure.x.0, "x_unit": figure.x.1, "y": [figure.y.0], "y_unit": figure.y.1,
-        "x_log": figure.logarithmic.0, "y_log": figure.logarithmic.1, "curves": curves,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_observe::chart::{Axis, Series};
 
-    /// Texts are escaped, figures stand in the data in their order, and what is not finite is null.
+    /// Texts are escaped, and figures stand in the data in their order.
     #[test]
     fn a_sheet_has_its_tables_and_figures() {
         let figure = |title: &str| {
-            Block::Figure(SheetFigure {
-                title: title.into(),
-                curves: vec![SheetCurve {
-                    points: vec![(1.0, f64::NAN)],
-                    ..SheetCurve::default()
-                }],
-                ..SheetFigure::default()
-            })
+            let chart = Chart::new(title, Axis::new("a", "m"), Axis::new("b", "").log());
+            let series = Series::new("curve", vec![(1.0, f64::NAN), (2e-3, 3.0)]);
+            Block::Figure(chart.with(series))
         };
         let table = Block::Table(SheetTable {
             heads: vec!["a<b".into()],
@@ -251,9 +195,13 @@ mod tests {
             page.body.matches("</div>").count()
         );
         assert_eq!(page.data["figures"][1]["title"], "two");
+        let chart = &page.data["figures"][0];
+        assert_eq!(chart["x"]["unit"], "m");
         assert_eq!(
-            page.data["figures"][0]["curves"][0]["values"][0],
-            Value::Null
+            (&chart["y"]["log"], &chart["series"][0]["label"]),
+            (&json!(true), &json!("curve"))
         );
+        // Both charts have the same numbers, which stand in the page once.
+        assert_eq!(chart["series"], page.data["figures"][1]["series"]);
     }
 }

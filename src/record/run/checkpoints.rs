@@ -82,7 +82,8 @@ impl<S: Observed> Recorder<'_, S> {
             clear::clear(&self.out, &self.observers)?;
         }
         let path = self.out.join("statistics.csv");
-        self.table.open(&path).map_err(|e| unwritable(&path, &e))
+        self.table.open(&path).map_err(|e| unwritable(&path, &e))?;
+        self.describe_figures(Duration::ZERO)
     }
 
     fn state(&mut self) -> Result<Vec<u8>, RunError> {

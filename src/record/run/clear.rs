@@ -5,28 +5,32 @@ use super::frame::PICTURES;
 use super::{RunError, unwritable};
 use crate::geometry::space::Space;
 use fretwork_observe::Observers;
+use fretwork_observe::chart::Figure;
 use std::path::Path;
 
 /// Names of the figures at the end of a run that no observer names, and its report.
-pub(super) const FIGURES: [&str; 9] = [
+pub(super) const FIGURES: [&str; 11] = [
     fretwork_report::FILE,
     "damage_ratio.png",
     "fretting_loops.png",
     "friction_coefficient.png",
+    "friction_history.png",
     "force_displacement.png",
     "energy.png",
     "circuit.png",
     "jump.png",
+    "worn_volume.png",
     "biaxial.png",
 ];
 
 /// Files of the program in the folder of a run: they are in place when older files are removed, and no observer's.
-pub(super) const OWN: [&str; 6] = [
+pub(super) const OWN: [&str; 7] = [
     "results.h5",
     "grains.vtkhdf",
     "bodies.vtkhdf",
     "contacts.vtkhdf",
     "statistics.csv",
+    Figure::FILE,
     "summary.json",
 ];
 

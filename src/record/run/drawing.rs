@@ -1,7 +1,6 @@
 //! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go on.
 
-use crate::report::{Frame, ReportError, draw_maps, noted};
-use fretwork_observe::map::Map;
+use crate::report::{Chart, Frame, ReportError, draw_panels, noted};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
@@ -18,14 +17,14 @@ pub(super) struct Picture {
 #[derive(Debug)]
 pub(super) enum Shows {
     Scene(Box<Frame>),
-    Maps(Vec<Map>),
+    Charts(Vec<Chart>),
 }
 
 impl Picture {
     fn draw(&self) -> Result<(), ReportError> {
         noted(self.notice.clone(), || match &self.shows {
             Shows::Scene(frame) => frame.draw(&self.path),
-            Shows::Maps(maps) => draw_maps(maps, &self.path),
+            Shows::Charts(charts) => draw_panels(charts, 2, &self.path),
         })
     }
 }

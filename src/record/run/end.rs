@@ -5,9 +5,10 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
-use crate::report::{draw_maps, draw_panels, noted};
+use crate::report::{Figure, TableColumns, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::standard::Observed;
+use fretwork_observe::statistics::Table;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -73,8 +74,10 @@ impl<S: Observed> Recorder<'_, S> {
             |run| {
                 let table = run.table.flush();
                 let table = table.map_err(|e| unwritable(&run.out.join("statistics.csv"), &e));
-                let outputs = write_outputs(&run.out, &run.observers.files(&run.end(wall)));
-                table.and(run.end_results()).and(outputs)
+                let outputs =
+                    write_outputs(&run.out, &run.observers.files(&run.end(wall)), &run.table);
+                let figures = run.describe_figures(wall);
+                table.and(run.end_results()).and(outputs).and(figures)
             },
         );
         let drawn = self.timed(
@@ -102,12 +105,28 @@ impl<S: Observed> Recorder<'_, S> {
         Ok(self.results.finish(&self.out)?)
     }
 
+    /// Writes the figures as data, as far as they are known now: for the report, and for other programs.
+    pub(super) fn describe_figures(&self, wall: Duration) -> Result<(), RunError> {
+        let outputs = self.observers.figures(&self.end(wall)).into_iter();
+        let figure = |output| match output {
+            Output::Figure(figure) => Some(figure),
+            Output::Text { .. } => None,
+        };
+        let figures: Vec<Figure> = outputs.filter_map(figure).collect();
+        let text = serde_json::to_string(&figures).unwrap_or_default();
+        write_atomic(&self.out.join(Figure::FILE), &text)
+    }
+
     /// Draws the figures, where the case asks for them.
     fn draw(&self, wall: Duration) -> Result<(), RunError> {
         if !self.has_figures() {
             return Ok(());
         }
-        write_outputs(&self.out, &self.observers.figures(&self.end(wall)))
+        write_outputs(
+            &self.out,
+            &self.observers.figures(&self.end(wall)),
+            &self.table,
+        )
     }
 }
 
@@ -115,18 +134,17 @@ impl<S: Observed> Recorder<'_, S> {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write_outputs(folder: &Path, outputs: &[Output]) -> Result<(), RunError> {
+pub fn write_outputs(folder: &Path, outputs: &[Output], table: &Table) -> Result<(), RunError> {
     outputs.iter().try_for_each(|output| match output {
         Output::Text { file, text } => {
             let path = folder.join(file);
             std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))
         }
-        Output::Charts {
-            file,
-            charts,
-            columns,
-        } => Ok(draw_panels(charts, *columns, &folder.join(file))?),
-        Output::Maps { file, maps } => Ok(draw_maps(maps, &folder.join(file))?),
+        Output::Figure(figure) => {
+            let figure = figure.resolve(&TableColumns::of(table));
+            let path = folder.join(format!("{}.png", figure.name));
+            Ok(draw_panels(&figure.charts, figure.columns, &path)?)
+        }
     })
 }
 

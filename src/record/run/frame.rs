@@ -49,14 +49,14 @@ impl<S: Observed> Recorder<'_, S> {
         let notice = self.notice();
         let mut shown = Vec::new();
         for picture in &pictures {
-            let Shows::Maps(maps) = &picture.shows else {
+            let Shows::Charts(charts) = &picture.shows else {
                 continue;
             };
             let heading = [&[self.loaded.case.name.clone()][..], &caption].concat();
-            let mut maps = maps.clone();
-            maps.iter_mut()
-                .for_each(|m| m.subtitle = Some(heading.join("   ·   ")));
-            shown.push((picture.name, drawing::Shows::Maps(maps)));
+            let heading = heading.join("   ·   ");
+            let mut charts = charts.clone();
+            charts.iter_mut().for_each(|c| c.head(&heading));
+            shown.push((picture.name, drawing::Shows::Charts(charts)));
         }
         for (name, subject) in subjects {
             let (title, caption) = (&self.loaded.case.name, caption.clone());
@@ -78,13 +78,13 @@ impl<S: Observed> Recorder<'_, S> {
     }
 }
 
-/// How a picture of an observer is drawn; none where the dimension has no such picture, and of maps, which have a page of their own.
+/// How a picture of an observer is drawn; none where the dimension has no such picture, and of charts, which have a page of their own.
 fn subject<S: Observed>(picture: &picture::Picture) -> Option<Subject<'_>> {
     Some(match &picture.shows {
         Shows::Paints(paints) => Subject::Painted(paints),
         Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),
         Shows::Stress if S::D == 2 => Subject::Stress,
-        Shows::Chains(_) | Shows::Stress | Shows::Maps(_) => return None,
+        Shows::Chains(_) | Shows::Stress | Shows::Charts(_) => return None,
         Shows::Values { values, label, top } => Subject::Values {
             values,
             label,

@@ -247,7 +247,7 @@ fn blocks_are_measured() {
         uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,
     };
-    write_outputs(&folder, &profile.figures(&end)).unwrap();
+    write_outputs(&folder, &profile.figures(&end), end.table).unwrap();
     let text = std::fs::read_to_string(folder.join("m.csv")).unwrap();
     std::fs::remove_dir_all(&folder).ok();
     for row in text.lines().skip(1) {

@@ -7,7 +7,7 @@ use super::search::Found;
 use super::spec::{ReadFit, TestSpec};
 use fretwork_observe::quantity::number;
 use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels};
-use fretwork_report::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
+use fretwork_report::{Block, Section, Sheet, SheetTable};
 use fretwork_study::fit::identify::{End, Estimate};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -238,34 +238,12 @@ pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) ->
         title: "Parameters".to_owned(),
         blocks: parameter_blocks(read, found, outcome),
     }];
-    let figures = points(tests, found, outcome).into_iter().enumerate().map(|(t, points)| {
-        let (x, y) = axes(read, t);
-        let measured = SheetCurve {
-            label: "measured, with two standard deviations".to_owned(),
-            points: points.iter().map(|p| (p.0, p.1)).collect(),
-            intervals: points.iter().map(|p| (p.1 - 2.0 * p.2, p.1 + 2.0 * p.2)).collect(),
-            markers: true,
-            ..SheetCurve::default()
-        };
-        let fitted = SheetCurve {
-            label: "fitted, mean over seeds".to_owned(),
-            points: points.iter().map(|p| (p.0, p.3)).collect(),
-            intervals: points.iter().map(|p| (p.3 - 2.0 * p.4, p.3 + 2.0 * p.4)).collect(),
-            line: true,
-            ..SheetCurve::default()
-        };
-        Block::Figure(SheetFigure {
-            title: tests.target.tests()[t].name.clone(),
-            note: "Bars of the fitted curve are two standard deviations of one run from seed to seed.".to_owned(),
-            x: (x, String::new()),
-            y: (y, String::new()),
-            curves: vec![measured, fitted],
-            ..SheetFigure::default()
-        })
-    });
     sections.push(Section {
         title: "Curves".to_owned(),
-        blocks: figures.collect(),
+        blocks: charts(read, tests, found, outcome)
+            .into_iter()
+            .map(Block::Figure)
+            .collect(),
     });
     sections.push(Section {
         title: "Search".to_owned(),
@@ -388,28 +366,49 @@ fn search_blocks(found: &Found) -> Vec<Block> {
         .iter()
         .filter(|e| e.chi_squared.is_none())
         .count();
-    let curve = |label: &str, points, line| SheetCurve {
-        label: label.to_owned(),
-        points,
-        line,
-        markers: !line,
-        ..SheetCurve::default()
-    };
+    let x = Axis::new("evaluation", "").whole();
+    let y = Axis::new("log10 of the sum of squares", "");
+    let chart = Chart::new("Sum of squares", x, y)
+        .note("Of each point in the order of the search (logarithm to base 10), and the least so far.")
+        .with(Series::new("a point", points).style(Style::Markers))
+        .with(Series::new("least so far", best));
     vec![
         Block::Text(format!(
             "{} points were run, {failed} of which failed. The search ended: {}.",
             found.evaluations.len(),
             found.ended
         )),
-        Block::Figure(SheetFigure {
-            title: "Sum of squares".to_owned(),
-            note: "Of each point in the order of the search (logarithm to base 10), and the least so far.".to_owned(),
-            x: ("evaluation".to_owned(), String::new()),
-            y: ("log10 of the sum of squares".to_owned(), String::new()),
-            curves: vec![curve("a point", points, false), curve("least so far", best, true)],
-            ..SheetFigure::default()
-        }),
+        Block::Figure(chart),
     ]
+}
+
+/// Measured and fitted curves of each test, with two standard deviations.
+fn charts(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Chart> {
+    let all = points(tests, found, outcome).into_iter().enumerate();
+    let chart = |(t, points): (usize, Points)| {
+        let (x, y) = axes(read, t);
+        let name = tests.target.tests()[t].name.clone();
+        let bars = |of: fn(&(f64, f64, f64, f64, f64)) -> [f64; 2]| {
+            let ends = points
+                .iter()
+                .map(of)
+                .map(|[y, s]| (y - 2.0 * s, y + 2.0 * s));
+            ends.collect()
+        };
+        let measured = Series::new("measured", points.iter().map(|p| (p.0, p.1)).collect())
+            .style(Style::Markers)
+            .intervals(bars(|p| [p.1, p.2]));
+        let fitted = Series::new("fitted", points.iter().map(|p| (p.0, p.3)).collect())
+            .intervals(bars(|p| [p.3, p.4]));
+        let mut chart = Chart::new(name, Axis::new(x, ""), Axis::new(y, ""))
+            .note("Bars are two standard deviations: of the measurement, and of one run from seed to seed.");
+        chart.subtitle = Some(format!(
+            "{}: measured, and fitted (mean over seeds)",
+            title(read)
+        ));
+        chart.with(measured).with(fitted)
+    };
+    all.map(chart).collect()
 }
 
 /// Draws measured and fitted curves.
@@ -423,32 +422,6 @@ pub fn draw(
     outcome: &Outcome,
     path: &Path,
 ) -> Result<(), ReportError> {
-    let charts = points(tests, found, outcome)
-        .into_iter()
-        .enumerate()
-        .map(|(t, points)| {
-            let (x, y) = axes(read, t);
-            let mut chart = Chart::new(
-                tests.target.tests()[t].name.clone(),
-                Axis::new(x, ""),
-                Axis::new(y, ""),
-            );
-            chart.subtitle = Some(format!(
-                "{}: measured with two standard deviations, and fitted",
-                title(read)
-            ));
-            let measured = Series::new("measured", points.iter().map(|p| (p.0, p.1)).collect())
-                .style(Style::Markers);
-            let bars = points
-                .iter()
-                .map(|p| (p.1 - 2.0 * p.2, p.1 + 2.0 * p.2))
-                .collect();
-            let fitted = Series::new("fitted", points.iter().map(|p| (p.0, p.3)).collect());
-            chart.with(measured.intervals(bars)).with(fitted)
-        });
-    let charts: Vec<Chart> = charts.filter(Chart::has_data).collect();
-    if charts.is_empty() {
-        return Ok(());
-    }
+    let charts = charts(read, tests, found, outcome);
     draw_panels(&charts, charts.len().min(2), path)
 }

@@ -1,6 +1,6 @@
-//! The figures of a study as a picture, `study.png`.
+//! The charts of a study: in the picture `study.png`, and on its page.
 
-use super::analysis::{Analysis, Regimes, logarithmic_axis};
+use super::analysis::{Analysis, OutputAnalysis, Regimes, Response, logarithmic_axis};
 use super::page::title_of;
 use super::plan::Plan;
 use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels};
@@ -20,29 +20,7 @@ pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, Repor
     for factor in 0..plan.factors.len() {
         for output in &analysis.outputs {
             let own = output.responses.iter().find(|r| r.factor == factor);
-            let Some(response) = own else { continue };
-            let name = title_of(&output.name);
-            let mut chart = Chart::new(
-                format!("{name} over {}", plan.factors[response.factor].name),
-                axis(plan, response.factor),
-                Axis::new(&name, &output.unit),
-            );
-            chart.subtitle = Some(response.note.clone());
-            for curve in &response.curves {
-                let points = curve.points.iter().map(|(x, m)| (*x, m.mean)).collect();
-                let ends = curve.points.iter().map(|(_, m)| match m.half_width {
-                    Some(h) => (m.mean - h, m.mean + h),
-                    None => (f64::NAN, f64::NAN),
-                });
-                let style = if response.scattered {
-                    Style::Markers
-                } else {
-                    Style::LineMarkers
-                };
-                let series = Series::new(curve.label.clone(), points).style(style);
-                chart = chart.with(series.intervals(ends.collect()));
-            }
-            charts.push(chart);
+            charts.extend(own.map(|r| response_chart(plan, output, r)));
         }
     }
     charts.retain(Chart::has_data);
@@ -54,6 +32,32 @@ pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, Repor
     Ok(true)
 }
 
+/// An output over a factor, with its intervals.
+pub(super) fn response_chart(plan: &Plan, output: &OutputAnalysis, response: &Response) -> Chart {
+    let name = title_of(&output.name);
+    let mut chart = Chart::new(
+        format!("{name} over {}", plan.factors[response.factor].name),
+        axis(plan, response.factor),
+        Axis::new(&name, &output.unit),
+    );
+    chart.subtitle = Some(response.note.clone());
+    for curve in &response.curves {
+        let points = curve.points.iter().map(|(x, m)| (*x, m.mean)).collect();
+        let ends = curve.points.iter().map(|(_, m)| match m.half_width {
+            Some(h) => (m.mean - h, m.mean + h),
+            None => (f64::NAN, f64::NAN),
+        });
+        let style = if response.scattered {
+            Style::Markers
+        } else {
+            Style::LineMarkers
+        };
+        let series = Series::new(curve.label.clone(), points).style(style);
+        chart = chart.with(series.intervals(ends.collect()));
+    }
+    chart
+}
+
 fn axis(plan: &Plan, factor: usize) -> Axis {
     let axis = Axis::new(&plan.factors[factor].name, plan.unit_of(factor));
     match logarithmic_axis(plan, factor) {
@@ -62,7 +66,8 @@ fn axis(plan: &Plan, factor: usize) -> Axis {
     }
 }
 
-fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
+/// Where in the plane of two factors each regime shows.
+pub(super) fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
     let map = regimes.map.as_ref()?;
     let (first, second) = map.axes;
     let y = second.map_or(Axis::new("", ""), |f| axis(plan, f));
@@ -72,6 +77,7 @@ fn regime_chart(plan: &Plan, regimes: &Regimes) -> Option<Chart> {
         y,
     );
     chart.subtitle = Some("Shown by at least half of the runs of a setting.".to_owned());
+    chart.note = "The regime that at least half of the runs of a setting show; a setting without a mark shows several.".to_owned();
     for (regime, places) in &map.places {
         chart = chart.with(Series::new(regime.clone(), places.clone()).style(Style::Markers));
     }

@@ -215,8 +215,8 @@ impl<S: Space> Observer<S> for Biaxial {
         summary.biaxial = Some(Outcome::new(end.table, self.start, mass));
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        vec![figures::biaxial::charts(end.title, end.table, self.start)]
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        vec![figures::biaxial::charts(self.start)]
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

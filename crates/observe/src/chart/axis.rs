@@ -1,8 +1,10 @@
 //! Axes of a chart: quantity, unit, and SI prefixes in place of exponents.
 
+use serde::{Deserialize, Serialize};
+
 /// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m` of the
 /// order of 1e-5 are shown in µm).
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Quantity, for example `displacement δ`.
     pub name: String,
@@ -13,9 +15,29 @@ pub struct Axis {
     pub log: bool,
     /// Ticks at whole numbers only, for cycles or grains.
     pub whole: bool,
+    /// Whether the unit is that of the column of the statistics which the chart shows.
+    pub unit_of_rows: bool,
 }
 
 impl Axis {
+    /// An axis for columns of the statistics, whose unit it takes.
+    pub fn of_rows(name: impl Into<String>) -> Self {
+        Self {
+            unit_of_rows: true,
+            ..Self::new(name, "")
+        }
+    }
+
+    /// The axis of time.
+    pub fn time() -> Self {
+        Self::new("time t", "s")
+    }
+
+    /// The axis of the numbers of cycles.
+    pub fn cycles() -> Self {
+        Self::new("cycle number N", "").whole()
+    }
+
     /// A linear axis.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {

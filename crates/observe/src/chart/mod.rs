@@ -1,11 +1,18 @@
-//! Charts of curves as data: loops, histories, stacked cycles. A higher layer draws them.
+//! Figures as data: charts of curves with their axes. A figure is described once; one back end draws it as a
+//! PNG file, another in an HTML page, both from what [`Figure::resolve`] makes of it.
 
 mod axis;
+mod field;
+mod rows;
 
 pub use axis::{Axis, number, quantity, superscript};
+pub use field::{Colours, Field, round_top};
+pub use rows::{Columns, Part, Rows, TableColumns, Value};
+
+use serde::{Deserialize, Serialize};
 
 /// How a series is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Style {
     /// Continuous line.
     #[default]
@@ -18,21 +25,45 @@ pub enum Style {
     LineMarkers,
 }
 
+/// Where the points of a series come from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Source {
+    /// From [`Series::points`] themselves.
+    #[default]
+    Points,
+    /// From rows of the statistics.
+    Rows(Rows),
+    /// A horizontal line at a height, across all other series.
+    Level(f64),
+    /// A vertical line at a place, from zero to above all other series.
+    Place(f64),
+}
+
 /// One curve.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Entry in the legend; empty for none.
     pub label: String,
+    /// Where the points come from.
+    pub source: Source,
     /// Points in the units of the axes, in drawing order. A point that is not
     /// finite breaks the line.
+    #[serde(with = "rows::pairs")]
     pub points: Vec<(f64, f64)>,
-    /// Red, green, blue; `None` takes the next colour of the palette.
+    /// Red, green, blue; `None` takes the colour of the palette for its place among the series.
     pub colour: Option<(u8, u8, u8)>,
+    /// Place in the palette, from [`Figure::resolve`]; series that are left out keep theirs.
+    pub place: usize,
     /// Line or markers.
     pub style: Style,
     /// Lower and upper end of the interval at each point, in the unit of the vertical axis; empty for none. A
     /// non-finite interval is omitted.
+    #[serde(with = "rows::pairs")]
     pub intervals: Vec<(f64, f64)>,
+    /// A series of rows is left out where no value exceeds this share of the largest of the chart.
+    pub least: f64,
+    /// Whether the share of a series that is left out is stated below the heading.
+    pub stated: bool,
 }
 
 impl Series {
@@ -43,6 +74,39 @@ impl Series {
             points,
             ..Self::default()
         }
+    }
+
+    /// A column of the statistics over another. It is left out if it is zero throughout, or if the other does
+    /// not change.
+    pub fn rows(label: impl Into<String>, x: impl Into<Value>, y: impl Into<Value>) -> Self {
+        let (x, y, part) = (x.into(), y.into(), Part::All);
+        Self::from_source(label, Source::Rows(Rows { x, y, part }))
+    }
+
+    /// A dashed horizontal line across all other series of the chart.
+    pub fn level(label: impl Into<String>, height: f64) -> Self {
+        Self::from_source(label, Source::Level(height)).style(Style::Dashed)
+    }
+
+    /// A dashed vertical line from zero to above all other series of the chart.
+    pub fn place(label: impl Into<String>, x: f64) -> Self {
+        Self::from_source(label, Source::Place(x)).style(Style::Dashed)
+    }
+
+    fn from_source(label: impl Into<String>, source: Source) -> Self {
+        Self {
+            label: label.into(),
+            source,
+            ..Self::default()
+        }
+    }
+
+    /// Takes only a part of the rows.
+    pub fn part(mut self, part: Part) -> Self {
+        if let Source::Rows(rows) = &mut self.source {
+            rows.part = part;
+        }
+        self
     }
 
     /// Sets an interval at each point, drawn as an error bar.
@@ -65,18 +129,22 @@ impl Series {
 }
 
 /// A chart with its axes and curves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Chart {
     /// Heading; empty for none.
     pub title: String,
     /// Second line under the heading, for the conditions of the run.
     pub subtitle: Option<String>,
+    /// What to read in it, in one sentence; empty for none.
+    pub note: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
     /// Curves, drawn in order.
     pub series: Vec<Series>,
+    /// Coloured cells below the curves, with both axes to the same scale.
+    pub field: Option<Field>,
     /// Horizontal range in the axis unit; `None` fits the data.
     pub x_range: Option<(f64, f64)>,
     /// Vertical range in the axis unit; `None` fits the data.
@@ -84,7 +152,7 @@ pub struct Chart {
     /// Colours the series along a gradient from first to last, with the gradient as legend; for superimposed
     /// cycles.
     pub colour_by_order: bool,
-    /// Width and height in pixels; text and line widths scale with the page width.
+    /// Width and height in pixels of a chart that is drawn alone; text and line widths scale with the width.
     pub size_px: (u32, u32),
 }
 
@@ -93,15 +161,23 @@ impl Chart {
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self {
             title: title.into(),
-            subtitle: None,
             x,
             y,
-            series: Vec::new(),
-            x_range: None,
-            y_range: None,
-            colour_by_order: false,
             size_px: (1400, 950),
+            ..Self::default()
         }
+    }
+
+    /// Says what to read in it.
+    pub fn note(mut self, note: impl Into<String>) -> Self {
+        self.note = note.into();
+        self
+    }
+
+    /// Puts a text before the line under the heading.
+    pub fn head(&mut self, text: &str) {
+        let before = self.subtitle.take().filter(|t| !t.is_empty());
+        self.subtitle = Some(before.map_or(text.to_owned(), |t| format!("{text}; {t}")));
     }
 
     /// Adds a curve.
@@ -110,7 +186,13 @@ impl Chart {
         self
     }
 
-    /// Adds a curve, unless it is zero throughout or has no finite point.
+    /// Adds curves.
+    pub fn with_all(mut self, series: impl IntoIterator<Item = Series>) -> Self {
+        self.series.extend(series);
+        self
+    }
+
+    /// Adds a curve of points, unless it is zero throughout or has no finite point.
     pub fn with_unless_zero(self, series: Series) -> Self {
         let shown = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite() && p.1 != 0.0;
         if series.points.iter().any(shown) {
@@ -120,16 +202,71 @@ impl Chart {
         }
     }
 
-    /// Whether any point can be shown.
+    /// What the chart shows as a line of text: title, axes with their units, and series.
+    pub fn describe(&self) -> String {
+        let axis = |a: &Axis| match (a.unit.as_str(), a.log) {
+            ("", false) => a.name.clone(),
+            ("", true) => format!("{} (logarithmic)", a.name),
+            (unit, false) => format!("{} ({unit})", a.name),
+            (unit, true) => format!("{} ({unit}, logarithmic)", a.name),
+        };
+        let labels = self.series.iter().map(|s| s.label.as_str());
+        let labels: Vec<&str> = labels.filter(|l| !l.is_empty()).collect();
+        let of = if labels.is_empty() { "" } else { ": " };
+        format!(
+            "{}; {} over {}{of}{}",
+            self.title,
+            axis(&self.y),
+            axis(&self.x),
+            labels.join(", ")
+        )
+    }
+
+    /// Whether any point or cell can be shown.
     pub fn has_data(&self) -> bool {
-        self.series
-            .iter()
-            .any(|s| s.points.iter().any(|p| self.shows(p)))
+        let points = |s: &Series| s.points.iter().any(|p| self.shows(p));
+        self.field.as_ref().is_some_and(|f| !f.cells.is_empty()) || self.series.iter().any(points)
     }
 
     /// Whether a point can be shown on both axes.
     pub fn shows(&self, p: &(f64, f64)) -> bool {
         let on = |axis: &Axis, v: f64| v.is_finite() && (!axis.log || v > 0.0);
         on(&self.x, p.0) && on(&self.y, p.1)
+    }
+}
+
+/// Limit on the charts of a figure.
+const MOST_CHARTS: usize = 12;
+
+/// Charts on one page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figure {
+    /// Name of the figure, and of its PNG file without `.png`.
+    pub name: String,
+    /// The charts, row by row.
+    pub charts: Vec<Chart>,
+    /// Number of columns on the page.
+    pub columns: usize,
+}
+
+impl Figure {
+    /// Name of the file in the folder of a run with its figures as data, a list in JSON.
+    pub const FILE: &str = "figures.json";
+
+    /// Charts on one page, in a number of columns.
+    pub fn new(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
+        Self {
+            name: name.into(),
+            charts: charts.into(),
+            columns,
+        }
+    }
+
+    /// The figure with the points of all series, from the statistics of a run; charts without data, and those
+    /// beyond the twelfth, are left out.
+    pub fn resolve(&self, columns: &dyn Columns) -> Self {
+        let charts = self.charts.iter().map(|c| c.resolve(columns));
+        let charts: Vec<Chart> = charts.filter(Chart::has_data).take(MOST_CHARTS).collect();
+        Self::new(self.name.clone(), charts, self.columns)
     }
 }

@@ -28,8 +28,7 @@ pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &
         scatter.unwrap_or_default()
     )
     .replace("+-", "±");
-    let before = chart.subtitle.take().filter(|t| !t.is_empty());
-    chart.subtitle = Some(before.map_or(text.clone(), |t| format!("{t}; {text}")));
+    chart.subtitle = Some(text);
 }
 
 /// The friction coefficient at the last complete cycle, with an interval of all half-widths that are known.
@@ -74,8 +73,8 @@ mod tests {
     #[test]
     fn the_heading_has_the_half_widths_and_what_is_not_known() {
         let mut chart = Chart::new("", Axis::new("", ""), Axis::new("", ""));
-        chart.subtitle = Some("case".to_owned());
         estimated(&mut chart, "friction coefficient", &known(), "");
+        chart.head("case");
         assert_eq!(
             chart.subtitle.as_deref(),
             Some(

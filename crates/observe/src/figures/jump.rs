@@ -4,41 +4,27 @@ use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;
 use fretwork_core::process::jump::{JumpSummary, Point};
 
-/// `jump.png`: wear volume and mean damage against cycles, computed and jumped.
-pub(crate) fn charts(title: &str, jump: &JumpSummary, dimension: usize) -> Output {
-    let unit = if dimension == 2 { "m^3/m" } else { "m^3" };
-    let mut charts = Vec::new();
-    type Value = fn(&Point) -> f64;
-    let volume: Value = |p| p.wear_volume;
-    let damage: Value = |p| p.mean_damage;
-    for (what, unit, value) in [
-        ("wear volume V", unit, volume),
-        ("mean damage D", "", damage),
-    ] {
+/// Wear volume and mean damage against cycles, computed and jumped.
+pub(crate) fn charts(jump: &JumpSummary, dimension: usize) -> Output {
+    let volume = if dimension == 2 { "m^3/m" } else { "m^3" };
+    let chart = |heading: &str, y: Axis, value: fn(&Point) -> f64| {
         let at = |p: &Point| (f64::from(p.cycles), value(p));
-        if jump.points.iter().all(|p| value(p) == 0.0) {
-            continue;
-        }
-        let all = jump.points.iter().map(at).collect();
         let alone = jump.points.iter().filter(|p| p.cycle_multiplier == 1);
-        let mut chart = Chart::new(
-            format!(
-                "{} by cycle",
-                ["Damage", "Wear"][usize::from(!unit.is_empty())]
-            ),
-            Axis::new("cycle number N", "").whole(),
-            Axis::new(what, unit),
-        );
-        chart.subtitle = Some(title.to_owned());
-        charts.push(
-            chart
-                .with(Series::new("jumped", all).style(Style::Dashed))
-                .with(
-                    Series::new("computed one by one", alone.map(at).collect())
-                        .style(Style::Markers),
-                ),
-        );
-    }
-    let columns = charts.len();
-    Output::charts("jump.png".into(), charts, columns)
+        Chart::new(heading, Axis::cycles(), y)
+            .with_unless_zero(
+                Series::new("jumped", jump.points.iter().map(at).collect()).style(Style::Dashed),
+            )
+            .with_unless_zero(
+                Series::new("computed one by one", alone.map(at).collect()).style(Style::Markers),
+            )
+    };
+    let charts = [
+        chart("Wear by cycle", Axis::new("wear volume V", volume), |p| {
+            p.wear_volume
+        }),
+        chart("Damage by cycle", Axis::new("mean damage D", ""), |p| {
+            p.mean_damage
+        }),
+    ];
+    Output::figure("jump", charts, 2)
 }

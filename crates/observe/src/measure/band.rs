@@ -6,7 +6,7 @@
 //! width across that line is the mean over the rows.
 
 use super::{Observer, RunEnd, grains, line};
-use crate::chart::{Axis, Chart, Series};
+use crate::chart::{Axis, Chart, Series, Value};
 use crate::code::{self, CodeError};
 use crate::output::Output;
 use crate::statistics::{Column, Table};
@@ -144,25 +144,20 @@ impl<S: Space> Observer<S> for Band<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let RunEnd { title, table, .. } = *end;
-        let chart = |part: &str, name: &str, unit: &'static str, factor: f64| {
-            let points = super::since(table, &format!("{}_{part}", self.name), 0.0);
-            let points = points.into_iter().map(|(t, v)| (t, factor * v)).collect();
-            let mut chart = Chart::new(
-                format!("Shear band {}", self.name),
-                Axis::new("time t", "s"),
-                Axis::new(name, unit),
-            )
-            .with(Series::new(String::new(), points));
-            chart.subtitle = Some(title.to_owned());
-            chart
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        let chart = |part: &str, y: Axis, factor: f64| {
+            let value = Value {
+                factor,
+                ..Value::from(format!("{}_{part}", self.name))
+            };
+            Chart::new(format!("Shear band {}", self.name), Axis::time(), y)
+                .with(Series::rows("", "time", value))
         };
         let charts = [
-            chart("angle", "angle with x", "deg", 180.0 / PI),
-            chart("width", "width", "m", 1.0),
+            chart("angle", Axis::new("angle with x", "deg"), 180.0 / PI),
+            chart("width", Axis::of_rows("width"), 1.0),
         ];
-        vec![Output::charts(format!("{}.png", self.name), charts, 2)]
+        vec![Output::figure(&self.name, charts, 2)]
     }
 }
 

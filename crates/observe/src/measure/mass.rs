@@ -1,7 +1,8 @@
 //! Mass above a level, for example the content of a silo.
 
 use super::{Observer, RunEnd, grains, line, since};
-use crate::chart::{Axis, Chart, Series};
+use crate::chart::Axis;
+use crate::figures::history;
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
@@ -54,16 +55,9 @@ impl<S: Space> Observer<S> for Mass {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let RunEnd { title, table, .. } = *end;
-        let unit = if S::D == 2 { "kg/m" } else { "kg" };
-        let mut chart = Chart::new(
-            format!("Mass, {}", self.name),
-            Axis::new("time t", "s"),
-            Axis::new("mass m", unit),
-        )
-        .with_unless_zero(Series::new(String::new(), since(table, &self.name, 0.0)));
-        chart.subtitle = Some(title.to_owned());
-        vec![Output::charts(format!("{}.png", self.name), [chart], 1)]
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        let heading = format!("Mass, {}", self.name);
+        let chart = history(heading, Axis::of_rows("mass m"), &[("", &self.name)]);
+        vec![Output::figure(&self.name, [chart], 1)]
     }
 }

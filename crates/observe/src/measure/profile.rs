@@ -171,8 +171,7 @@ impl<S: Space> Observer<S> for Profile<S> {
             .to_vec()
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let title = end.title;
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         let rows = self.rows();
         let mut text = self.header().join(",") + "\n";
         for row in &rows {
@@ -185,9 +184,7 @@ impl<S: Space> Observer<S> for Profile<S> {
             points.filter(|p| p.1.is_finite()).collect()
         };
         let chart = |heading: &str, unit: &'static str, y: &str| {
-            let mut chart = Chart::new(heading, Axis::new(axis, "m"), Axis::new(y, unit));
-            chart.subtitle = Some(title.to_owned());
-            chart
+            Chart::new(heading, Axis::new(axis, "m"), Axis::new(y, unit))
         };
         let mut velocity = chart("Velocity", "m/s", "mean velocity v");
         for (k, a) in ["v_x", "v_y", "v_z"].iter().enumerate().take(S::D) {
@@ -208,7 +205,7 @@ impl<S: Space> Observer<S> for Profile<S> {
         let file = format!("{}.csv", self.name);
         vec![
             Output::Text { file, text },
-            Output::charts(format!("{}.png", self.name), panels, 2),
+            Output::figure(&self.name, panels, 2),
         ]
     }
 }

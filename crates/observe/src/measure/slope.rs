@@ -1,7 +1,7 @@
 //! Angle of a free surface: a straight line through the highest grain of each column.
 
 use super::{Observer, RunEnd, grains, line, mean, since};
-use crate::chart::{Axis, Chart, Series};
+use crate::chart::{Axis, Chart, Series, Value};
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -75,20 +75,14 @@ impl<S: Space> Observer<S> for Slope {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let RunEnd { title, table, .. } = *end;
-        let degrees = since(table, &self.name, 0.0);
-        let degrees = degrees
-            .into_iter()
-            .map(|(t, a)| (t, a.to_degrees()))
-            .collect();
-        let mut chart = Chart::new(
-            format!("Angle of the surface, {}", self.name),
-            Axis::new("time t", "s"),
-            Axis::new("angle θ", "deg"),
-        )
-        .with(Series::new(String::new(), degrees));
-        chart.subtitle = Some(title.to_owned());
-        vec![Output::charts(format!("{}.png", self.name), [chart], 1)]
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        let value = Value {
+            factor: 1f64.to_degrees(),
+            ..Value::from(self.name.as_str())
+        };
+        let heading = format!("Angle of the surface, {}", self.name);
+        let chart = Chart::new(heading, Axis::time(), Axis::new("angle θ", "deg"))
+            .with(Series::rows("", "time", value));
+        vec![Output::figure(&self.name, [chart], 1)]
     }
 }

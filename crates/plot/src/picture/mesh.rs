@@ -1,10 +1,11 @@
 //! Deformable bodies in the plane: their elements, in grey or by their von Mises stress.
 
 use super::images;
-use crate::{Outline, Paint, Scale, round_top};
+use crate::{Outline, Paint, Scale};
 use fretwork_core::bodies::von_mises;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
+use fretwork_observe::chart::round_top;
 use std::collections::HashMap;
 
 /// Elements in a window with their corners and stress (Pa); of grains only where asked for.

@@ -1,10 +1,11 @@
 //! Default quantity for the colours of grains: their speed, or the damage of their bonds if there are bonds.
 
-use crate::{Paint, Scale, round_top};
+use crate::{Paint, Scale};
 use fretwork_core::contact::{BondState, Key};
 use fretwork_core::fields::Field;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
+use fretwork_observe::chart::round_top;
 use fretwork_observe::placement::is_first;
 
 /// Fraction of the grains whose speed is within the colour bar, so that a few fast grains do not make all

@@ -1,11 +1,12 @@
 //! The report of one run.
 
 use super::{Page, cite, escape, footer, inputs, laws, results, section, verdict};
+use crate::arrays::Arrays;
 use crate::folder::RunFolder;
 use crate::materials::Files;
 use crate::scene::Scene;
 use crate::series::Series;
-use crate::{Options, figures, tables};
+use crate::{Options, figures};
 use crate::{laws as law_data, results::quantity};
 use serde_json::{Value, json};
 
@@ -24,24 +25,19 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     } else {
         ALL_ROWS
     };
-    let mut series = Series::read(run, most, &mut gaps);
-    let mut packed = series.packed();
+    let (mut statistics, mut data, mut packed) = numbers(run, most, &mut gaps);
     while let Some(bytes) = options
         .bytes
         .filter(|b| packed.len() > b / SHARE && most > 200)
     {
         most = (most * (bytes / SHARE) / packed.len()).max(200);
-        series = Series::read(run, most, &mut gaps);
-        packed = series.packed();
+        gaps.clone_from(&run.gaps);
+        (statistics, data, packed) = numbers(run, most, &mut gaps);
     }
     let files = Files::read(run);
-    let tables = tables::read(run, options.bytes.map(|b| b / SHARE), &mut gaps);
     let mut page = Page {
         title: format!("{} - Fretwork", run.title),
-        data: json!({
-            "series": series.head(),
-            "figures": figures::of(run, &series, &tables),
-        }),
+        data,
         viewer: true,
         ..Page::default()
     };
@@ -52,7 +48,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     let scene = Scene::read(run, room, &mut gaps);
     page.viewer = scene.is_some();
     page.body = head(run, &gaps);
-    page.body += &section("results", "Results", &results::html(run, &series));
+    page.body += &section("results", "Results", &results::html(run, &statistics));
     if let Some(scene) = &scene {
         page.body += &section("scene", "Scene", &viewer(scene));
         page.data["scene"] = scene.head.clone();
@@ -66,14 +62,25 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     page.body += &section(
         "figures",
         "Figures",
-        &figure_frames(&page.data["figures"], &series),
+        &figure_frames(&page.data["figures"], &statistics),
     );
     page.body += &after;
-    page.blobs.push(("series".to_owned(), packed));
+    page.blobs.push(("numbers".to_owned(), packed));
     let frames = scene.into_iter().flat_map(|s| s.frames).enumerate();
     page.blobs
         .extend(frames.map(|(k, text)| (format!("frame-{k}"), text)));
     page.html()
+}
+
+/// The statistics with at most about so many rows, and the figures: what scripts read of them, and the packed numbers.
+fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Series, Value, String) {
+    let statistics = Series::read(run, most, gaps);
+    let mut numbers = Arrays::default();
+    let columns = figures::columns("", "", &statistics, &mut numbers);
+    let mut list = figures::json(&figures::of_run(run, &statistics, gaps), &mut numbers);
+    list.extend((statistics.columns.len() > 1).then(|| json!({"any": true})));
+    let data = json!({"runs": [columns], "figures": list});
+    (statistics, data, numbers.packed())
 }
 
 /// Title, verdict and links.
@@ -151,12 +158,12 @@ fn viewer(scene: &Scene) -> String {
     )
 }
 
-fn figure_frames(figures: &Value, series: &Series) -> String {
-    let sampled = match series.every {
+fn figure_frames(figures: &Value, statistics: &Series) -> String {
+    let sampled = match statistics.every {
         0 | 1 => String::new(),
         n => format!(
             " One of {n} rows of the statistics is in this page, {} in all.",
-            series.rows
+            statistics.rows
         ),
     };
     let mut out = format!(

@@ -2,7 +2,7 @@
 
 use super::super::super::Failure;
 use super::table::Row;
-use crate::report::{Axis, Chart, DrawChart, Series};
+use crate::report::{Axis, Chart, Series, draw_panels};
 use std::path::Path;
 
 pub(super) fn write_csv(file: &Path, rows: &[Row]) -> Result<(), Failure> {
@@ -15,7 +15,9 @@ pub(super) fn write_csv(file: &Path, rows: &[Row]) -> Result<(), Failure> {
 }
 
 pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failure> {
-    let fail = |e: crate::report::ReportError| Failure::Failed(e.to_string());
+    let draw = |file: &Path, chart: Chart| {
+        draw_panels(&[chart], 1, file).map_err(|e| Failure::Failed(e.to_string()))
+    };
     let points = |x: &dyn Fn(&Row) -> f64, y: &dyn Fn(&Row) -> f64| {
         rows.iter().map(|r| (x(r), y(r))).collect::<Vec<_>>()
     };
@@ -23,7 +25,7 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
         .iter()
         .any(|r| r.traction_n != 0.0 || r.traction_t1 != 0.0);
     if let Some(chart) = thermal_chart(rows, &title) {
-        return chart.draw(file).map_err(fail);
+        return draw(file, chart);
     }
     if !carries && rows.iter().any(|r| r.tension_strength > 0.0) {
         let chart = Chart::new(
@@ -35,7 +37,7 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
             "attraction",
             points(&|r| r.opening_n, &|r| r.tension_strength),
         ));
-        return chart.draw(file).map_err(fail);
+        return draw(file, chart);
     }
     if !carries {
         let chart = Chart::new(
@@ -44,12 +46,12 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
             Axis::new("friction coefficient µ", ""),
         )
         .with(Series::new("", points(&Row::opening, &|r| r.friction)));
-        return chart.draw(file).map_err(fail);
+        return draw(file, chart);
     }
     // Signed along the first opening direction, so that cycles plot as loops.
     let sign = |r: &Row| if r.opening_t1 < 0.0 { -1.0 } else { 1.0 };
     let signed = |r: &Row| sign(r) * r.opening();
-    Chart::new(
+    let traction = Chart::new(
         title.clone(),
         Axis::new("opening δ", "m"),
         Axis::new("traction T", "Pa"),
@@ -57,19 +59,17 @@ pub(super) fn draw(file: &Path, rows: &[Row], title: String) -> Result<(), Failu
     .with(Series::new(
         "traction along the opening",
         points(&signed, &|r| sign(r) * r.along()),
-    ))
-    .draw(file)
-    .map_err(fail)?;
+    ));
+    draw(file, traction)?;
     let mut name = file.file_stem().unwrap_or_default().to_os_string();
     name.push("_damage.png");
-    Chart::new(
+    let damage = Chart::new(
         title,
         Axis::new("opening δ", "m"),
         Axis::new("damage D", ""),
-    )
-    .with(Series::new("", points(&signed, &|r| r.damage)))
-    .draw(&file.with_file_name(name))
-    .map_err(fail)
+    );
+    let damage = damage.with(Series::new("", points(&signed, &|r| r.damage)));
+    draw(&file.with_file_name(name), damage)
 }
 
 /// Conductance, or friction, against what is raised: pressure or temperature.

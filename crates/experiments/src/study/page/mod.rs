@@ -2,12 +2,13 @@
 
 mod effects;
 
-use super::analysis::{Analysis, OutputAnalysis, Regimes, Response, logarithmic_axis};
+use super::analysis::{Analysis, OutputAnalysis};
+use super::figures::{regime_chart, response_chart};
 use super::plan::Plan;
 use super::table::{Cell, Table};
 use effects::{comparison_table, effect_blocks, pair_table};
 use fretwork_observe::quantity::quantity;
-use fretwork_report::{Block, Section, Sheet, SheetCurve, SheetFigure, SheetTable};
+use fretwork_report::{Block, Section, Sheet, SheetTable};
 use fretwork_study::interval::Mean;
 
 /// Settings that a page lists; all are in the tables.
@@ -24,7 +25,7 @@ pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
     }
     let maps = analysis.regimes.iter();
     let maps: Vec<Block> = maps
-        .filter_map(|r| Some(Block::Figure(regime_figure(plan, r)?)))
+        .filter_map(|r| Some(Block::Figure(regime_chart(plan, r)?)))
         .collect();
     if !maps.is_empty() {
         sections.push(Section {
@@ -78,7 +79,7 @@ fn output_section(plan: &Plan, output: &OutputAnalysis) -> Section {
         output
             .responses
             .iter()
-            .map(|r| Block::Figure(response_figure(plan, output, r))),
+            .map(|r| Block::Figure(response_chart(plan, output, r))),
     );
     blocks.extend(effect_blocks(plan, output));
     Section {
@@ -93,56 +94,6 @@ pub(super) fn title_of(name: &str) -> String {
         .trim_start_matches("findings.")
         .trim_start_matches("statistics.")
         .replace('_', " ")
-}
-
-fn response_figure(plan: &Plan, output: &OutputAnalysis, response: &Response) -> SheetFigure {
-    let factor = &plan.factors[response.factor];
-    let interval = |m: &Mean| match m.half_width {
-        Some(h) => (m.mean - h, m.mean + h),
-        None => (f64::NAN, f64::NAN),
-    };
-    let curve = |c: &super::analysis::Curve| SheetCurve {
-        label: if c.label.is_empty() {
-            title_of(&output.name)
-        } else {
-            c.label.clone()
-        },
-        points: c.points.iter().map(|(x, m)| (*x, m.mean)).collect(),
-        intervals: c.points.iter().map(|(_, m)| interval(m)).collect(),
-        line: !response.scattered,
-        markers: true,
-    };
-    SheetFigure {
-        title: format!("{} over {}", title_of(&output.name), factor.name),
-        note: response.note.clone(),
-        x: (factor.name.clone(), plan.unit_of(response.factor)),
-        y: (title_of(&output.name), output.unit.clone()),
-        logarithmic: (logarithmic_axis(plan, response.factor), false),
-        curves: response.curves.iter().map(curve).collect(),
-    }
-}
-
-fn regime_figure(plan: &Plan, regimes: &Regimes) -> Option<SheetFigure> {
-    let map = regimes.map.as_ref()?;
-    let (first, second) = map.axes;
-    let axis = |f: usize| (plan.factors[f].name.clone(), plan.unit_of(f));
-    let curves = map.places.iter().map(|(regime, places)| SheetCurve {
-        label: regime.clone(),
-        points: places.clone(),
-        markers: true,
-        ..SheetCurve::default()
-    });
-    Some(SheetFigure {
-        title: format!("Regimes by {}", title_of(&regimes.name)),
-        note: "The regime that at least half of the runs of a setting show; a setting without a mark shows several.".to_owned(),
-        x: axis(first),
-        y: second.map_or((String::new(), String::new()), axis),
-        logarithmic: (
-            logarithmic_axis(plan, first),
-            second.is_some_and(|f| logarithmic_axis(plan, f)),
-        ),
-        curves: curves.collect(),
-    })
 }
 
 fn settings_section(plan: &Plan, table: &Table, analysis: &Analysis) -> Section {

@@ -13,9 +13,10 @@
 mod means;
 mod sums;
 
-use super::{Observer, RunEnd, since};
-use crate::chart::{Axis, Chart, Series};
+use super::{Observer, RunEnd};
+use crate::chart::Axis;
 use crate::code::{self, CodeError};
+use crate::figures::history;
 use crate::output::Output;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
@@ -186,27 +187,17 @@ impl<S: Space> Observer<S> for Shear<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let RunEnd { title, table, .. } = *end;
-        let chart = |part: &str, heading: &str, name: &str, unit: &'static str| {
-            let points = since(table, &self.column(part), 0.0);
-            let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit))
-                .with_unless_zero(Series::new(String::new(), points));
-            chart.subtitle = Some(title.to_owned());
-            chart
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+        let chart = |part: &str, heading: &str, name: &str| {
+            history(heading, Axis::of_rows(name), &[("", self.column(part))])
         };
         let panels = [
-            chart(
-                "mu",
-                "Effective friction",
-                "friction coefficient µ = τ/p",
-                "",
-            ),
-            chart("phi", "Solid fraction", "solid fraction φ", ""),
-            chart("I", "Inertial number", "inertial number I", ""),
-            chart("p", "Pressure", "normal stress p", "Pa"),
+            chart("mu", "Effective friction", "friction coefficient µ = τ/p"),
+            chart("phi", "Solid fraction", "solid fraction φ"),
+            chart("I", "Inertial number", "inertial number I"),
+            chart("p", "Pressure", "normal stress p"),
         ];
-        vec![Output::charts(format!("{}.png", self.name), panels, 2)]
+        vec![Output::figure(&self.name, panels, 2)]
     }
 }
 

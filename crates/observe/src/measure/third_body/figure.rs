@@ -4,25 +4,18 @@
 use super::cells::{Block, Cell, MECHANISMS};
 use super::tables::powers;
 use crate::chart::{Axis, Chart, Series, Style, quantity};
+use crate::figures::history;
 
 /// Content of the figure.
 pub(super) struct Figure<'a> {
-    /// Title of the case.
-    pub title: &'a str,
     /// The whole time.
     pub whole: &'a Block,
     /// Its time slices.
     pub slices: &'a [Block],
     /// The first bodies.
     pub between: &'a (String, String),
-    /// Pairs (time, thickness).
-    pub thickness: Vec<(f64, f64)>,
-    /// Pairs (time, mean cluster size by mass) and (time, largest), if there are bonds.
-    pub clusters: [Vec<(f64, f64)>; 2],
-    /// Pairs (time, fraction of the grains) and (time, fraction of the force) in force chains.
-    pub chains: [Vec<(f64, f64)>; 2],
-    /// Pairs (time, shear of the interior over the sliding).
-    pub shear: Vec<(f64, f64)>,
+    /// Name of a column of the statistics from that of its quantity.
+    pub column: &'a dyn Fn(&str) -> String,
     /// Dimension, 2 or 3.
     pub dimension: usize,
     /// Whether grains have temperatures.
@@ -57,7 +50,6 @@ impl Figure<'_> {
     fn chart(&self, heading: &str, name: &str, unit: &str) -> Chart {
         let upwards = format!("y/e, {} to {}", self.between.0, self.between.1);
         let mut chart = Chart::new(heading, Axis::new(name, unit), Axis::new(upwards, ""));
-        chart.subtitle = Some(self.title.to_owned());
         chart.y_range = Some((0.0, 1.0));
         chart
     }
@@ -148,12 +140,6 @@ impl Figure<'_> {
         self.beside(chart, lines)
     }
 
-    fn history(&self, heading: &str, name: &str, unit: &str) -> Chart {
-        let mut chart = Chart::new(heading, Axis::new("time t", "s"), Axis::new(name, unit));
-        chart.subtitle = Some(self.title.to_owned());
-        chart
-    }
-
     /// The panels of the figure.
     pub fn charts(&self) -> Vec<Chart> {
         let mut charts = vec![
@@ -179,29 +165,36 @@ impl Figure<'_> {
             let chart = self.chart("Temperature", "mean temperature T", "K");
             charts.push(self.in_time(chart, Cell::temperature));
         }
-        charts.push(
-            self.history("Thickness of the third body", "thickness e", "m")
-                .with(Series::new(String::new(), self.thickness.clone())),
-        );
-        let lines = |mut chart: Chart, labels: [&str; 2], points: &[Vec<(f64, f64)>; 2]| {
-            for (label, points) in labels.into_iter().zip(points) {
-                chart = chart.with(Series::new(label, points.clone()));
-            }
-            chart
+        let mut add = |heading: &str, y: Axis, series: &[(&str, &str)]| {
+            let columns: Vec<(&str, String)> = series
+                .iter()
+                .map(|(label, part)| (*label, (self.column)(part)))
+                .collect();
+            charts.push(history(heading, y, &columns));
         };
+        let thickness = Axis::of_rows("thickness e");
+        add(
+            "Thickness of the third body",
+            thickness,
+            &[("", "thickness")],
+        );
         if tied {
-            let chart = self.history("Clusters of bonded grains", "grains in a cluster", "");
-            charts.push(lines(chart, ["mean by mass", "largest"], &self.clusters));
+            add(
+                "Clusters of bonded grains",
+                Axis::new("grains in a cluster", ""),
+                &[
+                    ("mean by mass", "cluster_mean"),
+                    ("largest", "cluster_largest"),
+                ],
+            );
         } else {
-            let chart = self.history("Force chains", "share in force chains", "");
-            charts.push(lines(
-                chart,
-                ["of the grains", "of the force"],
-                &self.chains,
-            ));
-            let name = "shear of the interior / sliding";
-            let chart = self.history("Interior, 10 % to 90 % of e", name, "");
-            charts.push(chart.with(Series::new(String::new(), self.shear.clone())));
+            add(
+                "Force chains",
+                Axis::new("share in force chains", ""),
+                &[("of the grains", "chains"), ("of the force", "chain_force")],
+            );
+            let y = Axis::new("shear of the interior / sliding", "");
+            add("Interior, 10 % to 90 % of e", y, &[("", "interior_shear")]);
         }
         charts
     }

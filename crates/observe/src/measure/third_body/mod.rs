@@ -394,8 +394,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         ends.map(|end| format!("{}{end}", self.spec.name)).to_vec()
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let RunEnd { title, table, .. } = *end;
+    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         let name = &self.spec.name;
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
         let text = |part: &str, text: String| Output::Text {
@@ -410,20 +409,15 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
                 tables::clusters(&self.clusters, self.inertia_scaling, S::D),
             ),
         ];
-        let column = |part: &str| since(table, &self.column(part), f64::NEG_INFINITY);
         let figure = figure::Figure {
-            title,
             whole: &whole,
             slices: &slices,
             between: &self.spec.between,
-            thickness: column("thickness"),
-            clusters: [column("cluster_mean"), column("cluster_largest")],
-            chains: [column("chains"), column("chain_force")],
-            shear: column("interior_shear"),
+            column: &|part| self.column(part),
             dimension: S::D,
             heated: self.heated,
         };
-        outputs.push(Output::charts(format!("{name}.png"), figure.charts(), 2));
+        outputs.push(Output::figure(name, figure.charts(), 2));
         outputs
     }
 }

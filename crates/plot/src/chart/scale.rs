@@ -1,12 +1,13 @@
 //! Axis scales: ranges and round tick values fitted to the data.
 
-use super::canvas::ReportError;
+use crate::canvas::ReportError;
 use fretwork_observe::chart::{Axis, number, superscript};
 
 /// A scale fitted to data: range, tick values and labels.
 #[derive(Clone, Debug)]
-pub(super) struct Scale {
-    exponent: i32,
+pub(crate) struct Scale {
+    /// Exponent of ten by which values are divided.
+    pub exponent: i32,
     log: bool,
     /// Range in displayed values (divided by the power of ten, or its logarithm).
     pub range: (f64, f64),
@@ -89,6 +90,11 @@ impl Scale {
             scale.minor = all.filter(|v| (a..=b).contains(v)).collect();
         }
         Ok(scale)
+    }
+
+    /// Share of the range at which a displayed value lies.
+    pub fn share(&self, shown: f64) -> f64 {
+        (shown - self.range.0) / (self.range.1 - self.range.0)
     }
 
     /// Displayed value for a value in the axis unit; NaN if it cannot be shown.

@@ -1,6 +1,6 @@
 //! Curves in pixels: colours, thinning, lines and markers.
 
-use super::canvas::{Canvas, Rgb, WHITE, mix};
+use crate::canvas::{Canvas, Rgb, WHITE, mix};
 use fretwork_observe::chart::Style;
 
 /// Colours for readers with colour vision deficiency (Okabe and Ito).

@@ -1,9 +1,9 @@
 //! Legend of a chart: a box where no curve passes, or rows above the plot.
 
-use super::canvas::{Canvas, INK, Rgb, WHITE};
-use super::chart::{Plot, Runs, Sheet, TEXT};
 use super::curve::{draw_series, gradient};
-use super::font::{Anchor, TextStyle, text_width};
+use super::{Layout, Runs};
+use crate::canvas::{Canvas, INK, Rgb, TEXT, WHITE};
+use crate::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::{Chart, Style};
 
 /// Size of a legend in pixels.
@@ -20,8 +20,8 @@ const SAMPLE: f32 = 56.0;
 const PAD: f32 = 14.0;
 
 impl Legend {
-    /// The legend of a chart, if it needs one; `u` is the scale of the picture.
-    pub fn of(chart: &Chart, u: f32) -> Option<Self> {
+    /// The legend of a chart, if it needs one.
+    pub fn of(Layout { chart, u, .. }: &Layout<'_>) -> Option<Self> {
         let em = TEXT * u;
         let labels = labels(chart);
         let (first, last) = (labels.first()?, labels.last()?);
@@ -41,7 +41,8 @@ impl Legend {
     }
 
     /// Corner of a free area of the plot, in pixels of the picture, that no curve crosses.
-    pub fn free_place(&self, curves: &[Runs], plot: &Plot, u: f32) -> Option<[f32; 2]> {
+    pub fn free_place(&self, curves: &[Runs], layout: &Layout<'_>) -> Option<[f32; 2]> {
+        let (plot, u) = (&layout.plot, layout.u);
         let (width, height) = (plot.width as f32, plot.height as f32);
         let gap = 20.0 * u;
         if self.width + 2.0 * gap > width || self.height + 2.0 * gap > height {
@@ -100,7 +101,8 @@ impl Legend {
     }
 
     /// Draws the legend with its top left corner at a pixel of the picture.
-    pub fn draw(&self, chart: &Chart, page: &mut Canvas, [left, top]: [f32; 2], u: f32) {
+    pub fn draw(&self, layout: &Layout<'_>, page: &mut Canvas, [left, top]: [f32; 2]) {
+        let Layout { chart, u, .. } = layout;
         let em = TEXT * u;
         let edge: Rgb = [200, 204, 210];
         page.rect([left, top, self.width, self.height], WHITE);
@@ -124,23 +126,23 @@ impl Legend {
         }
         for (rank, (index, label)) in labels.iter().enumerate() {
             let middle = top + (0.6 * PAD + (rank as f32 + 0.5) * LINE) * u;
-            entry(chart, page, (*index, label), [left + PAD * u, middle], u);
+            entry(layout, page, (*index, label), [left + PAD * u, middle]);
         }
     }
 }
 
 /// A line sample of a series and its label, from a point on the middle of the line.
 fn entry(
-    chart: &Chart,
+    layout: &Layout<'_>,
     page: &mut Canvas,
     (index, label): (usize, &str),
     [from, middle]: [f32; 2],
-    u: f32,
 ) {
+    let Layout { chart, u, .. } = *layout;
     let em = TEXT * u;
     let to = from + SAMPLE * u;
     let style = chart.series[index].style;
-    let colour = Sheet(chart).colour(index);
+    let colour = layout.colour(index);
     let centre = [(from + to) / 2.0, middle];
     if style != Style::Markers {
         let plain = if style == Style::Dashed {
@@ -167,8 +169,10 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Arranges the entries within a width in pixels; `u` is the scale of the picture.
-    pub fn of(chart: &Chart, width: f32, u: f32) -> Self {
+    /// Arranges the entries within the width of the plot.
+    pub fn of(layout: &Layout<'_>) -> Self {
+        let Layout { chart, u, plot, .. } = layout;
+        let width = plot.width as f32;
         if chart.colour_by_order {
             return Self {
                 height: (LINE + 3.0 * PAD) * u,
@@ -189,24 +193,22 @@ impl Rows {
     }
 
     /// Draws the rows from a corner of the picture.
-    pub fn draw(&self, chart: &Chart, page: &mut Canvas, [left, top]: [f32; 2], u: f32) {
-        if chart.colour_by_order {
-            if let Some(legend) = Legend::of(chart, u) {
-                legend.draw(chart, page, [left, top], u);
+    pub fn draw(&self, layout: &Layout<'_>, page: &mut Canvas, [left, top]: [f32; 2]) {
+        if layout.chart.colour_by_order {
+            if let Some(legend) = Legend::of(layout) {
+                legend.draw(layout, page, [left, top]);
             }
             return;
         }
         for (index, [x, y]) in &self.entries {
-            let label = &chart.series[*index].label;
-            entry(chart, page, (*index, label), [left + x, top + y], u);
+            let label = &layout.chart.series[*index].label;
+            entry(layout, page, (*index, label), [left + x, top + y]);
         }
     }
 }
 
 /// Index and label of the series with a legend entry.
 fn labels(chart: &Chart) -> Vec<(usize, &str)> {
-    let entry =
-        |(i, s): (usize, &'_ fretwork_observe::chart::Series)| (!s.label.is_empty()).then_some(i);
-    let ranks = chart.series.iter().enumerate().filter_map(entry);
-    ranks.map(|i| (i, chart.series[i].label.as_str())).collect()
+    let all = chart.series.iter().map(|s| s.label.as_str()).enumerate();
+    all.filter(|(_, label)| !label.is_empty()).collect()
 }

@@ -1,52 +1,13 @@
-//! Maps of a contact in space as data: cells of a surface seen along its normal, with colours and arrows. A higher layer draws them.
+//! Maps of a contact in space: cells of a surface seen along its normal, with colours and arrows.
 
-use super::chart::Axis;
-use super::tractions::{FacetTraction, SurfaceState, Zone};
+use crate::chart::{Axis, Chart, Colours, Field, quantity};
+use crate::picture::{OPEN, SLIPS, STICKS};
+use crate::tractions::{FacetTraction, SurfaceState, Zone};
 use fretwork_core::geometry::space::{Space, VectorLike};
-
-/// A map of a part of a surface.
-#[derive(Clone, Debug)]
-pub struct Map {
-    /// Heading.
-    pub title: String,
-    /// Second line of the page, common to its maps.
-    pub subtitle: Option<String>,
-    /// Horizontal and vertical axis, to the same scale.
-    pub axes: [Axis; 2],
-    /// xmin, xmax, ymin, ymax (m).
-    pub window: [f64; 4],
-    /// Corners of each cell (m).
-    pub cells: Vec<Vec<[f64; 2]>>,
-    /// What the colours say.
-    pub shows: Colours,
-    /// Arrows from a place (m), and their length as a share of the longest, along both axes.
-    pub arrows: Vec<([f64; 2], [f64; 2])>,
-    /// Entry of the arrows in the legend: what the longest is.
-    pub arrow_label: String,
-}
-
-/// What the colours of the cells of a map say.
-#[derive(Clone, Debug)]
-pub enum Colours {
-    /// Whether they stick or slip.
-    Zones(Vec<Zone>),
-    /// A value of each, from zero up.
-    Values {
-        /// The values; not a number where there is none.
-        values: Vec<f64>,
-        /// What they are.
-        scale: Axis,
-    },
-}
 
 /// The maps of the contact of a surface: what sticks and slips with the tractions along the surface, pressure, shear, and their ratio;
 /// none where nothing is loaded. Tractions are those of its points where these stand for equal areas, or else those of its facets.
-pub fn of_contact<S: Space>(
-    name: &str,
-    state: &SurfaceState<S>,
-    equal: bool,
-    title: &str,
-) -> Vec<Map> {
+pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool) -> Vec<Chart> {
     let touching = |k: &usize| state.zone[*k] != Zone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
     let Some(axes) = plane(state, &loaded).filter(|_| S::D == 3) else {
@@ -62,42 +23,60 @@ pub fn of_contact<S: Space>(
         true => (cells.clone(), view.at_points(&points)),
         false => view.at_facets(),
     };
-    let map = |what: &str, cells: &[Vec<[f64; 2]>], shows: Colours| Map {
-        title: format!("{what}, {name}"),
-        subtitle: Some(title.to_owned()),
-        axes: axes.map(|axis| Axis::new(format!("position {}", ["x", "y", "z"][axis]), "m")),
-        window: view.window,
-        cells: cells.to_vec(),
-        shows,
-        arrows: Vec::new(),
-        arrow_label: String::new(),
+    let [x, y] = axes.map(|axis| Axis::new(format!("position {}", ["x", "y", "z"][axis]), "m"));
+    let chart = |what: &str, cells: &[Vec<[f64; 2]>], colours: Colours| {
+        let mut chart = Chart::new(format!("{what}, {name}"), x.clone(), y.clone());
+        let [xmin, xmax, ymin, ymax] = view.window;
+        (chart.x_range, chart.y_range) = (Some((xmin, xmax)), Some((ymin, ymax)));
+        chart.field = Some(Field {
+            cells: cells.to_vec(),
+            colours,
+            arrows: Vec::new(),
+            arrow_label: String::new(),
+        });
+        chart
     };
-    let zones = points.iter().map(|k| state.zone[*k]).collect();
-    let mut out = vec![map("Stick and slip", &cells, Colours::Zones(zones))];
     let longest = tractions.iter().fold(0.0, |most: f64, t| most.max(t.shear));
     let arrow = |(k, along): (usize, [f64; 2])| (view.at(k), along.map(|x| x / longest));
     let drawn = view.around(&loaded, equal).into_iter();
-    out[0].arrows = drawn.filter(|_| longest > 0.0).map(arrow).collect();
-    out[0].arrow_label = format!(
-        "shear, longest {}",
-        super::chart::quantity(longest, "Pa", 3)
-    );
+    let mut zones = chart("Stick and slip", &cells, zones(state, &points));
+    if let Some(field) = &mut zones.field {
+        field.arrows = drawn.filter(|_| longest > 0.0).map(arrow).collect();
+        field.arrow_label = format!("shear, longest {}", quantity(longest, "Pa", 3));
+    }
     let ratio = |t: &Local| match t.pressure > 0.0 {
         true => t.shear / t.pressure,
         false => f64::NAN,
     };
+    let mut out = vec![zones];
     let mut add = |what: &str, unit: &str, of: &dyn Fn(&Local) -> f64| {
         let value = |t: &Local| if t.loaded { of(t) } else { f64::NAN };
         let values: Vec<f64> = tractions.iter().map(value).collect();
         if values.iter().any(|v| *v > 0.0) {
             let scale = Axis::new(what.to_lowercase(), unit);
-            out.push(map(what, &shapes, Colours::Values { values, scale }));
+            out.push(chart(what, &shapes, Colours::Values { values, scale }));
         }
     };
     add("Pressure", "Pa", &|t| t.pressure);
     add("Shear", "Pa", &|t| t.shear);
     add("Shear over pressure", "", &ratio);
     out
+}
+
+/// What sticks and slips at some points.
+fn zones<S: Space>(state: &SurfaceState<S>, points: &[usize]) -> Colours {
+    let classes = [("sticks", STICKS), ("slips", SLIPS), ("open", OPEN)];
+    let class = |k: &usize| match state.zone[*k] {
+        Zone::Stick => 0,
+        Zone::Slip => 1,
+        Zone::Open => 2,
+    };
+    Colours::Classes {
+        classes: classes
+            .map(|(name, colour)| (name.to_owned(), colour))
+            .to_vec(),
+        of: points.iter().map(class).collect(),
+    }
 }
 
 /// Tractions on a cell of a map.

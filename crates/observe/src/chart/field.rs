@@ -1,0 +1,79 @@
+//! Coloured cells of a chart, with arrows.
+
+use super::{Axis, rows};
+use serde::{Deserialize, Serialize};
+
+/// Cells of a plane with colours, and arrows over them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Field {
+    /// Corners of each cell, in the units of the axes.
+    pub cells: Vec<Vec<[f64; 2]>>,
+    /// What the colours say.
+    pub colours: Colours,
+    /// Arrows from a place, and their length as a share of the longest, along both axes.
+    pub arrows: Vec<([f64; 2], [f64; 2])>,
+    /// Entry of the arrows in the legend: what the longest is.
+    pub arrow_label: String,
+}
+
+/// What the colours of cells say.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Colours {
+    /// The class of each cell, as an index in a list of names and colours (red, green, blue).
+    Classes {
+        /// Name and colour of each class.
+        classes: Vec<(String, (u8, u8, u8))>,
+        /// Class of each cell.
+        of: Vec<usize>,
+    },
+    /// A value of each cell, from zero up.
+    Values {
+        /// The values; not a number where there is none.
+        #[serde(with = "rows::numbers")]
+        values: Vec<f64>,
+        /// What they are.
+        scale: Axis,
+    },
+}
+
+impl Field {
+    /// Classes that a cell has, in their order; none where colours are values.
+    pub fn classes(&self) -> Vec<&(String, (u8, u8, u8))> {
+        let Colours::Classes { classes, of } = &self.colours else {
+            return Vec::new();
+        };
+        let classes = classes.iter().enumerate();
+        let classes = classes.filter(|(k, _)| of.contains(k));
+        classes.map(|(_, class)| class).collect()
+    }
+
+    /// The end of the scale of values, a round number; zero where colours are classes.
+    pub fn top(&self) -> f64 {
+        match &self.colours {
+            Colours::Classes { .. } => 0.0,
+            Colours::Values { values, .. } => {
+                round_top(values.iter().fold(0.0, |most: f64, v| most.max(*v)))
+            }
+        }
+    }
+}
+
+/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a colour bar.
+pub fn round_top(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];
+    let least = steps.iter().find(|s| **s * power >= value * (1.0 - 1e-9));
+    least.copied().unwrap_or(10.0) * power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colour_bars_end_at_round_values() {
+        assert_eq!(round_top(0.2), 0.2);
+        assert!((round_top(0.0131) / 0.015 - 1.0).abs() < 1e-12);
+        assert!((round_top(880.0) / 1000.0 - 1.0).abs() < 1e-12);
+    }
+}
