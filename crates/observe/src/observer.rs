@@ -324,7 +324,7 @@ impl<S: Space> Observers<S> {
         let mut out: Vec<Output> = self.list.iter().flat_map(|o| o.figures(end)).collect();
         for output in &mut out {
             if let Output::Figure(figure) = output {
-                figure.charts.iter_mut().for_each(|c| c.head(end.title));
+                figure.heading = end.title.to_owned();
             }
         }
         out

@@ -1,16 +1,24 @@
-// Charts: uPlot with the colours of the page, axes with units, zoom that is shared by charts over time, and keys.
+// Charts: uPlot with the colours of the page, axes with units, zoom that charts over the same axis share, and keys.
 {
-  const LIGHT = ["#0072b2", "#c44e00", "#00805c", "#b0508a", "#9a6a00", "#4a4a4a", "#2aa0d8", "#7a4b2a"];
-  const DARK = ["#5ab4f0", "#ff9d57", "#3fd0a0", "#e79bc8", "#f0c050", "#c8c8c8", "#8fd3f5", "#d0a080"];
+  const LIGHT = ["#0072b2", "#c44e00", "#00805c", "#b0508a", "#2a8cc0", "#9a6a00", "#4a4a4a"];
+  const DARK = ["#5ab4f0", "#ff9d57", "#3fd0a0", "#e79bc8", "#8fd3f5", "#f0c050", "#c8c8c8"];
+  const ORDER = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [74, 186, 110], [165, 205, 50]];
   const dark = matchMedia("(prefers-color-scheme: dark)");
   let printing = false;
-  const linked = new Set();
+  const groups = new Map();
   const redraws = new Set();
   let sharing = false;
 
   FW.isDark = () => dark.matches && !printing;
-  const colour = (k) => (FW.isDark() ? DARK : LIGHT)[k % LIGHT.length];
   const ink = () => (FW.isDark() ? ["#c3c8d0", "#2c3038"] : ["#444a54", "#e6e8ec"]);
+  const css = (rgb) => `rgb(${rgb.map(Math.round).join(",")})`;
+  const colour = (series, k, gradient, count) => {
+    // What is dark on paper is made lighter on a dark page.
+    const shown = (rgb) => css(FW.isDark() ? rgb.map((c) => c + 0.45 * (255 - c)) : rgb);
+    if (series.colour) return shown(series.colour);
+    if (gradient) return shown(FW.mix(ORDER, k / Math.max(1, count - 1)));
+    return (FW.isDark() ? DARK : LIGHT)[(series.place ?? k) % LIGHT.length];
+  };
 
   // Ticks of a logarithmic axis: whole multiples of powers of ten, with labels at the powers, and over few of them at 2 and 5 times these.
   const multiples = (min, max) => {
@@ -28,7 +36,7 @@
     },
   });
 
-  const axis = (label, scale, side, whole, log) => {
+  const axis = ({ label, log, whole }, scale, side) => {
     const [stroke, grid] = ink();
     const font = "12px system-ui, sans-serif";
     return {
@@ -40,65 +48,114 @@
     };
   };
 
+  const others = (chart) => [...(groups.get(chart.group) || [])].filter((other) => other !== chart);
   const share = (chart) => {
-    if (sharing) return;
+    if (sharing || !groups.get(chart.group)?.has(chart)) return;
     sharing = true;
     const { min, max } = chart.scales.x;
-    for (const other of linked) if (other !== chart) other.setScale("x", { min, max });
+    others(chart).forEach((other) => other.setScale("x", { min, max }));
+    sharing = false;
+  };
+  // All of each chart, also of those that share its zoom.
+  const whole = (chart) => {
+    sharing = true;
+    [chart, ...others(chart)].forEach((c) => c.setData(c.data));
     sharing = false;
   };
 
-  // Lines through points in any order: neither axis need increase.
-  const path = (u, s) => {
-    const [xs, ys] = u.data[s];
+  const clipped = (u, draw) => {
     const { ctx, bbox } = u;
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
-    ctx.beginPath();
-    let pen = false;
-    for (let k = 0; k < xs.length; k++) {
-      if (xs[k] === null || ys[k] === null) { pen = false; continue; }
-      const x = u.valToPos(xs[k], "x", true), y = u.valToPos(ys[k], "y", true);
-      pen ? ctx.lineTo(x, y) : ctx.moveTo(x, y);
-      pen = true;
-    }
-    ctx.strokeStyle = ctx.fillStyle = colour(s - 1);
-    ctx.lineWidth = 1.6 * devicePixelRatio;
-    ctx.lineJoin = "round";
-    const { line, markers, low, high, factor } = u.series[s].style;
-    if (line !== false) ctx.stroke();
-    const end = (values, k) => (Number.isFinite(values[k]) ? u.valToPos(values[k] * factor, "y", true) : null);
-    for (let k = 0; k < xs.length; k++) {
-      if (xs[k] === null || ys[k] === null) continue;
-      const x = u.valToPos(xs[k], "x", true);
-      if (low?.length) {
-        const [a, b] = [end(low, k), end(high, k)], w = 3 * devicePixelRatio;
+    draw(ctx, (x) => u.valToPos(x, "x", true), (y, scale = "y") => u.valToPos(y, scale, true));
+    ctx.restore();
+  };
+
+  // Lines through points in any order, bars of intervals, markers.
+  const path = (u, s) => {
+    const [xs, ys] = u.data[s];
+    const { line, dashed, markers, low, high, factor, scale, stroke } = u.series[s].style;
+    clipped(u, (ctx, across, up) => {
+      const px = devicePixelRatio, y = (v) => up(v, scale);
+      ctx.strokeStyle = ctx.fillStyle = stroke();
+      ctx.lineWidth = 1.6 * px;
+      ctx.lineJoin = "round";
+      if (line !== false) {
+        ctx.beginPath();
+        let pen = false;
+        for (let k = 0; k < xs.length; k++) {
+          if (xs[k] === null || ys[k] === null) { pen = false; continue; }
+          pen ? ctx.lineTo(across(xs[k]), y(ys[k])) : ctx.moveTo(across(xs[k]), y(ys[k]));
+          pen = true;
+        }
+        ctx.setLineDash(dashed ? [7 * px, 5 * px] : []);
+        ctx.stroke();
+        ctx.setLineDash([]);
+      }
+      const end = (values, k) => (values && Number.isFinite(values[k]) ? y(values[k] * factor) : null);
+      for (let k = 0; k < xs.length; k++) {
+        if (xs[k] === null || ys[k] === null) continue;
+        const x = across(xs[k]), [a, b] = [end(low, k), end(high, k)], w = 3 * px;
         if (a !== null && b !== null) {
           ctx.beginPath();
           [[x - w, a, x + w, a], [x, a, x, b], [x - w, b, x + w, b]].forEach(([p, q, r, t]) => { ctx.moveTo(p, q); ctx.lineTo(r, t); });
           ctx.stroke();
         }
+        if (markers) {
+          ctx.beginPath();
+          ctx.arc(x, y(ys[k]), 3.2 * px, 0, 2 * Math.PI);
+          ctx.fill();
+        }
       }
-      if (markers) {
-        ctx.beginPath();
-        ctx.arc(x, u.valToPos(ys[k], "y", true), 3.2 * devicePixelRatio, 0, 2 * Math.PI);
-        ctx.fill();
-      }
-    }
-    ctx.restore();
+    });
     return null;
   };
 
+  // Coloured cells, and arrows over them.
+  const cells = (field, spec) => (u) => clipped(u, (ctx, across, up) => {
+    const [fx, fy] = [spec.x.factor, spec.y.factor];
+    const range = field.scale && { low: 0, high: field.scale.range[1], table: FW.SIZES };
+    for (let k = 0; k + 1 < field.starts.length; k++) {
+      ctx.beginPath();
+      for (let p = field.starts[k]; p < field.starts[k + 1]; p++) ctx.lineTo(across(field.x[p] * fx), up(field.y[p] * fy));
+      ctx.closePath();
+      ctx.fillStyle = ctx.strokeStyle = css(field.scale ? FW.colourOf(range, field.values[k]) : field.classes[field.values[k]][1]);
+      ctx.fill();
+      ctx.stroke();
+    }
+    const far = [], long = 0.07 * u.bbox.width;
+    ctx.lineWidth = 1.2 * devicePixelRatio;
+    ctx.strokeStyle = "#000";
+    for (const [[x, y], [dx, dy]] of field.arrows) {
+      const at = [across(x * fx), up(y * fy)];
+      if (far.some(([a, b]) => Math.hypot(a - at[0], b - at[1]) < 0.5 * long)) continue;
+      far.push(at);
+      const by = [dx * long, -dy * long], tip = [at[0] + by[0] / 2, at[1] + by[1] / 2];
+      const wing = (s) => [tip[0] - 0.3 * by[0] + s * 0.15 * by[1], tip[1] - 0.3 * by[1] - s * 0.15 * by[0]];
+      ctx.beginPath();
+      ctx.moveTo(at[0] - by[0] / 2, at[1] - by[1] / 2);
+      [tip, wing(1)].forEach((p) => ctx.lineTo(...p));
+      ctx.moveTo(...tip);
+      ctx.lineTo(...wing(-1));
+      ctx.stroke();
+    }
+  });
+  const keyOf = (field) => {
+    const parts = field.scale ? [FW.ramp(field.scale.name, { low: 0, high: field.scale.range[1], table: FW.SIZES }, field.scale.unit, "")] : field.classes.map(([name, rgb]) => FW.key(rgb, name));
+    return FW.element("div", { class: "legend" }, ...parts, ...(field.arrows.length ? [`arrows: ${field.arrow_label}`] : []));
+  };
+
+  // The point under the cursor: the nearest along the axis where points follow it, else the nearest of all, if it is near.
   const nearest = (u, s) => {
     const { left, top } = u.cursor;
     if (left < 0 || !u.series[s].show) return null;
-    const [xs, ys] = u.data[s];
-    let best = null, least = 40 * 40;
+    const [xs, ys] = u.data[s], rises = u.series[s].style.rises;
+    let best = null, least = rises ? Infinity : 40 * 40;
     for (let k = 0; k < xs.length; k++) {
       if (xs[k] === null || ys[k] === null) continue;
-      const dx = u.valToPos(xs[k], "x") - left, dy = u.valToPos(ys[k], "y") - top;
+      const dx = u.valToPos(xs[k], "x") - left, dy = rises ? 0 : u.valToPos(ys[k], u.series[s].style.scale) - top;
       if (dx * dx + dy * dy < least) { least = dx * dx + dy * dy; best = k; }
     }
     return best;
@@ -114,77 +171,81 @@
     else if (step) chart.setCursor({ left: Math.max(0, Math.min(chart.over.clientWidth, (chart.cursor.left < 0 ? chart.over.clientWidth / 2 : chart.cursor.left) + 8 * step)), top: chart.over.clientHeight / 2 });
     else if (event.key === "+" || event.key === "=") move(min + 0.15 * width, max - 0.15 * width);
     else if (event.key === "-") move(min - 0.2 * width, max + 0.2 * width);
-    else if (event.key === "Escape" || event.key === "0") chart.setData(chart.data);
+    else if (event.key === "Escape" || event.key === "0") whole(chart);
     else return;
     event.preventDefault();
   };
 
-  // spec: {x: {label, unit, values}, ys: [{label, unit, values, x?}], loose: any order, log: axes with logarithmic scales, link: shared zoom, title}
+  // Range of a scale around values, or as asked.
+  const ranged = ({ log, range, factor }, ends) => (u, min, max) => {
+    if (range) return range.map((v) => v * factor);
+    const all = ends.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [min ?? Infinity, max ?? -Infinity]);
+    if (!(all[0] <= all[1])) return log ? [0.1, 1] : [0, 1];
+    const [a, b] = all;
+    if (log) return a > 0 ? [a / (b / a) ** 0.04 / 1.1, b * (b / a) ** 0.04 * 1.1] : [0.1, 1];
+    const pad = a === b ? (Math.abs(a) || 1) * 0.1 : 0.04 * (b - a);
+    return [a - pad, b + pad];
+  };
+
+  // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range}, series: [{label, x, y, low, high, second, line, dashed,
+  // markers, colour, place}], gradient, field}, with numbers in the units of the axes
   FW.chart = (host, spec) => {
     const plot = FW.element("div", { class: "plot", tabindex: 0, role: "img" });
     host.append(plot);
+    const axes = { y: spec.y, ...(spec.y2 ? { y2: spec.y2 } : {}) };
+    const times = (values, { factor, log }) => Array.from(values, (v) => (Number.isFinite(v) && (!log || v > 0) ? v * factor : null));
+    const of = (s) => (s.second ? "y2" : "y");
+    const points = spec.series.map((s) => [times(s.x, spec.x), times(s.y, axes[of(s)])]);
+    if (spec.field) points.push([spec.x, spec.y].map(({ range, factor }) => range.map((v) => v * factor)));
+    const ends = (scale) => spec.series.filter((s) => of(s) === scale).flatMap((s) => [...(s.low || []), ...(s.high || [])]).filter(Number.isFinite).map((v) => v * axes[scale].factor);
+    const distr = ({ log }) => (log ? { distr: 3 } : {});
+    const named = spec.series.some((s) => s.label) && spec.series.length <= 14;
     let chart = null;
+    const leave = () => { if (chart) { groups.get(chart.group)?.delete(chart); chart.destroy(); } };
     const build = () => {
-      if (chart) { linked.delete(chart); chart.destroy(); }
+      leave();
       const width = Math.max(260, host.clientWidth);
-      const units = [...new Set(spec.ys.map((y) => y.unit))].slice(0, 2);
-      const shown = units.map((unit) => FW.scaled(Math.max(...spec.ys.filter((y) => y.unit === unit).map((y) => FW.most(y.values))), unit));
-      const across = FW.scaled(FW.most(spec.x.values), spec.x.unit);
-      const times = (values, factor) => Array.from(values, (v) => (Number.isFinite(v) ? v * factor : null));
-      const of = (y) => Math.max(0, units.indexOf(y.unit));
-      const named = (label, unit) => (unit ? `${label} (${unit})` : label);
-      const labels = shown.map((s, k) => {
-        const own = spec.ys.filter((y) => of(y) === k);
-        const names = spec.quantity || own.map((y) => y.label).join(", ");
-        return named(own.length <= 3 || spec.quantity ? names : "", s.unit).trim();
+      const across = spec.field ? (spec.y.range[1] - spec.y.range[0]) / (spec.x.range[1] - spec.x.range[0]) : 0.55;
+      const series = spec.series.map((s, k) => {
+        const stroke = () => colour(s, k, spec.gradient, spec.series.length);
+        const rises = points[k][0].every((x, i, all) => i === 0 || x >= all[i - 1]);
+        return {
+          label: s.label || spec.y.name, stroke, facets: [{ scale: "x", auto: true }, { scale: of(s), auto: true }], paths: path,
+          style: { ...s, stroke, rises, scale: of(s), factor: axes[of(s)].factor },
+          value: (u, _, i, p) => (p === null || p === undefined ? "–" : `${FW.number(u.data[i][1][p])}${rises && k ? "" : ` at ${FW.number(u.data[i][0][p])}`}`),
+        };
       });
-      const series = spec.ys.map((y, k) => ({
-        label: y.label, stroke: () => colour(k), width: 1.6, scale: of(y) ? "y2" : "y", spanGaps: spec.gaps === true,
-        points: { show: spec.points === true, size: 7, stroke: () => colour(k), fill: () => colour(k) },
-        ...(spec.loose
-          ? { style: { ...y, factor: shown[of(y)].factor }, facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: path,
-              value: (u, _, s, i) => (i === null || i === undefined ? "–" : `${FW.number(u.data[s][0][i])}, ${FW.number(u.data[s][1][i])}`) }
-          : { value: (_, v) => FW.number(v) }),
-      }));
-      const pad = (u, min, max) => (min === null ? [0, 1] : min === max ? [min - (Math.abs(min) || 1) * 0.1, max + (Math.abs(max) || 1) * 0.1] : [min - 0.04 * (max - min), max + 0.04 * (max - min)]);
-      // With intervals the axis holds their ends.
-      const ends = (k) => spec.ys.filter((y) => of(y) === k).flatMap((y) => [...(y.low || []), ...(y.high || [])]).filter(Number.isFinite).map((v) => v * shown[k].factor);
-      const around = (k) => { const e = ends(k); return (u, min, max) => pad(u, min === null ? null : Math.min(min, ...e), Math.max(max, ...e)); };
-      const [xlog, ylog] = spec.log || [];
-      const decades = (u, min, max) => (min > 0 ? [min / (max / min || 1) ** 0.04 / 1.1, max * (max / min || 1) ** 0.04 * 1.1] : [0.1, 1]);
-      const plain = (u, min, max) => (min === null ? [0, 1] : min === max ? [min - 1, max + 1] : [min, max]);
-      const options = {
-        width, height: Math.round(Math.min(340, Math.max(230, 0.55 * width))), mode: spec.loose ? 2 : 1,
-        scales: { x: { time: false, ...(xlog ? { distr: 3, range: decades } : { range: spec.loose ? pad : plain }) }, y: ylog ? { distr: 3, range: decades } : { range: around(0) }, ...(units.length > 1 ? { y2: { range: pad } } : {}) },
-        axes: [axis(named(spec.x.label, across.unit), "x", 2, spec.x.label === "cycle", xlog), axis(labels[0], "y", 3, false, ylog), ...(units.length > 1 ? [axis(labels[1], "y2", 1)] : [])],
-        series: [spec.loose ? null : { label: named(spec.x.label, across.unit), value: (_, v) => FW.number(v, 5) }, ...series],
-        cursor: { drag: { x: true, y: spec.loose === true, uni: 20 }, ...(spec.link ? { sync: { key: "time" } } : {}),
-          ...(spec.loose ? { dataIdx: nearest, points: { size: 0 } } : {}) },
-        legend: { live: true },
-        hooks: { setScale: [(u, key) => { if (spec.link && key === "x") share(u); }] },
-      };
-      const data = spec.loose
-        ? [null, ...spec.ys.map((y) => [times(y.x || spec.x.values, across.factor), times(y.values, shown[of(y)].factor)])]
-        : [times(spec.x.values, across.factor), ...spec.ys.map((y) => times(y.values, shown[of(y)].factor))];
-      chart = new uPlot(options, data, plot);
-      if (spec.link) linked.add(chart);
-      const says = spec.ys.map((y, k) => {
-        const values = data[k + 1] && spec.loose ? data[k + 1][1] : data[k + 1];
-        const finite = values.filter((v) => v !== null);
-        if (!finite.length) return `${y.label}: no values`;
-        const low = finite.reduce((a, b) => Math.min(a, b)), high = finite.reduce((a, b) => Math.max(a, b));
-        return `${y.label} from ${FW.number(low)} to ${FW.number(high)} ${shown[of(y)].unit}, at the end ${FW.number(finite[finite.length - 1])}`;
+      if (spec.field) series.push({ show: true, facets: [{ scale: "x", auto: true }, { scale: "y", auto: true }], paths: () => null, style: {} });
+      const scales = Object.entries(axes).map(([scale, a]) => [scale, { ...distr(a), range: ranged(a, ends(scale)) }]);
+      chart = new uPlot({
+        width, height: Math.round(spec.field ? across * (width - 62) + 58 : Math.min(340, Math.max(230, across * width))), mode: 2,
+        scales: { x: { time: false, ...distr(spec.x), range: ranged(spec.x, []) }, ...Object.fromEntries(scales) },
+        axes: [axis(spec.x, "x", 2), axis(spec.y, "y", 3), ...(spec.y2 ? [axis(spec.y2, "y2", 1)] : [])],
+        series: [null, ...series],
+        cursor: { drag: { x: true, y: true, uni: 20 }, sync: { key: spec.x.label }, dataIdx: nearest, points: { size: 0 }, bind: { dblclick: (u) => () => whole(u) } },
+        legend: { show: named || (spec.series.length === 1 && !spec.field), live: true },
+        hooks: { setScale: [(u, key) => { if (key === "x") share(u); }], drawAxes: spec.field ? [cells(spec.field, spec)] : [] },
+      }, [null, ...points], plot);
+      chart.group = spec.x.label;
+      if (!groups.has(chart.group)) groups.set(chart.group, new Set());
+      groups.get(chart.group).add(chart);
+      const says = spec.series.map((s, k) => {
+        const finite = points[k][1].filter((v) => v !== null);
+        if (!finite.length) return `${s.label}: no values`;
+        const [low, high] = [Math.min, Math.max].map((f) => finite.reduce((a, b) => f(a, b)));
+        return `${s.label || spec.y.name} from ${FW.number(low)} to ${FW.number(high)}, at the end ${FW.number(finite[finite.length - 1])}`;
       });
-      plot.setAttribute("aria-label", `${spec.title} over ${spec.x.label}: ${says.join("; ")}`);
+      plot.setAttribute("aria-label", `${spec.title}, ${spec.y.label} over ${spec.x.label}: ${says.join("; ")}`);
     };
     build();
+    if (spec.field) host.append(keyOf(spec.field));
     plot.addEventListener("keydown", (event) => keys(chart, event));
     let wide = host.clientWidth;
     new ResizeObserver(() => {
       if (!printing && Math.abs(host.clientWidth - wide) > 2) { wide = host.clientWidth; build(); }
     }).observe(host);
     redraws.add(build);
-    return { remove: () => { redraws.delete(build); linked.delete(chart); chart.destroy(); plot.remove(); } };
+    return { remove: () => { redraws.delete(build); leave(); plot.remove(); } };
   };
 
   const again = () => redraws.forEach((build) => build());

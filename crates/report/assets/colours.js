@@ -8,6 +8,8 @@
     return [0, 1, 2].map((c) => table[k][c] + (place - k) * (table[k + 1][c] - table[k][c]));
   };
 
+  [FW.SIZES, FW.mix] = [SIZES, mix];
+
   FW.colours = {
     none: [150, 152, 156],
     grain: [222, 222, 218],

@@ -14,6 +14,8 @@
     return element("span", { class: "key" }, mark, text);
   };
 
+  [FW.ramp, FW.key] = [ramp, key];
+
   FW.legend = (host, scene, look) => {
     host.replaceChildren();
     if (look.grainField && look.grains !== "hidden") host.append(ramp(`grains: ${look.grainField.name}`, look.grainRange, look.grainField.unit, look.grainField.doc));

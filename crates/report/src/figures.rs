@@ -101,12 +101,10 @@ pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// What to read in a chart, or else under which conditions it holds.
-fn note(chart: &Chart) -> &str {
-    match chart.note.as_str() {
-        "" => chart.subtitle.as_deref().unwrap_or_default(),
-        note => note,
-    }
+/// What to read in a chart, and under which conditions it holds.
+fn note(chart: &Chart) -> String {
+    let said = chart.subtitle.as_deref().unwrap_or_default();
+    format!("{} {said}", chart.note).trim().to_owned()
 }
 
 fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)>) -> Value {

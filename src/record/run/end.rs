@@ -143,7 +143,7 @@ pub fn write_outputs(folder: &Path, outputs: &[Output], table: &Table) -> Result
         Output::Figure(figure) => {
             let figure = figure.resolve(&TableColumns::of(table));
             let path = folder.join(format!("{}.png", figure.name));
-            Ok(draw_panels(&figure.charts, figure.columns, &path)?)
+            Ok(draw_panels(&figure.headed(), figure.columns, &path)?)
         }
     })
 }

@@ -2,6 +2,8 @@
 
 use super::{Trial, data, text};
 use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 #[test]
 fn a_run_leaves_a_page_with_all_that_was_run_and_came_out() {
@@ -87,7 +89,7 @@ fn figures_and_fields_have_the_names_units_and_words_of_the_file() {
         );
         assert_eq!(column["doc"].as_str().unwrap(), text("doc"));
     };
-    let columns = data["series"]["columns"].as_array().unwrap();
+    let columns = data["runs"][0]["columns"].as_array().unwrap();
     assert!(columns.len() > 30);
     columns.iter().for_each(|c| same(c, "statistics"));
     for (of, group) in [
@@ -101,17 +103,88 @@ fn figures_and_fields_have_the_names_units_and_words_of_the_file() {
             .filter(|f| f["of"].is_null())
             .for_each(|f| same(f, group));
     }
-    let kinds: Vec<&str> = data["figures"]
-        .as_array()
-        .unwrap()
+    let figures = data["figures"].as_array().unwrap();
+    let names: Vec<&str> = figures
         .iter()
-        .map(|f| f["id"].as_str().unwrap())
+        .filter_map(|f| f["figure"].as_str())
         .collect();
-    for id in ["loops", "friction", "forces", "damage", "energy", "any"] {
-        assert!(kinds.contains(&id), "{id} in {kinds:?}");
+    for name in [
+        "fretting_loops",
+        "friction_history",
+        "damage_ratio",
+        "energy",
+    ] {
+        assert!(names.contains(&name), "{name} in {names:?}");
     }
+    assert_eq!(figures.last().unwrap()["any"], true);
     assert_eq!(data["scene"]["period"][0], 0.1);
     assert_eq!(data["scene"]["times"].as_array().unwrap().len(), 7);
+}
+
+#[test]
+fn a_figure_is_the_same_in_its_picture_and_on_the_page() {
+    let trial = Trial::new("figures");
+    trial.run("out", &["output.figures=true"]);
+    let data = data(&trial.page("out/report.html"));
+    let text = |v: &Value| v.as_str().unwrap().to_owned();
+    let axis = |a: &Value| match a["unit"].as_str().unwrap() {
+        "" => text(&a["name"]),
+        unit => format!("{} ({unit})", text(&a["name"])),
+    };
+    // What the page draws, in the words of the pictures.
+    let mut page: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for chart in data["figures"].as_array().unwrap() {
+        let Some(figure) = chart["figure"].as_str() else {
+            continue;
+        };
+        let series = chart["series"].as_array().unwrap();
+        let labels: Vec<String> = series.iter().map(|s| text(&s["label"])).collect();
+        let labels: Vec<String> = labels.into_iter().filter(|l| !l.is_empty()).collect();
+        let of = if labels.is_empty() { "" } else { ": " };
+        let line = format!(
+            "{}; {} over {}{of}{}",
+            text(&chart["title"]),
+            axis(&chart["y"]),
+            axis(&chart["x"]),
+            labels.join(", ")
+        );
+        page.entry(figure.to_owned()).or_default().push(line);
+    }
+    assert!(page.len() >= 4, "{:?}", page.keys());
+    let described: Value = serde_json::from_str(&trial.page("out/figures.json")).unwrap();
+    for figure in described.as_array().unwrap() {
+        let name = figure["name"].as_str().unwrap();
+        let picture = trial.path(&format!("out/{name}.png"));
+        assert_eq!(picture.exists(), page.contains_key(name), "{name}");
+        if let Some(lines) = page.get(name) {
+            assert_eq!(
+                description(&picture).lines().collect::<Vec<_>>(),
+                *lines,
+                "{name}"
+            );
+            let pixels = tiny_skia::Pixmap::load_png(&picture).unwrap();
+            let coloured = pixels.pixels().iter().filter(|p| {
+                let [a, b, c] = [p.red(), p.green(), p.blue()];
+                a.max(b).max(c) - a.min(b).min(c) > 60
+            });
+            assert!(coloured.count() > 500, "{name}");
+        }
+    }
+}
+
+/// The text `Description` of a PNG file.
+fn description(path: &Path) -> String {
+    let bytes = std::fs::read(path).unwrap();
+    let mut rest = &bytes[8..];
+    while let Some((length, after)) = rest.split_first_chunk::<4>() {
+        let length = u32::from_be_bytes(*length) as usize;
+        if after.starts_with(b"iTXtDescription") {
+            // A flag and a method of compression, and two empty texts follow the keyword.
+            return String::from_utf8(after[24..4 + length].to_vec()).unwrap();
+        }
+        rest = &after[8 + length..];
+    }
+    panic!("no description in {}", path.display());
 }
 
 #[test]

@@ -243,6 +243,8 @@ const MOST_CHARTS: usize = 12;
 pub struct Figure {
     /// Name of the figure, and of its PNG file without `.png`.
     pub name: String,
+    /// What all charts are of; empty for none.
+    pub heading: String,
     /// The charts, row by row.
     pub charts: Vec<Chart>,
     /// Number of columns on the page.
@@ -257,6 +259,7 @@ impl Figure {
     pub fn new(name: impl Into<String>, charts: impl Into<Vec<Chart>>, columns: usize) -> Self {
         Self {
             name: name.into(),
+            heading: String::new(),
             charts: charts.into(),
             columns,
         }
@@ -266,7 +269,18 @@ impl Figure {
     /// beyond the twelfth, are left out.
     pub fn resolve(&self, columns: &dyn Columns) -> Self {
         let charts = self.charts.iter().map(|c| c.resolve(columns));
-        let charts: Vec<Chart> = charts.filter(Chart::has_data).take(MOST_CHARTS).collect();
-        Self::new(self.name.clone(), charts, self.columns)
+        Self {
+            charts: charts.filter(Chart::has_data).take(MOST_CHARTS).collect(),
+            name: self.name.clone(),
+            heading: self.heading.clone(),
+            columns: self.columns,
+        }
+    }
+
+    /// The charts, each with the heading in the line under its own.
+    pub fn headed(&self) -> Vec<Chart> {
+        let mut charts = self.charts.clone();
+        charts.iter_mut().for_each(|c| c.head(&self.heading));
+        charts
     }
 }

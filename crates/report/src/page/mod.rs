@@ -24,25 +24,25 @@ const STYLE: [&str; 3] = [
 ];
 
 /// Scripts of all pages.
-const CHARTS: [&str; 6] = [
+const CHARTS: [&str; 8] = [
     include_str!("../../assets/uPlot.min.js"),
     include_str!("../../assets/unpack.js"),
     include_str!("../../assets/units.js"),
+    include_str!("../../assets/colours.js"),
+    include_str!("../../assets/legend.js"),
     include_str!("../../assets/charts.js"),
     include_str!("../../assets/figures.js"),
     include_str!("../../assets/search.js"),
 ];
 
 /// Scripts of the viewer.
-const VIEWER: [&str; 9] = [
-    include_str!("../../assets/colours.js"),
+const VIEWER: [&str; 7] = [
     include_str!("../../assets/gl.js"),
     include_str!("../../assets/camera.js"),
     include_str!("../../assets/geometry.js"),
     include_str!("../../assets/scene.js"),
     include_str!("../../assets/pick.js"),
     include_str!("../../assets/controls.js"),
-    include_str!("../../assets/legend.js"),
     include_str!("../../assets/viewer.js"),
 ];
 
