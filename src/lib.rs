@@ -39,10 +39,10 @@
 //! | processes, wear | [`process`], [`wear`] |
 //! | the step itself | [`step`]: [`Simulation::step`](step::Simulation::step), [`run_until`](step::Simulation::run_until) |
 //! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
-//! | pictures | [`report`]: charts and pictures |
+//! | pictures | [`view`]: charts and pictures, reports |
 //!
 //! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
-//! `fretwork-plot`, `fretwork-experiments`. Here they meet: [`cli`] is the command line,
+//! `fretwork-view`, `fretwork-experiments`. Here they meet: [`cli`] is the command line,
 //! [`shipped`] has the laws that come with the program, [`experiments`] makes runs of a case in
 //! processes of their own for studies and fits, [`contact_patch`] has contact patches in closed form.
 //!
@@ -88,7 +88,7 @@ pub use fretwork_core::{
 pub use fretwork_elastic as elastic;
 pub use fretwork_experiments as experiments;
 pub use fretwork_experiments::contact_patch;
-pub use fretwork_plot as report;
+pub use fretwork_view as view;
 
 /// The page of the documentation on the library: its code is run as tests.
 #[cfg(doctest)]

@@ -16,7 +16,7 @@ pub struct CompareArgs {
 }
 
 pub fn compare(args: &CompareArgs) -> Result<(), Failure> {
-    let size = fretwork_report::compare(&args.dirs, &args.out)?;
+    let size = fretwork_view::compare(&args.dirs, &args.out)?;
     let (path, runs) = (args.out.display(), args.dirs.len());
     inform(&format!(
         "{path} ({:.1} MB): {runs} runs side by side; open it in a browser",

@@ -21,7 +21,7 @@ mod trade;
 pub use self::check::{CheckLine, lines as check_lines, run_time as check_run_time};
 pub use self::report::make as make_report;
 pub use self::run::{default_folder, place as place_of};
-pub use fretwork_report::{ReportError, compare as compare_runs};
+pub use fretwork_view::{ReportError, compare as compare_runs};
 
 use crate::certify::{CERTIFY_APART, certify_asked};
 use crate::experiments::Program;

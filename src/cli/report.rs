@@ -6,7 +6,7 @@ use crate::laws::{Kind, SearchPath};
 use crate::shipped::built_in;
 use crate::shipped::search_path;
 use clap::Args;
-use fretwork_report::{DEFAULT_BYTES, LawInfo, LawParameter, Options, ReportError};
+use fretwork_view::{DEFAULT_BYTES, LawInfo, LawParameter, Options, ReportError};
 use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
@@ -54,11 +54,11 @@ pub fn report(args: &ReportArgs) -> Result<(), Failure> {
 /// A folder without a run, and files that cannot be read or written.
 pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), ReportError> {
     let law = |kind: &str, name: &str| law(&search_path(), kind, name);
-    let make = || fretwork_report::report(folder, &Options { bytes, law: &law });
+    let make = || fretwork_view::report(folder, &Options { bytes, law: &law });
     // A defect of the page is not one of the run.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(make)).unwrap_or_else(|_| {
         Err(ReportError::Unwritable {
-            path: folder.join(fretwork_report::FILE),
+            path: folder.join(fretwork_view::FILE),
             reason: "the program failed by an error of its own; please report it".to_owned(),
         })
     })
@@ -69,7 +69,7 @@ pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), Rep
 pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
     match make(folder, Some(DEFAULT_BYTES)) {
         Ok(_) if !quiet => {
-            let path = shown.join(fretwork_report::FILE);
+            let path = shown.join(fretwork_view::FILE);
             inform(&format!("  report in {}", path.display()));
         }
         Ok(_) => {}

@@ -160,7 +160,7 @@ fn run_case<S: Observed>(
             }
             Found::Finished => {
                 // Whoever ended the process while it made the report left the results whole.
-                if !options.out.join(fretwork_report::FILE).exists() {
+                if !options.out.join(fretwork_view::FILE).exists() {
                     report(&options.out, args);
                 }
                 let path = options.out.join("summary.json");

@@ -1,5 +1,5 @@
 //! The run loop and its results: analysis by [`fretwork_observe`], files by [`fretwork_store`], pictures by
-//! [`fretwork_plot`].
+//! [`fretwork_view`].
 pub mod run;
 
 pub use fretwork_observe::picture::{Paint, Picture, Shows};
@@ -8,10 +8,10 @@ pub use fretwork_observe::{
     measure, mesh_fields, observer, output, placement, scars, scatter, solving, statistics, steady,
     strain, stress, tractions,
 };
-pub use fretwork_plot::picture;
 pub use fretwork_store::{
     checkpoint, fclib, meshes, results, series, shapes, summary, views, warnings,
 };
+pub use fretwork_view::picture;
 
 pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};

@@ -12,13 +12,13 @@ const BESIDE_NUMBERS: [&str; 7] = [
     "ron",
     "ariadne",
     "csv",
-    "plotters",
+    "tiny-skia",
     "libloading",
 ];
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may
 /// bring.
-const LAYERS: [(&str, &[&str], &[&str]); 11] = [
+const LAYERS: [(&str, &[&str], &[&str]); 10] = [
     ("diffusion", &[], &BESIDE_NUMBERS),
     ("study", &[], &BESIDE_NUMBERS),
     (
@@ -28,7 +28,6 @@ const LAYERS: [(&str, &[&str], &[&str]); 11] = [
             "rust-hdf5",
             "clap",
             "indicatif",
-            "plotters",
             "ab_glyph",
             "tiny-skia",
             "epaint_default_fonts",
@@ -41,42 +40,33 @@ const LAYERS: [(&str, &[&str], &[&str]); 11] = [
     (
         "elastic",
         &["core"],
-        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "plotters"],
+        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "tiny-skia"],
     ),
     (
         "sample",
         &["core"],
-        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "plotters"],
+        &["rust-hdf5", "clap", "ron", "ariadne", "csv", "tiny-skia"],
     ),
     (
         "scene",
         &["core", "elastic", "sample"],
-        &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
+        &["rust-hdf5", "clap", "ab_glyph", "tiny-skia"],
     ),
     (
         "observe",
         &["core", "scene"],
-        &["rust-hdf5", "clap", "plotters", "ab_glyph", "tiny-skia"],
+        &["rust-hdf5", "clap", "ab_glyph", "tiny-skia"],
     ),
     (
         "store",
         &["core", "observe", "scene"],
-        &["clap", "plotters", "ab_glyph", "tiny-skia"],
+        &["clap", "ab_glyph", "tiny-skia"],
     ),
-    (
-        "plot",
-        &["core", "observe", "scene"],
-        &["clap", "rust-hdf5"],
-    ),
-    (
-        "report",
-        &["observe", "scene", "store"],
-        &["clap", "plotters", "ab_glyph", "tiny-skia"],
-    ),
+    ("view", &["core", "observe", "scene", "store"], &["clap"]),
     (
         "experiments",
         &[
-            "core", "elastic", "observe", "plot", "report", "scene", "store", "study",
+            "core", "elastic", "observe", "scene", "store", "study", "view",
         ],
         &["clap", "indicatif"],
     ),
@@ -158,7 +148,7 @@ fn layers_name_only_what_is_below_them() {
 fn lower_layers_bring_no_files_pictures_or_command_line() {
     let lock = read("Cargo.lock");
     let locked = locked(&lock);
-    for library in ["rust-hdf5", "clap", "plotters", "ron"] {
+    for library in ["rust-hdf5", "clap", "tiny-skia", "ron"] {
         // It is there at all, so that the search below can find it.
         assert!(closure("fretwork", &locked).contains(library), "{library}");
     }

@@ -6,9 +6,9 @@
 //! contact. Creepages (in per cent) may be given: `-- 0 1 2`; then no figure is drawn.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::report::{Axis, Chart, Series, Style, draw_panels};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
+use fretwork::view::{Axis, Chart, Series, Style, draw_panels};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::path::Path;

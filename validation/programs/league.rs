@@ -9,9 +9,9 @@
 //! picture. BASELINE.csv holds the other program's times: problem, nc, solver, tol, solved, time_s.
 
 use fretwork::record::fclib::{self, Problem, Solution};
-use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::solve::local::solver::{self, Limits, Method, Outcome};
 use fretwork::solve::local::{Elimination, LocalProblem, Reduction, scale_free};
+use fretwork::view::{Axis, Chart, Series, draw_panels};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write as _;
@@ -360,7 +360,7 @@ fn profile(ours: &Times, peer: &Times, path: &Path) -> Result<(), Box<dyn Error>
         points.push((1e4, share));
         let series = Series::new(name.clone(), points);
         chart = chart.with(if name.starts_with("peer") {
-            series.style(fretwork::report::Style::Dashed)
+            series.style(fretwork::view::Style::Dashed)
         } else {
             series
         });

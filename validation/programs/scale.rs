@@ -6,11 +6,11 @@
 //! constant, and with it the number of iterations that a load needs to propagate across the layer.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::report::{Axis, Chart, Series, draw_panels};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
+use fretwork::view::{Axis, Chart, Series, draw_panels};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;

@@ -5,7 +5,7 @@ use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Finer, Row, Verdict, judge, judged, rises};
 use crate::sample::{Estimate, Line, difference};
 use crate::table::{Run, Setting};
-use fretwork::report::{Axis, Chart, Series, Style};
+use fretwork::view::{Axis, Chart, Series, Style};
 
 pub const COMPARISON: Comparison = Comparison {
     name: "cohesive_shear",

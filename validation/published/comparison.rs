@@ -3,7 +3,7 @@
 use crate::published::Published;
 use crate::row::Row;
 use crate::table::Table;
-use fretwork::report::Chart;
+use fretwork::view::Chart;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

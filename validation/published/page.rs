@@ -4,7 +4,7 @@ use crate::comparison::{Comparison, Failure, Inputs, Results, folder, markdown};
 use crate::published::Published;
 use crate::row::{CLOSE, Row, WIDE};
 use crate::table::Table;
-use fretwork::report::{Chart, draw_panels};
+use fretwork::view::{Chart, draw_panels};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

@@ -5,7 +5,7 @@ use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Finer, Reference, Row};
 use crate::sample::{Estimate, difference};
 use crate::table::Setting;
-use fretwork::report::{Axis, Chart, Series, Style};
+use fretwork::view::{Axis, Chart, Series, Style};
 
 pub const COMPARISON: Comparison = Comparison {
     name: "plane_shear",

@@ -3,7 +3,7 @@
 use crate::comparison::{Comparison, Failure, Inputs, Results, markdown};
 use crate::row::{Row, judge, rises};
 use crate::sample::difference;
-use fretwork::report::{Axis, Chart, Series, Style};
+use fretwork::view::{Axis, Chart, Series, Style};
 
 pub const COMPARISON: Comparison = Comparison {
     name: "soft_third_body",

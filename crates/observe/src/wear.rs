@@ -110,7 +110,9 @@ impl<S: Space> Observer<S> for Wear {
             ("between grains", "worn_third"),
         ];
         let all = all.map(|(label, column)| (label, column.to_owned()));
-        let series: Vec<(&str, String)> = all.into_iter().chain(own).collect();
+        // One scar alone is what is worn off first bodies.
+        let several = own.len() > 1;
+        let series: Vec<(&str, String)> = all.into_iter().chain(own.filter(|_| several)).collect();
         let chart = history("Worn volume", Axis::of_rows("worn volume V"), &series)
             .note("What the wear laws removed since the start.");
         vec![Output::figure("worn_volume", [chart], 1)]

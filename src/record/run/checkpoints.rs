@@ -5,8 +5,8 @@ use super::{Recorder, RunError, unwritable};
 use crate::geometry::space::Space;
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
-use crate::report::Paint;
 use crate::step::{ProcessState, State};
+use crate::view::Paint;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
@@ -67,7 +67,7 @@ impl<S: Observed> Recorder<'_, S> {
     pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         self.write_frame(kind, state)?;
         // Remove the marker of a finished earlier run, and its page: from now on this folder holds an unfinished one.
-        for path in [LAST, fretwork_report::FILE].map(|name| self.out.join(name)) {
+        for path in [LAST, fretwork_view::FILE].map(|name| self.out.join(name)) {
             match std::fs::remove_file(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
                     return Err(unwritable(&path, &e));

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Names of the figures at the end of a run that no observer names, and its report.
 pub(super) const FIGURES: [&str; 11] = [
-    fretwork_report::FILE,
+    fretwork_view::FILE,
     "damage_ratio.png",
     "fretting_loops.png",
     "friction_coefficient.png",

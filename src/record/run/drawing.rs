@@ -1,6 +1,6 @@
 //! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go on.
 
-use crate::report::{Chart, Frame, ReportError, draw_panels, noted};
+use crate::view::{Chart, DrawError, Frame, draw_panels, noted};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
@@ -21,7 +21,7 @@ pub(super) enum Shows {
 }
 
 impl Picture {
-    fn draw(&self) -> Result<(), ReportError> {
+    fn draw(&self) -> Result<(), DrawError> {
         noted(self.notice.clone(), || match &self.shows {
             Shows::Scene(frame) => frame.draw(&self.path),
             Shows::Charts(charts) => draw_panels(charts, 2, &self.path),
@@ -32,7 +32,7 @@ impl Picture {
 /// The thread that draws, if there is one at the moment.
 #[derive(Debug, Default)]
 pub(super) struct Drawing {
-    thread: Option<JoinHandle<Result<(), ReportError>>>,
+    thread: Option<JoinHandle<Result<(), DrawError>>>,
 }
 
 impl Drawing {
@@ -40,7 +40,7 @@ impl Drawing {
     ///
     /// # Errors
     /// One of those could not be written.
-    pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), ReportError> {
+    pub fn begin(&mut self, pictures: Vec<Picture>) -> Result<(), DrawError> {
         self.wait()?;
         let pictures = Arc::new(pictures);
         let theirs = Arc::clone(&pictures);
@@ -57,7 +57,7 @@ impl Drawing {
     ///
     /// # Errors
     /// One could not be written.
-    pub fn wait(&mut self) -> Result<(), ReportError> {
+    pub fn wait(&mut self) -> Result<(), DrawError> {
         match self.thread.take().map(JoinHandle::join) {
             None => Ok(()),
             Some(Ok(drawn)) => drawn,

@@ -5,7 +5,7 @@ use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
-use crate::report::{Figure, TableColumns, draw_panels, noted};
+use crate::view::{Figure, TableColumns, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::standard::Observed;
 use fretwork_observe::statistics::Table;

@@ -3,9 +3,9 @@
 use crate::record::checkpoint::ResumeError;
 use crate::record::code::CodeError;
 use crate::record::results::ResultsError;
-use crate::report::ReportError;
 use crate::scene::source::InputError;
 use crate::step::{RepeatError, StepError};
+use crate::view::DrawError;
 use fretwork_observe::accuracy::PartError;
 use fretwork_store::folder_lock::LockError;
 use fretwork_store::write_advice;
@@ -72,7 +72,7 @@ pub enum RunError {
     Results(#[from] ResultsError),
     /// A picture failed.
     #[error(transparent)]
-    Picture(#[from] ReportError),
+    Picture(#[from] DrawError),
     /// A run cannot be resumed.
     #[error(transparent)]
     Resume(#[from] ResumeError),

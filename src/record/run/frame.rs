@@ -3,7 +3,7 @@
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
 use crate::record::picture::Subject;
-use crate::report::quantity;
+use crate::view::quantity;
 use fretwork_observe::picture::{self, Shows};
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::Observed;

@@ -2,8 +2,8 @@
 
 use crate::process::{Step, Trace};
 use crate::{Run, Samples, Single};
-use fretwork::report::{Axis, Chart, ReportError, Series, draw_panels};
 use fretwork::solve::local::solver::Method;
+use fretwork::view::{Axis, Chart, DrawError, Series, draw_panels};
 use std::path::Path;
 
 /// Number of steps over which counts, times and measured values are averaged.
@@ -54,7 +54,7 @@ fn sparse(history: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Error against iterations for each friction coefficient, and against time for the middle one.
-pub fn one_step(singles: &[Single], path: &Path) -> Result<(), ReportError> {
+pub fn one_step(singles: &[Single], path: &Path) -> Result<(), DrawError> {
     let panel = |single: &Single, timed: bool| {
         let (x, along) = if timed {
             ("time of the solve", ", against time")
@@ -123,12 +123,12 @@ fn along(runs: &[Run]) -> [Chart; 2] {
 }
 
 /// Figure of the quasi-static process.
-pub fn quasi_static(runs: &[Run], path: &Path) -> Result<(), ReportError> {
+pub fn quasi_static(runs: &[Run], path: &Path) -> Result<(), DrawError> {
     draw_panels(&along(runs), 2, path)
 }
 
 /// Figure of the dynamic process, with kinetic energy and final surface.
-pub fn dynamic(runs: &[Run], path: &Path) -> Result<(), ReportError> {
+pub fn dynamic(runs: &[Run], path: &Path) -> Result<(), DrawError> {
     let mut energy = chart(
         "Kinetic energy of the grains",
         Axis::new("time", "s"),
@@ -179,7 +179,7 @@ pub const QUANTITIES: [Quantity; 4] = [
 ];
 
 /// Figure of the biaxial test: means over samples by NLGS and by CPG, over the individual samples.
-pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), ReportError> {
+pub fn biaxial(samples: &Samples, path: &Path) -> Result<(), DrawError> {
     let panels = QUANTITIES.map(|(name, unit, value)| {
         // All panels share one legend.
         let label = |text: &str| if name == QUANTITIES[0].0 { text } else { "" }.to_owned();

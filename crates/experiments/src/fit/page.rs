@@ -6,9 +6,9 @@ use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
 use super::spec::{ReadFit, TestSpec};
 use fretwork_observe::quantity::number;
-use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels};
-use fretwork_report::{Block, Section, Sheet, SheetTable};
 use fretwork_study::fit::identify::{End, Estimate};
+use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels};
+use fretwork_view::{Block, Section, Sheet, SheetTable};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -421,7 +421,7 @@ pub fn draw(
     found: &Found,
     outcome: &Outcome,
     path: &Path,
-) -> Result<(), ReportError> {
+) -> Result<(), DrawError> {
     let charts = charts(read, tests, found, outcome);
     draw_panels(&charts, charts.len().min(2), path)
 }

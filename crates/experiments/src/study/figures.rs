@@ -3,7 +3,7 @@
 use super::analysis::{Analysis, OutputAnalysis, Regimes, Response, logarithmic_axis};
 use super::page::title_of;
 use super::plan::Plan;
-use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels};
+use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels};
 use std::path::Path;
 
 /// Panels of a picture.
@@ -13,7 +13,7 @@ const PANELS: usize = 12;
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, ReportError> {
+pub fn draw(plan: &Plan, analysis: &Analysis, path: &Path) -> Result<bool, DrawError> {
     let maps = analysis.regimes.iter();
     let mut charts: Vec<Chart> = maps.filter_map(|r| regime_chart(plan, r)).collect();
     // All outputs over the first factor, then over the next.

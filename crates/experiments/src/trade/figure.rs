@@ -5,7 +5,7 @@ use super::output::{Output, Wanted};
 use super::parameters::{Level, Sense, StudyParameter};
 use super::setting::Setting;
 use super::study::Study;
-use fretwork_plot::{Axis, Chart, ReportError, Series, Style, draw_panels, quantity};
+use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels, quantity};
 use std::path::Path;
 
 const GREY: (u8, u8, u8) = (120, 120, 120);
@@ -33,7 +33,7 @@ pub fn draw(
     found: &Comparison,
     title: &str,
     path: &Path,
-) -> Result<bool, ReportError> {
+) -> Result<bool, DrawError> {
     let known = |r: &Row| {
         let mut errors = r.errors.iter().flatten();
         r.failed.is_none() && errors.any(|e| e.at_most.is_finite())

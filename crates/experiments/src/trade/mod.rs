@@ -25,8 +25,8 @@ pub use fretwork_study::interval;
 
 use crate::runs::RunsError;
 use crate::runs::lock::Owner;
-use fretwork_plot::ReportError;
 use fretwork_scene::InputError;
+use fretwork_view::DrawError;
 use std::path::Path;
 
 /// The owner of folders of studies.
@@ -53,7 +53,7 @@ pub enum TradeError {
     Runs(#[from] RunsError),
     /// The figure cannot be drawn.
     #[error(transparent)]
-    Figure(#[from] ReportError),
+    Figure(#[from] DrawError),
 }
 
 impl TradeError {

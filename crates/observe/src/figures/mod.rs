@@ -225,8 +225,33 @@ pub(crate) fn force_displacement(drives: &[Drive]) -> Output {
 const NEGLIGIBLE: f64 = 1e-3;
 /// A residual below this fraction of the largest entry is rounding, and reported as such.
 const ROUNDING: f64 = 1e-9;
-/// Entries that are drawn as continuous lines; the palette begins again after as many.
-const CONTINUOUS: usize = 7;
+/// Entries that say what is there now, drawn dashed, and not what has passed since the start.
+const HELD: [&str; 6] = [
+    "kinetic",
+    "potential",
+    "elastic",
+    "correction",
+    "carried",
+    "residual",
+];
+/// Colours of the entries in their order.
+const COLOURS: [(u8, u8, u8); 15] = [
+    (86, 160, 215),
+    (90, 90, 160),
+    (0, 114, 178),
+    (190, 30, 45),
+    (213, 94, 0),
+    (0, 158, 115),
+    (120, 80, 40),
+    (204, 121, 167),
+    (200, 140, 0),
+    (130, 130, 200),
+    (90, 150, 90),
+    (110, 110, 30),
+    (28, 30, 34),
+    (60, 60, 60),
+    (150, 150, 150),
+];
 
 /// Entries of the energy ledger against time, by the names of their columns.
 pub(crate) fn energy_balance(
@@ -237,9 +262,14 @@ pub(crate) fn energy_balance(
     let (x, y) = (Axis::time(), Axis::of_rows("energy"));
     let mut chart = Chart::new("Energy balance", x, y)
         .note("Entries of the energy ledger above a thousandth of the largest, by their columns.");
-    for (k, name) in entries.enumerate() {
-        let style = [Style::Line, Style::Dashed][usize::from(k >= CONTINUOUS)];
+    // What there was at the start does not change.
+    let drawn = entries
+        .zip(COLOURS)
+        .filter(|(name, _)| *name != "initial_kinetic");
+    for (name, colour) in drawn {
+        let style = [Style::Line, Style::Dashed][usize::from(HELD.contains(&name))];
         let mut series = Series::rows(name.replace('_', " "), "time", name).style(style);
+        series.colour = Some(colour);
         series.stated = name == "residual";
         series.least = if series.stated { ROUNDING } else { NEGLIGIBLE };
         chart.series.push(series);

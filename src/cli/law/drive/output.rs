@@ -2,7 +2,7 @@
 
 use super::super::super::Failure;
 use super::table::Row;
-use crate::report::{Axis, Chart, Series, draw_panels};
+use crate::view::{Axis, Chart, Series, draw_panels};
 use std::path::Path;
 
 pub(super) fn write_csv(file: &Path, rows: &[Row]) -> Result<(), Failure> {

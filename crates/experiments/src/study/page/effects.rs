@@ -4,8 +4,8 @@ use super::mean_text;
 use crate::study::analysis::{Comparison, Effects, OutputAnalysis};
 use crate::study::plan::Plan;
 use fretwork_observe::quantity::{number, quantity};
-use fretwork_report::{Block, SheetTable};
 use fretwork_study::interval::Interval;
+use fretwork_view::{Block, SheetTable};
 
 /// In place of a mean.
 const NONE_DONE: &str = "no run is done";

@@ -8,8 +8,8 @@ use super::plan::Plan;
 use super::table::{Cell, Table};
 use effects::{comparison_table, effect_blocks, pair_table};
 use fretwork_observe::quantity::quantity;
-use fretwork_report::{Block, Section, Sheet, SheetTable};
 use fretwork_study::interval::Mean;
+use fretwork_view::{Block, Section, Sheet, SheetTable};
 
 /// Settings that a page lists; all are in the tables.
 const LISTED: usize = 100;

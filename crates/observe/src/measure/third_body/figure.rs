@@ -102,9 +102,11 @@ impl Figure<'_> {
         for (series, block) in chart.series.iter_mut().zip(self.slices) {
             series.points = block.profile().into_iter().map(|(y, w)| (w, y)).collect();
         }
-        let mut straight = Series::new("Couette flow", vec![(0.0, 0.0), (1.0, 1.0)]);
-        straight.colour = Some((150, 154, 160));
-        chart.with(straight.style(Style::Dashed))
+        if chart.has_data() {
+            let straight = Series::new("Couette flow", vec![(0.0, 0.0), (1.0, 1.0)]);
+            chart = chart.with(straight.coloured(150, 154, 160).style(Style::Dashed));
+        }
+        chart
     }
 
     fn stress(&self) -> Chart {

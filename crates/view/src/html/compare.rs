@@ -1,0 +1,180 @@
+//! Several runs side by side on one page.
+
+use crate::html::arrays::Arrays;
+use crate::html::folder::RunFolder;
+use crate::html::page::{Page, difference_table, escape, footer, item, section, value};
+use crate::html::results::{self, ResultRow};
+use crate::html::series::Series;
+use crate::html::{ReportError, figures, write};
+use fretwork_observe::chart::Figure;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// Rows of the statistics of a run.
+const ROWS: usize = 3000;
+
+/// Makes a page of several runs side by side; returns its size in bytes.
+///
+/// # Errors
+/// A folder holds no run, or the page cannot be written.
+pub fn compare(folders: &[PathBuf], to: &Path) -> Result<usize, ReportError> {
+    let runs: Vec<RunFolder> = folders
+        .iter()
+        .map(|f| RunFolder::open(f))
+        .collect::<Result<_, _>>()?;
+    let html = page(&runs, &names(&runs));
+    write(to, &html)?;
+    Ok(html.len())
+}
+
+/// Names of the folders, whole paths where two are named alike.
+fn names(runs: &[RunFolder]) -> Vec<String> {
+    let short: Vec<String> = runs.iter().map(RunFolder::name).collect();
+    let name = |k: usize| {
+        let alone = short.iter().filter(|n| **n == short[k]).count() == 1;
+        if alone {
+            short[k].clone()
+        } else {
+            runs[k].path.display().to_string()
+        }
+    };
+    (0..runs.len()).map(name).collect()
+}
+
+fn page(runs: &[RunFolder], names: &[String]) -> String {
+    let mut gaps: Vec<Vec<String>> = runs.iter().map(|r| r.gaps.clone()).collect();
+    let series: Vec<Series> = runs
+        .iter()
+        .zip(&mut gaps)
+        .map(|(run, gaps)| Series::read(run, ROWS, gaps))
+        .collect();
+    let described = runs.iter().zip(&series).zip(&mut gaps);
+    let described: Vec<Vec<Figure>> = described
+        .map(|((run, series), gaps)| figures::of_run(run, series, gaps))
+        .collect();
+    let mut body = String::from(
+        "<a class=\"skip\" href=\"#results\">Skip to the results</a>\n<header>\n<h1>Runs side by side</h1>\n",
+    );
+    let titles: Vec<&str> = runs.iter().map(|r| r.title.as_str()).collect();
+    let same = titles.windows(2).all(|w| w[0] == w[1]);
+    if let Some(title) = titles.first().filter(|_| same) {
+        body += &format!("<p class=\"doc\">{}</p>\n", escape(title));
+    }
+    body += "</header>\n<nav aria-label=\"Sections\"><a href=\"#verdicts\">Verdicts</a><a href=\"#inputs\">Inputs that differ</a>\
+             <a href=\"#results\">Results</a><a href=\"#figures\">Figures</a></nav>\n<main>\n";
+    body += &section("verdicts", "Verdicts", &verdicts(runs, names, &gaps));
+    body += &section(
+        "inputs",
+        "Inputs that differ",
+        &difference_table(runs, names),
+    );
+    body += &section("results", "Results", &result_table(runs, names));
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let mut numbers = Arrays::default();
+    let columns = series.iter().zip(&names).enumerate();
+    let columns: Vec<Value> = columns
+        .map(|(k, (s, name))| figures::columns(name, &format!("{k}:"), s, &mut numbers))
+        .collect();
+    let drawn: Vec<(&str, Vec<Figure>)> = names.into_iter().zip(described).collect();
+    let mut figures = figures::overlaid(&drawn, &mut numbers);
+    figures.push(json!({"any": true}));
+    let frames: String = (0..figures.len())
+        .map(|k| format!("<figure class=\"chart\" id=\"figure-{k}\"></figure>\n"))
+        .collect();
+    let lead = "<p class=\"lead\">Drag to zoom, double-click to see all; figures over time are linked.</p>\n";
+    body += &section(
+        "figures",
+        "Figures",
+        &format!("{lead}<div class=\"figures\">\n{frames}</div>\n"),
+    );
+    body += "</main>\n";
+    body += &footer("fretwork compare");
+    Page {
+        title: "Runs side by side - Fretwork".to_owned(),
+        body,
+        data: json!({"runs": columns, "figures": figures}),
+        blobs: vec![("numbers".to_owned(), numbers.packed())],
+        viewer: false,
+    }
+    .html()
+}
+
+fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> String {
+    let mut rows = String::new();
+    for ((run, name), gaps) in runs.iter().zip(names).zip(gaps) {
+        let verdict = crate::html::page::Verdict::of(run);
+        let warnings = run.summary["warnings"].as_array();
+        let warnings = warnings.into_iter().flatten().filter_map(Value::as_str);
+        let all: Vec<String> = warnings
+            .map(item)
+            .chain(gaps.iter().map(|g| item(g)))
+            .collect();
+        rows += &format!(
+            "<tr><th scope=\"row\">{}</th><td>{}</td><td><span class=\"badge {}\">{}</span></td><td class=\"meaning\">{}</td></tr>\n",
+            escape(name),
+            escape(&run.title),
+            verdict.class(),
+            verdict.words(),
+            all.join("<br>")
+        );
+    }
+    format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Verdicts\"><table><thead><tr><th scope=\"col\">Run</th><th scope=\"col\">Case</th>\
+         <th scope=\"col\">Verdict</th><th scope=\"col\">Reasons and notes</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+    )
+}
+
+/// Results, one column a run.
+fn result_table(runs: &[RunFolder], names: &[String]) -> String {
+    let all: Vec<Vec<(&'static str, ResultRow)>> = runs
+        .iter()
+        .map(|run| {
+            let groups = results::groups(run).into_iter();
+            groups
+                .flat_map(|(title, rows)| rows.into_iter().map(move |r| (title, r)))
+                .collect()
+        })
+        .collect();
+    let mut keys: Vec<(&'static str, String)> = Vec::new();
+    for (title, row) in all.iter().flatten() {
+        let key = (*title, row.label.clone());
+        if !keys.contains(&key) {
+            keys.push(key);
+        }
+    }
+    if keys.is_empty() {
+        return "<p>No run has a summary of results.</p>\n".to_owned();
+    }
+    let mut rows = String::new();
+    let mut group = "";
+    for (title, label) in &keys {
+        if *title != group {
+            group = title;
+            rows += &format!(
+                "<tr class=\"group\"><th scope=\"colgroup\" colspan=\"{}\">{title}</th></tr>\n",
+                runs.len() + 1
+            );
+        }
+        rows += &format!("<tr><th scope=\"row\">{}</th>", escape(label));
+        for run in &all {
+            let found = run.iter().find(|(t, r)| t == title && r.label == *label);
+            rows += &match found {
+                Some((_, r)) => format!(
+                    "<td>{} <span class=\"interval\">{}</span></td>",
+                    value(&r.value),
+                    escape(&r.interval)
+                ),
+                None => "<td>none</td>".to_owned(),
+            };
+        }
+        rows += "</tr>\n";
+    }
+    let heads: String = names
+        .iter()
+        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
+        .collect();
+    format!(
+        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Results\"><table id=\"side-by-side\"><thead><tr><th scope=\"col\">Result</th>{heads}</tr></thead>\n\
+         <tbody>\n{rows}</tbody></table></div>\n"
+    )
+}

@@ -1,0 +1,192 @@
+//! Figures in a page: the charts that observers and other programs describe, as its scripts read them. Numbers
+//! stand packed beside them.
+
+use crate::html::arrays::{Arrays, Kind};
+use crate::html::folder::RunFolder;
+use crate::html::series::Series;
+use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series as Curve, Style};
+use serde_json::{Value, json};
+
+/// The figures that the observers of a run described, with numbers from its statistics.
+pub(crate) fn of_run(run: &RunFolder, rows: &Series, gaps: &mut Vec<String>) -> Vec<Figure> {
+    let text = std::fs::read_to_string(run.path.join(Figure::FILE));
+    let parsed = text
+        .map_err(|e| e.to_string())
+        .and_then(|t| serde_json::from_str::<Vec<Figure>>(&t).map_err(|e| e.to_string()));
+    match parsed {
+        Ok(figures) => figures.iter().map(|f| f.resolve(rows)).collect(),
+        Err(reason) => {
+            gaps.push(format!(
+                "Figures are missing, but for that of any column: {} cannot be read ({reason}). Runs of older versions have none.",
+                Figure::FILE
+            ));
+            Vec::new()
+        }
+    }
+}
+
+/// The charts of a run for the page.
+pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
+    let charts = figures
+        .iter()
+        .flat_map(|f| f.charts.iter().map(|c| (f.name.as_str(), c)));
+    charts.map(|(name, c)| chart(name, c, numbers)).collect()
+}
+
+/// The charts of several runs over each other: of each that has more than one curve the entries name run and
+/// curve, and of cycles the last is drawn.
+pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
+    let mut all: Vec<(&str, Chart)> = Vec::new();
+    for (run, figure) in runs
+        .iter()
+        .flat_map(|(n, figures)| figures.iter().map(move |f| (n, f)))
+    {
+        for own in figure.charts.iter().filter(|c| c.field.is_none()) {
+            let same =
+                |(name, chart): &(&str, Chart)| *name == figure.name && chart.title == own.title;
+            let at = all.iter().position(same).unwrap_or_else(|| {
+                let mut empty = own.clone();
+                empty.series.clear();
+                (empty.subtitle, empty.colour_by_order) = (None, false);
+                (empty.x_range, empty.y_range) = (None, None);
+                all.push((&figure.name, empty));
+                all.len() - 1
+            });
+            let skipped = if own.colour_by_order {
+                own.series.len() - 1
+            } else {
+                0
+            };
+            let shown = &own.series[skipped..];
+            for series in shown {
+                let label = match shown.len() {
+                    1 => (*run).to_owned(),
+                    _ => format!("{run}: {}", series.label),
+                };
+                let series_of_all = &mut all[at].1.series;
+                series_of_all.push(Curve {
+                    label,
+                    colour: None,
+                    place: series_of_all.len(),
+                    ..series.clone()
+                });
+            }
+        }
+    }
+    all.iter()
+        .map(|(name, c)| chart(name, c, numbers))
+        .collect()
+}
+
+/// A chart for the page.
+pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
+    let points = || chart.series.iter().flat_map(|s| &s.points);
+    let xs = points()
+        .map(|p| p.0)
+        .chain(chart.x_range.into_iter().flat_map(<[f64; 2]>::from));
+    let intervals = chart.series.iter().flat_map(|s| &s.intervals);
+    let ys = points()
+        .map(|p| p.1)
+        .chain(intervals.flat_map(|i| [i.0, i.1]))
+        .chain(chart.y_range.into_iter().flat_map(<[f64; 2]>::from));
+    json!({
+        "figure": name,
+        "title": chart.title,
+        "note": note(chart),
+        "x": axis(&chart.x, xs, chart.x_range),
+        "y": axis(&chart.y, ys, chart.y_range),
+        "gradient": chart.colour_by_order,
+        "series": chart.series.iter().map(|s| series(s, numbers)).collect::<Vec<_>>(),
+        "field": chart.field.as_ref().map(|f| field(f, numbers)),
+    })
+}
+
+/// What to read in a chart, and under which conditions it holds.
+fn note(chart: &Chart) -> String {
+    match (chart.note.as_str(), chart.subtitle.as_deref()) {
+        ("", said) => said.unwrap_or_default().to_owned(),
+        (note, None | Some("")) => note.to_owned(),
+        (note, Some(said)) => format!("{}; {said}", note.trim_end_matches('.')),
+    }
+}
+
+fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)>) -> Value {
+    let finite = values.map(f64::abs).filter(|v| v.is_finite());
+    let (exponent, label) = axis.scaled(finite.fold(0.0, f64::max));
+    json!({
+        "name": axis.name, "unit": axis.unit, "label": label, "factor": 10f64.powi(-exponent),
+        "log": axis.log, "whole": axis.whole, "range": range,
+    })
+}
+
+fn series(series: &Curve, numbers: &mut Arrays) -> Value {
+    let mut array = |of: fn(&(f64, f64)) -> f64, list: &[(f64, f64)]| match list.is_empty() {
+        true => Value::Null,
+        false => json!(numbers.number(&list.iter().map(of).collect::<Vec<_>>())),
+    };
+    json!({
+        "label": series.label,
+        "x": array(|p| p.0, &series.points),
+        "y": array(|p| p.1, &series.points),
+        "low": array(|p| p.0, &series.intervals),
+        "high": array(|p| p.1, &series.intervals),
+        "line": series.style != Style::Markers,
+        "dashed": series.style == Style::Dashed,
+        "markers": matches!(series.style, Style::Markers | Style::LineMarkers),
+        "colour": series.colour,
+        "place": series.place,
+    })
+}
+
+fn field(field: &Field, numbers: &mut Arrays) -> Value {
+    let corners = || field.cells.iter().flatten();
+    let mut starts = vec![0.0];
+    starts.extend(field.cells.iter().scan(0, |sum, cell| {
+        *sum += cell.len();
+        Some(*sum as f64)
+    }));
+    let part = |numbers: &mut Arrays, of: fn(&[f64; 2]) -> f64| {
+        numbers.number(&corners().map(of).collect::<Vec<_>>())
+    };
+    let (x, y) = (part(numbers, |p| p[0]), part(numbers, |p| p[1]));
+    let (values, scale) = match &field.colours {
+        Colours::Classes { of, .. } => (of.iter().map(|k| *k as f64).collect(), Value::Null),
+        Colours::Values { values, scale } => {
+            let top = field.top();
+            (
+                values.clone(),
+                axis(scale, [top].into_iter(), Some((0.0, top))),
+            )
+        }
+    };
+    let classes = match &field.colours {
+        Colours::Classes { classes, .. } => classes.as_slice(),
+        Colours::Values { .. } => &[],
+    };
+    json!({
+        "starts": numbers.number(&starts), "x": x, "y": y, "values": numbers.number(&values),
+        "classes": classes, "scale": scale,
+        "arrows": field.arrows, "arrow_label": field.arrow_label,
+    })
+}
+
+/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers are named
+/// after `prefix`.
+pub(crate) fn columns(
+    name: &str,
+    prefix: &str,
+    statistics: &Series,
+    numbers: &mut Arrays,
+) -> Value {
+    let columns: Vec<Value> = statistics
+        .columns
+        .iter()
+        .map(|c| {
+            let id = format!("{prefix}{}", c.name);
+            let exact = matches!(c.name.as_str(), "time" | "step");
+            numbers.push_known(&id, if exact { Kind::F64 } else { Kind::F32 }, &c.values);
+            json!({"name": c.name, "unit": c.unit, "doc": c.doc, "values": id})
+        })
+        .collect();
+    json!({"name": name, "rows": statistics.rows, "every": statistics.every, "columns": columns})
+}

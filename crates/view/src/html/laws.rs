@@ -1,0 +1,218 @@
+//! Laws of a run: which were loaded, and the parameters that they had.
+
+use crate::html::folder::RunFolder;
+use crate::html::materials::Files;
+use fretwork_scene::Case;
+use fretwork_scene::source::Source;
+use fretwork_scene::wear_coefficient;
+
+/// A law, as its library describes it.
+#[derive(Clone, Debug, Default)]
+pub struct LawInfo {
+    /// One-line description.
+    pub doc: String,
+    /// Paper or DOI.
+    pub reference: String,
+    /// Its parameters.
+    pub parameters: Vec<LawParameter>,
+}
+
+/// A parameter of a law.
+#[derive(Clone, Debug, Default)]
+pub struct LawParameter {
+    /// Name.
+    pub name: String,
+    /// SI unit, empty for a pure number.
+    pub unit: String,
+    /// Default.
+    pub default: f64,
+    /// One-line description.
+    pub doc: String,
+}
+
+/// A library that was loaded.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Loaded {
+    /// Kind of the law.
+    pub kind: String,
+    /// Name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// SHA-256 of the library.
+    pub sha256: String,
+    /// Whether it passed certification; unknown where the run did not end.
+    pub certified: Option<bool>,
+}
+
+/// A law in an interface with its parameters.
+#[derive(Clone, Debug)]
+pub(crate) struct Used {
+    /// Kind of the law.
+    pub kind: String,
+    /// Its name.
+    pub name: String,
+    /// Name, value, unit, where the value comes from, description.
+    pub parameters: Vec<[String; 5]>,
+}
+
+/// An interface with its laws.
+#[derive(Clone, Debug)]
+pub(crate) struct Interface {
+    /// Its name.
+    pub name: String,
+    /// The two materials.
+    pub between: [String; 2],
+    /// Its laws.
+    pub laws: Vec<Used>,
+}
+
+/// The libraries that a run loaded.
+pub(crate) fn loaded(run: &RunFolder) -> Vec<Loaded> {
+    let column = |name: &str| run.reader.texts(&format!("plugins/{name}"));
+    let (kinds, names, versions, sums) = (
+        column("kind"),
+        column("name"),
+        column("version"),
+        column("sha256"),
+    );
+    let stamps = run.summary["plugins"].as_array();
+    let law = |k: usize| {
+        let text = |list: &[String]| list.get(k).cloned().unwrap_or_default();
+        let (kind, name) = (text(&kinds), text(&names));
+        let stamp =
+            stamps.and_then(|s| s.iter().find(|s| s["kind"] == *kind && s["name"] == *name));
+        Loaded {
+            kind,
+            name,
+            version: text(&versions),
+            sha256: text(&sums),
+            certified: stamp.and_then(|s| s["certified"].as_bool()),
+        }
+    };
+    (0..names.len()).map(law).collect()
+}
+
+/// The interfaces of a case with the parameters of their laws; none if the case cannot be read.
+pub(crate) fn interfaces(
+    run: &RunFolder,
+    files: &Files,
+    law: &dyn Fn(&str, &str) -> Option<LawInfo>,
+) -> Vec<Interface> {
+    let Ok(case) = Source::from_text("case", run.case_text.as_str()).parse::<Case>() else {
+        return Vec::new();
+    };
+    let of = |spec: &fretwork_scene::case::InterfaceSpec| {
+        let used = spec.laws.iter().map(|(kind, name)| {
+            let info = law(kind.word(), name);
+            Used {
+                kind: kind.word().to_owned(),
+                name: name.clone(),
+                parameters: parameters(
+                    &case,
+                    spec,
+                    kind.word(),
+                    name,
+                    info.as_ref(),
+                    files,
+                    &run.summary,
+                ),
+            }
+        });
+        Interface {
+            name: spec.name.clone(),
+            between: [spec.between.0.clone(), spec.between.1.clone()],
+            laws: used.collect(),
+        }
+    };
+    case.interfaces.iter().map(of).collect()
+}
+
+/// What a run derived from `K` for the wear law of an interface.
+fn derived_wear<'a>(
+    summary: &'a serde_json::Value,
+    interface: &str,
+    law: &str,
+) -> Option<&'a serde_json::Value> {
+    let list = summary["wear_coefficients"].as_array()?;
+    list.iter()
+        .find(|w| w["interface"] == *interface && w["law"] == *law)
+}
+
+/// Parameters of a law: those that a run derived from a hardness, then those of the case win over those of the file, properties of materials and defaults.
+fn parameters(
+    case: &Case,
+    spec: &fretwork_scene::case::InterfaceSpec,
+    kind: &str,
+    name: &str,
+    info: Option<&LawInfo>,
+    files: &Files,
+    summary: &serde_json::Value,
+) -> Vec<[String; 5]> {
+    let own: Vec<(String, f64, String)> = spec
+        .parameters
+        .iter()
+        .filter(|(k, _)| k.word() == kind)
+        .flat_map(|(_, given)| given)
+        .map(|(n, g)| (n.clone(), g.value, g.unit.clone().unwrap_or_default()))
+        .collect();
+    let file = files.laws_of(case, spec);
+    let of_file: Vec<_> = file.into_iter().flat_map(|f| f.of(kind, name)).collect();
+    let mut names: Vec<String> = info
+        .iter()
+        .flat_map(|i| &i.parameters)
+        .map(|p| p.name.clone())
+        .collect();
+    for given in own.iter().map(|o| &o.0).chain(of_file.iter().map(|f| &f.0)) {
+        if !names.contains(given) {
+            names.push(given.clone());
+        }
+    }
+    let gives_k = names.iter().any(|n| n == wear_coefficient::NAME);
+    let schema_fields = info.iter().flat_map(|i| &i.parameters);
+    let schema_fields = schema_fields.map(|p| (p.name.as_str(), p.unit.as_str()));
+    let from_hardness = wear_coefficient::parameter(schema_fields).filter(|_| gives_k);
+    let derived = derived_wear(summary, &spec.name, name);
+    let row = |parameter: String| {
+        let schema = info.and_then(|i| i.parameters.iter().find(|p| p.name == parameter));
+        let si = || schema.map(|s| s.unit.clone()).unwrap_or_default();
+        let unit = |given: &str| {
+            if given.is_empty() {
+                si()
+            } else {
+                given.to_owned()
+            }
+        };
+        let doc = schema.map(|s| s.doc.clone()).unwrap_or_default();
+        let (value, unit, from) =
+            if let Some(w) = derived.filter(|w| kind == "wear" && w["parameter"] == *parameter) {
+                let text = |key: &str| w[key].as_str().unwrap_or_default().to_owned();
+                let value = w["value"].as_f64().unwrap_or(f64::NAN);
+                (value, text("unit"), text("derivation"))
+            } else if let Some((_, value, given)) = own.iter().find(|o| o.0 == parameter) {
+                (*value, unit(given), "the case".to_owned())
+            } else if let Some((_, number)) = of_file.iter().find(|f| f.0 == parameter) {
+                (number.value, unit(&number.unit), number.source.clone())
+            } else if let Some((number, material)) = files.property(case, spec, &parameter) {
+                (
+                    number.value,
+                    unit(&number.unit),
+                    format!("material {material}: {}", number.source),
+                )
+            } else if kind == "wear" && from_hardness.is_some_and(|(name, _)| name == parameter) {
+                let why = "from K and the hardness; the run left no summary that has the value";
+                return [parameter, String::new(), si(), why.to_owned(), doc];
+            } else {
+                let default = schema.map_or(f64::NAN, |s| s.default);
+                (default, si(), "default of the law".to_owned())
+            };
+        [
+            parameter,
+            crate::html::results::number(value),
+            unit,
+            from,
+            doc,
+        ]
+    };
+    names.into_iter().map(row).collect()
+}

@@ -1,0 +1,104 @@
+//! Pages as HTML: reports of runs, several runs side by side, and sheets of studies and fits.
+//!
+//! ```text
+//! folder of a run ─► folder (results.h5, summary.json) ─► series, figures, scene, materials ─► page ─► report.html
+//! ```
+//! Data stand in the page as gzip in base64 and are unpacked by the browser; names, units and descriptions of columns and
+//! fields are those of the attributes in `results.h5`. A page loads nothing from a network, and its policy forbids it to.
+
+mod arrays;
+mod compare;
+mod figures;
+mod folder;
+mod laws;
+mod materials;
+mod page;
+mod results;
+mod scene;
+mod series;
+mod sheet;
+
+pub use compare::compare;
+pub use laws::{LawInfo, LawParameter};
+pub use sheet::{Block, Section, Sheet, SheetTable};
+
+use folder::RunFolder;
+use std::path::{Path, PathBuf};
+
+/// Name of the report in the folder of a run.
+pub const FILE: &str = "report.html";
+
+/// Bytes of a page, unless asked otherwise.
+pub const DEFAULT_BYTES: usize = 5_000_000;
+
+/// How a report is made.
+pub struct Options<'a> {
+    /// Largest size of the page in bytes, `None` for all that was recorded: states in time, fields and rows are left out to stay
+    /// below it, which the page says.
+    pub bytes: Option<usize>,
+    /// Looks up a law by kind and name, for its parameters and reference.
+    pub law: &'a dyn Fn(&str, &str) -> Option<LawInfo>,
+}
+
+impl std::fmt::Debug for Options<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("bytes", &self.bytes)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why there is no report.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReportError {
+    /// The folder holds no run that can be read.
+    #[error("{}: {reason}", path.display())]
+    NoRun {
+        /// The folder.
+        path: PathBuf,
+        /// Why not, and what to do.
+        reason: String,
+    },
+    /// The page cannot be written.
+    #[error("cannot write {}: {reason}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Reason.
+        reason: String,
+    },
+}
+
+impl ReportError {
+    /// Whether the input is wrong, and not the place where the page goes.
+    pub fn is_input(&self) -> bool {
+        matches!(self, Self::NoRun { .. })
+    }
+}
+
+/// Makes the report of the run in a folder, `report.html` in it; returns its path and its size in bytes.
+///
+/// # Errors
+/// The folder holds no run, or the page cannot be written.
+pub fn report(folder: &Path, options: &Options<'_>) -> Result<(PathBuf, usize), ReportError> {
+    let run = RunFolder::open(folder)?;
+    let html = page::report::page(&run, options);
+    let path = folder.join(FILE);
+    write(&path, &html)?;
+    Ok((path, html.len()))
+}
+
+/// Writes a page that is whole whenever it is there.
+fn write(path: &Path, html: &str) -> Result<(), ReportError> {
+    let unwritable = |e: std::io::Error| ReportError::Unwritable {
+        path: path.to_owned(),
+        reason: e.to_string(),
+    };
+    let part = path.with_extension("html.part");
+    let written = std::fs::write(&part, html).and_then(|()| std::fs::rename(&part, path));
+    written.map_err(|e| {
+        // A page that is not whole is of no use.
+        let _ = std::fs::remove_file(&part);
+        unwritable(e)
+    })
+}

@@ -1,0 +1,110 @@
+//! The table of all inputs of a case, and that of inputs that differ between runs.
+
+use super::escape;
+use crate::html::folder::RunFolder;
+use fretwork_scene::inputs::{From, Input, of};
+use std::collections::BTreeMap;
+
+/// All inputs of a run, with a search.
+pub(crate) fn html(run: &RunFolder) -> String {
+    let inputs = match of(&run.case_text) {
+        Ok(inputs) => inputs,
+        Err(reason) => {
+            return format!(
+                "<p>The inputs cannot be listed: this version does not read the case ({}). Its text stands below.</p>\n{}",
+                escape(&reason),
+                text(run)
+            );
+        }
+    };
+    let row = |i: &Input| {
+        let (class, from) = match i.from {
+            From::Given => ("given", "given"),
+            From::Default => ("default", "default"),
+            From::NotSet => ("unset", "not set"),
+        };
+        format!(
+            "<tr class=\"{class}\"><th scope=\"row\"><code>{}</code></th><td>{}</td><td>{}</td><td>{from}</td></tr>\n",
+            escape(&i.path),
+            escape(&i.value),
+            escape(i.unit)
+        )
+    };
+    let rows: String = inputs.iter().map(row).collect();
+    let given = inputs.iter().filter(|i| i.from == From::Given).count();
+    format!(
+        "<p class=\"lead\">{given} of {} keys are given by the case, the others are defaults or not set. Any of them changes with \
+         <code>--set KEY=VALUE</code>. Units are SI; texts and pure numbers have none.</p>\n\
+         <div class=\"tools\"><label class=\"search\">Search <input type=\"search\" data-filters=\"inputs-table\" \
+         placeholder=\"solver, young, 0.5 ...\"></label>\n\
+         <label><input type=\"checkbox\" data-hides=\"inputs-table\" data-class=\"given\"> only what is given</label></div>\n\
+         <div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs\"><table id=\"inputs-table\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Value</th>\
+         <th scope=\"col\">Unit</th><th scope=\"col\">Origin</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n{}",
+        inputs.len(),
+        text(run)
+    )
+}
+
+/// The text of the case, folded.
+fn text(run: &RunFolder) -> String {
+    format!(
+        "<details><summary>The case as it was run</summary>\n<pre class=\"case\" tabindex=\"0\">{}</pre></details>\n",
+        escape(&run.case_text)
+    )
+}
+
+/// The inputs that differ between runs; columns are runs.
+pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
+    let mut paths: Vec<String> = Vec::new();
+    let mut values: Vec<BTreeMap<String, Input>> = Vec::new();
+    for run in runs {
+        let mut own = BTreeMap::new();
+        for input in of(&run.case_text).unwrap_or_default() {
+            if !paths.contains(&input.path) {
+                paths.push(input.path.clone());
+            }
+            own.insert(input.path.clone(), input);
+        }
+        values.push(own);
+    }
+    let shown = |k: usize, path: &str| {
+        values[k]
+            .get(path)
+            .map(|i| i.value.clone())
+            .unwrap_or_default()
+    };
+    let differ = |path: &&String| (1..runs.len()).any(|k| shown(k, path) != shown(0, path));
+    let mut rows = String::new();
+    for path in paths.iter().filter(differ) {
+        let unit = values
+            .iter()
+            .find_map(|v| v.get(path.as_str()))
+            .map_or("", |i| i.unit);
+        rows += &format!(
+            "<tr><th scope=\"row\"><code>{}</code></th><td>{}</td>",
+            escape(path),
+            escape(unit)
+        );
+        for k in 0..runs.len() {
+            let value = shown(k, path);
+            let value = if value.is_empty() {
+                "not set".to_owned()
+            } else {
+                value
+            };
+            rows += &format!("<td>{}</td>", escape(&value));
+        }
+        rows += "</tr>\n";
+    }
+    if rows.is_empty() {
+        return "<p>All inputs are the same.</p>\n".to_owned();
+    }
+    let heads: String = names
+        .iter()
+        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
+        .collect();
+    format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs that differ\"><table id=\"differences\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Unit</th>{heads}</tr></thead>\n\
+         <tbody>\n{rows}</tbody></table></div>\n"
+    )
+}

@@ -1,0 +1,116 @@
+//! What was run: materials with sources, interfaces and laws with their parameters and libraries.
+
+use super::{escape, hash};
+use crate::html::laws::{Interface, Loaded};
+use crate::html::materials::Files;
+use crate::html::results::number;
+
+/// Materials, each number with its source.
+pub(crate) fn materials(files: &Files) -> String {
+    let mut rows = String::new();
+    for (name, material) in &files.materials {
+        let numbers = std::iter::once(("density", &material.density));
+        let numbers = numbers.chain(material.properties.iter().map(|(k, v)| (k.as_str(), v)));
+        let count = numbers.clone().count();
+        for (k, (property, value)) in numbers.enumerate() {
+            let head = match k {
+                0 => format!(
+                    "<th scope=\"rowgroup\" rowspan=\"{count}\">{}<br><span class=\"meaning\">{}</span></th>",
+                    escape(name),
+                    escape(&material.doc)
+                ),
+                _ => String::new(),
+            };
+            let unit = match (property, value.unit.as_str()) {
+                ("density", "") => "kg/m^3",
+                (_, unit) => unit,
+            };
+            rows += &format!(
+                "<tr>{head}<td>{}</td><td class=\"value\">{} {}</td><td class=\"meaning\">{}</td></tr>\n",
+                escape(property),
+                number(value.value),
+                escape(unit),
+                escape(&value.source)
+            );
+        }
+    }
+    if rows.is_empty() {
+        return String::new();
+    }
+    format!(
+        "<h3>Materials</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Materials\"><table>\n<thead><tr><th scope=\"col\">Material</th><th scope=\"col\">Property</th>\
+         <th scope=\"col\">Value</th><th scope=\"col\">Source</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+    )
+}
+
+/// Interfaces with the parameters of their laws.
+pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
+    let mut out = String::new();
+    for interface in interfaces {
+        let laws: Vec<String> = interface
+            .laws
+            .iter()
+            .map(|l| format!("{} <strong>{}</strong>", escape(&l.kind), escape(&l.name)))
+            .collect();
+        let mut rows = String::new();
+        for law in &interface.laws {
+            for [name, value, unit, from, doc] in &law.parameters {
+                rows += &format!(
+                    "<tr><td>{}/{}</td><td title=\"{}\"><code>{}</code></td><td class=\"value\">{} {}</td><td class=\"meaning\">{}</td></tr>\n",
+                    escape(&law.kind),
+                    escape(&law.name),
+                    escape(doc),
+                    escape(name),
+                    escape(value),
+                    escape(unit),
+                    escape(from)
+                );
+            }
+        }
+        let table = match rows.is_empty() {
+            true => String::new(),
+            false => format!(
+                "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Law</th><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th>\
+                 <th scope=\"col\">Where it comes from</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+            ),
+        };
+        out += &format!(
+            "<details><summary><strong>{}</strong>, between {} and {}: {}</summary>\n{table}</details>\n",
+            escape(&interface.name),
+            escape(&interface.between[0]),
+            escape(&interface.between[1]),
+            laws.join(", ")
+        );
+    }
+    if out.is_empty() {
+        out
+    } else {
+        format!("<h3>Interfaces</h3>\n{out}")
+    }
+}
+
+/// The libraries of the laws.
+pub(crate) fn libraries(laws: &[Loaded]) -> String {
+    if laws.is_empty() {
+        return String::new();
+    }
+    let row = |l: &Loaded| {
+        let certified = match l.certified {
+            Some(true) => "yes",
+            Some(false) => "<strong class=\"bad-text\">no</strong>",
+            None => "not known",
+        };
+        format!(
+            "<tr><td>{}</td><th scope=\"row\">{}</th><td>{}</td><td>{certified}</td><td>{}</td></tr>\n",
+            escape(&l.kind),
+            escape(&l.name),
+            escape(&l.version),
+            hash(&l.sha256)
+        )
+    };
+    let rows: String = laws.iter().map(row).collect();
+    format!(
+        "<h3>Laws</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Laws\"><table>\n<thead><tr><th scope=\"col\">Kind</th><th scope=\"col\">Law</th><th scope=\"col\">Version</th>\
+         <th scope=\"col\">Certified</th><th scope=\"col\">SHA-256 of its library</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+    )
+}

@@ -1,0 +1,164 @@
+//! Results with their intervals, and the whole summary.
+
+use super::escape;
+use crate::html::folder::RunFolder;
+use crate::html::results::{self, Group, ResultRow};
+use crate::html::series::Series;
+use fretwork_store::summary::FROM_THE_CLOCK;
+use serde_json::Value;
+
+/// Rows of a group that are shown before the rest is folded.
+const MANY: usize = 12;
+
+/// The results of a run.
+pub(crate) fn html(run: &RunFolder, series: &Series) -> String {
+    let groups = results::groups(run);
+    if groups.is_empty() {
+        return last_row(series);
+    }
+    let mut out = String::from(
+        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause: scatter within the run, and what a finer time step or a \
+         tighter tolerance would change, estimated from repeated steps.</p>\n",
+    );
+    for group in &groups {
+        out += &table(group);
+    }
+    out + &everything(&run.summary)
+}
+
+/// Columns of the last row that stand for the results of a run without a summary.
+const LAST: [&str; 13] = [
+    "time",
+    "step",
+    "cycle",
+    "contacts",
+    "bonds_intact",
+    "bonds_broken",
+    "damage_ratio",
+    "mean_damage",
+    "mu",
+    "friction",
+    "fracture",
+    "worn_first",
+    "residual",
+];
+
+/// The last row of the statistics, of a run that has no results.
+fn last_row(series: &Series) -> String {
+    let row = |name: &&str| {
+        let column = series.column(name)?;
+        Some(ResultRow {
+            label: column.name.clone(),
+            value: results::quantity(*column.values.last()?, &column.unit),
+            interval: String::new(),
+            meaning: column.doc.clone(),
+        })
+    };
+    let rows: Vec<ResultRow> = LAST.iter().filter_map(row).collect();
+    if rows.is_empty() {
+        return "<p>Neither results nor statistics were recorded.</p>\n".to_owned();
+    }
+    let lead = "<p class=\"lead\">The run has no summary. These are the values of the last row of its statistics.</p>\n";
+    lead.to_owned() + &table(&("Last recorded row", rows))
+}
+
+fn table((title, rows): &Group) -> String {
+    let body: String = rows
+        .iter()
+        .map(|r| {
+            let interval = match r.interval.is_empty() {
+                true => String::new(),
+                false => format!(" <span class=\"interval\">{}</span>", escape(&r.interval)),
+            };
+            format!(
+                "<tr><th scope=\"row\">{}</th><td>{}{interval}</td><td class=\"meaning\">{}</td></tr>\n",
+                escape(&r.label),
+                value(&r.value),
+                escape(&r.meaning)
+            )
+        })
+        .collect();
+    let table = format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{title}\"><table class=\"results\"><caption>{title}</caption>\n<tbody>\n{body}</tbody></table></div>\n"
+    );
+    if rows.len() > MANY {
+        return format!(
+            "<details><summary>{title}: {} values</summary>\n{table}</details>\n",
+            rows.len()
+        );
+    }
+    table
+}
+
+/// A value; one of many words may be broken into lines.
+pub(crate) fn value(text: &str) -> String {
+    let class = if text.len() > 28 {
+        "value long"
+    } else {
+        "value"
+    };
+    format!("<span class=\"{class}\">{}</span>", escape(text))
+}
+
+/// Class of a row that differs between two runs of the same case, in a line of its own.
+pub(crate) fn clock(differs: bool) -> &'static str {
+    if differs { " class=\"clock\"" } else { "" }
+}
+
+/// Whether a number, by its path, or the group it is in comes from the clock.
+fn from_the_clock(path: &str) -> bool {
+    FROM_THE_CLOCK.iter().any(|pointer| {
+        let of = pointer[1..].replace('/', ".");
+        let rest = path.strip_prefix(&of);
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+    })
+}
+
+/// All numbers of the summary, by their paths.
+fn everything(summary: &Value) -> String {
+    let mut rows = Vec::new();
+    flatten(summary, String::new(), &mut rows);
+    let body: String = rows
+        .iter()
+        .map(|(path, value)| {
+            format!(
+                "<tr{}><td><code>{}</code></td><td>{}</td></tr>\n",
+                clock(from_the_clock(path)),
+                escape(path),
+                escape(value)
+            )
+        })
+        .collect();
+    format!(
+        "<details><summary>All {} values of summary.json</summary>\n\
+         <label class=\"search\">Search <input type=\"search\" data-filters=\"summary-table\"></label>\n\
+         <div class=\"scroll\"><table id=\"summary-table\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Value</th></tr></thead>\n\
+         <tbody>\n{body}</tbody></table></div></details>\n",
+        rows.len()
+    )
+}
+
+fn flatten(value: &Value, path: String, out: &mut Vec<(String, String)>) {
+    let under = |key: &str| {
+        if path.is_empty() {
+            key.to_owned()
+        } else {
+            format!("{path}.{key}")
+        }
+    };
+    match value {
+        // Where a library was found says nothing to others.
+        Value::Object(map) => map
+            .iter()
+            .filter(|(key, _)| *key != "path")
+            .for_each(|(key, v)| flatten(v, under(key), out)),
+        Value::Array(list) if list.len() <= 200 => list
+            .iter()
+            .enumerate()
+            .for_each(|(k, v)| flatten(v, under(&k.to_string()), out)),
+        Value::Array(list) => out.push((path, format!("list of {}", list.len()))),
+        Value::String(text) => out.push((path, text.clone())),
+        Value::Null => {}
+        other => out.push((path, other.to_string())),
+    }
+}

@@ -1,0 +1,227 @@
+//! Grains of a state: balls and convex parts with their shapes, places, orientations and fields.
+
+use super::detail::Detail;
+use super::outline::{flat, solid};
+use super::range::Ranges;
+use super::{Note, push_points, states};
+use crate::html::arrays::{Arrays, Kind};
+use crate::html::folder::RunFolder;
+use fretwork_store::results::shapes::Shaped;
+use fretwork_store::results::shapes::ShapedPiece;
+use serde_json::{Value, json};
+use std::collections::{HashMap, HashSet};
+
+const ROOT: &str = "views/grains/PointData";
+/// Fields that are used otherwise than as colours.
+const OF_GEOMETRY: [&str; 6] = [
+    "angle",
+    "orientation_w",
+    "orientation_x",
+    "orientation_y",
+    "orientation_z",
+    "gone",
+];
+
+/// Field that the page derives from the components of the velocity.
+const SPEED: &str = "speed";
+
+/// A field in the file.
+struct Field {
+    name: String,
+    unit: String,
+    doc: String,
+}
+
+/// The grains of a run.
+#[derive(Default)]
+pub(super) struct Grains {
+    dimension: usize,
+    fields: Vec<Field>,
+    /// Numbers of the convex parts of a body in the list of outlines, in the order of the view.
+    parts: HashMap<u64, Vec<usize>>,
+    pieces: Vec<ShapedPiece>,
+    /// Identities of grains that other views show, as meshes.
+    meshed: HashSet<u64>,
+    shaped: HashSet<u64>,
+    turns: Vec<&'static str>,
+    /// Centres of the grains of the state that was read last.
+    places: Vec<[f64; 3]>,
+}
+
+impl Grains {
+    /// Reads what is the same in all states.
+    pub fn find(run: &RunFolder, meshed: HashSet<u64>) -> Result<Self, String> {
+        let reader = &run.reader;
+        let dimension = run.dimension();
+        // Numbers: the components of vectors are fields of their own.
+        let numbers = reader
+            .datasets_in(ROOT)
+            .filter(|name| reader.width(&format!("{ROOT}/{name}")) == Ok(1));
+        let fields = numbers.map(|name| {
+            let (unit, doc) = reader.described(&format!("{ROOT}/{name}"));
+            Field {
+                name: name.to_owned(),
+                unit,
+                doc,
+            }
+        });
+        let shaped = Shaped::read(reader)?.unwrap_or_default();
+        let mut parts: HashMap<u64, Vec<usize>> = HashMap::new();
+        for (k, piece) in shaped.pieces.iter().enumerate() {
+            parts.entry(piece.body).or_default().push(k);
+        }
+        let turns: &[&str] = if dimension == 2 {
+            &OF_GEOMETRY[..1]
+        } else {
+            &OF_GEOMETRY[1..5]
+        };
+        let has = |name: &&&str| reader.has(&format!("{ROOT}/{name}"));
+        Ok(Self {
+            dimension,
+            fields: fields.collect(),
+            parts,
+            shaped: shaped.bodies.iter().map(|b| b.id).collect(),
+            pieces: shaped.pieces,
+            meshed,
+            turns: turns.iter().filter(has).copied().collect(),
+            places: Vec::new(),
+        })
+    }
+
+    /// Identities of the grains whose shapes are known.
+    pub fn shaped(&self) -> &HashSet<u64> {
+        &self.shaped
+    }
+
+    /// Centres of the grains of the state that was read last.
+    pub fn places(&self) -> &[[f64; 3]] {
+        &self.places
+    }
+
+    /// The fields for the page.
+    pub fn fields(&self, ranges: &Ranges) -> Value {
+        let shown = self
+            .fields
+            .iter()
+            .filter(|f| !OF_GEOMETRY.contains(&f.name.as_str()));
+        let field = |f: &Field| {
+            let range = ranges.of("grains", &f.name)?;
+            Some(
+                json!({"name": f.name, "unit": f.unit, "doc": f.doc, "all": range.all, "most": range.most}),
+            )
+        };
+        let speed = ranges.of("grains", SPEED).zip(self.velocity().next()).map(|(range, of)| {
+            let parts: Vec<&str> = self.velocity().map(|f| f.name.as_str()).collect();
+            json!({
+                "name": SPEED, "unit": of.unit, "doc": "size of the velocity", "of": parts, "all": range.all, "most": range.most,
+            })
+        });
+        speed.into_iter().chain(shown.filter_map(field)).collect()
+    }
+
+    /// Adds the arrays of a state.
+    pub fn read(
+        &mut self,
+        run: &RunFolder,
+        state: usize,
+        detail: Detail,
+        arrays: &mut Arrays,
+        note: &mut Note<'_>,
+    ) -> Result<(), String> {
+        let rows = states::points(run, "grains", state)?;
+        let points = run.reader.values("views/grains/Points", rows, 3)?;
+        let column = |name: &str| run.reader.values(&format!("{ROOT}/{name}"), rows, 1);
+        let gone = match run.reader.has(&format!("{ROOT}/gone")) {
+            true => column("gone")?,
+            false => vec![0.0; rows.1],
+        };
+        let kept: Vec<usize> = (0..rows.1)
+            .filter(|k| gone[*k] == 0.0 && k.is_multiple_of(detail.every))
+            .collect();
+        let pick = |values: &[f64]| kept.iter().map(|k| values[*k]).collect::<Vec<f64>>();
+        let at = |k: &usize| [points[3 * k], points[3 * k + 1], points[3 * k + 2]];
+        self.places = kept.iter().map(at).collect();
+        let flat_points: Vec<f64> = self.places.iter().flatten().copied().collect();
+        push_points(arrays, "grain", &flat_points, self.dimension);
+        for (k, name) in self.turns.iter().enumerate() {
+            arrays.push(format!("grain.turn{k}"), Kind::U16, &pick(&column(name)?));
+        }
+        let shape = self.shape_of_rows(&column("id")?, &column("corners")?);
+        arrays.push("grain.shape", Kind::U32, &pick(&shape));
+        for field in &self.fields {
+            if OF_GEOMETRY.contains(&field.name.as_str()) {
+                continue;
+            }
+            let values = pick(&column(&field.name)?);
+            note("grains", &field.name, &values);
+            let kind = match field.name.as_str() {
+                "id" => Kind::U32,
+                "radius" => Kind::U16,
+                _ => detail.kind(),
+            };
+            arrays.push(format!("grain:{}", field.name), kind, &values);
+        }
+        note("grains", SPEED, &pick(&self.speeds(run, rows)?));
+        self.push_outlines(arrays);
+        Ok(())
+    }
+
+    /// Names of the components of the velocity.
+    fn velocity(&self) -> impl Iterator<Item = &Field> {
+        self.fields
+            .iter()
+            .filter(|f| f.name.starts_with("velocity_"))
+    }
+
+    fn speeds(&self, run: &RunFolder, rows: states::Rows) -> Result<Vec<f64>, String> {
+        let mut squares = vec![0.0; rows.1];
+        for field in self.velocity() {
+            let values = run
+                .reader
+                .values(&format!("{ROOT}/{}", field.name), rows, 1)?;
+            squares
+                .iter_mut()
+                .zip(values)
+                .for_each(|(sum, v)| *sum += v * v);
+        }
+        Ok(squares.into_iter().map(f64::sqrt).collect())
+    }
+
+    /// By row: 0 a ball, 1 nothing to draw here, 2 and up the number of its outline plus 2.
+    fn shape_of_rows(&self, id: &[f64], corners: &[f64]) -> Vec<f64> {
+        let mut seen: HashMap<u64, usize> = HashMap::new();
+        let row = |(id, corners): (&f64, &f64)| {
+            let id = *id as u64;
+            if self.meshed.contains(&id) {
+                return 1.0;
+            }
+            if *corners == 0.0 {
+                return 0.0;
+            }
+            let next = seen.entry(id).or_default();
+            *next += 1;
+            let part = self.parts.get(&id).and_then(|p| p.get(*next - 1));
+            part.map_or(1.0, |k| (k + 2) as f64)
+        };
+        id.iter().zip(corners).map(row).collect()
+    }
+
+    /// The outlines of the convex parts about their centres: polygons in the plane, triangles in space.
+    fn push_outlines(&self, arrays: &mut Arrays) {
+        if self.pieces.is_empty() {
+            return;
+        }
+        let (mut points, mut starts) = (Vec::new(), vec![0.0]);
+        for piece in &self.pieces {
+            let corners = if self.dimension == 2 {
+                flat(piece)
+            } else {
+                solid(piece)
+            };
+            points.extend(corners.into_iter().flatten());
+            starts.push((points.len() / 3) as f64);
+        }
+        arrays.push("outline.start", Kind::U32, &starts);
+        push_points(arrays, "outline", &points, self.dimension);
+    }
+}

@@ -1,0 +1,189 @@
+//! Axis scales: ranges and round tick values fitted to the data.
+
+use crate::png::canvas::DrawError;
+use fretwork_observe::chart::{Axis, number, superscript};
+
+/// A scale fitted to data: range, tick values and labels.
+#[derive(Clone, Debug)]
+pub(crate) struct Scale {
+    /// Exponent of ten by which values are divided.
+    pub exponent: i32,
+    log: bool,
+    /// Range in displayed values (divided by the power of ten, or its logarithm).
+    pub range: (f64, f64),
+    /// Tick positions in displayed values, with their labels.
+    pub ticks: Vec<(f64, String)>,
+    /// Positions of the minor ticks of a logarithmic axis.
+    pub minor: Vec<f64>,
+    /// Name with the displayed unit.
+    pub label: String,
+}
+
+impl Scale {
+    /// Fits a scale to values in the axis unit, or to a requested range.
+    pub fn fit(
+        axis: &Axis,
+        values: impl Iterator<Item = f64>,
+        asked: Option<(f64, f64)>,
+        ticks: usize,
+    ) -> Result<Self, DrawError> {
+        let usable = |v: f64| v.is_finite() && (!axis.log || v > 0.0);
+        let (mut low, mut high) = match asked {
+            Some((from, to)) if usable(from) && usable(to) && from < to => (from, to),
+            Some((from, to)) => {
+                return Err(DrawError::Range {
+                    axis: axis.name.clone(),
+                    from,
+                    to,
+                    log: axis.log,
+                });
+            }
+            None => values
+                .filter(|v| usable(*v))
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+                    (a.min(v), b.max(v))
+                }),
+        };
+        if low > high {
+            (low, high) = if axis.log { (0.1, 10.0) } else { (0.0, 1.0) };
+        }
+        let (exponent, label) = axis.scaled(low.abs().max(high.abs()));
+        let mut scale = Self {
+            exponent,
+            log: axis.log,
+            range: (0.0, 1.0),
+            ticks: Vec::new(),
+            minor: Vec::new(),
+            label,
+        };
+        let (mut a, mut b) = (scale.shown(low), scale.shown(high));
+        if asked.is_none() {
+            let width = b - a;
+            // Constant data (up to rounding) get a range proportional to their value.
+            let pad = if width > 1e-9 * a.abs().max(b.abs()) {
+                0.04 * width
+            } else if axis.log || a == 0.0 {
+                1.0
+            } else {
+                0.1 * a.abs()
+            };
+            (a, b) = (a - pad, b + pad);
+        }
+        scale.range = (a, b);
+        scale.ticks = if axis.log {
+            decades(a, b, ticks)
+        } else if axis.whole && b - a < ticks as f64 {
+            round_ticks(a, b, (b - a).ceil() as usize)
+        } else {
+            round_ticks(a, b, ticks)
+        };
+        if axis.whole && exponent == 0 {
+            scale.ticks.retain(|t| (t.0 - t.0.round()).abs() < 1e-9);
+            for (at, label) in &mut scale.ticks {
+                *label = number(at.round(), 0);
+            }
+        }
+        if axis.log && b - a < 8.0 {
+            let decades = a.floor() as i32..=b.floor() as i32;
+            let all =
+                decades.flat_map(|e| (2..10).map(move |k| f64::from(e) + f64::from(k).log10()));
+            scale.minor = all.filter(|v| (a..=b).contains(v)).collect();
+        }
+        Ok(scale)
+    }
+
+    /// Share of the range at which a displayed value lies.
+    pub fn share(&self, shown: f64) -> f64 {
+        (shown - self.range.0) / (self.range.1 - self.range.0)
+    }
+
+    /// Displayed value for a value in the axis unit; NaN if it cannot be shown.
+    pub fn shown(&self, value: f64) -> f64 {
+        if self.log {
+            if value > 0.0 { value.log10() } else { f64::NAN }
+        } else {
+            value / 10f64.powi(self.exponent)
+        }
+    }
+}
+
+/// Ticks at 1, 2 or 5 times a power of ten, about `count` of them.
+fn round_ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+    let rough = (high - low) / count.max(1) as f64;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = power
+        * match rough / power {
+            r if r < 1.5 => 1.0,
+            r if r < 3.5 => 2.0,
+            r if r < 7.5 => 5.0,
+            _ => 10.0,
+        };
+    let decimals = (-(step * 1.0001).log10().floor()).clamp(0.0, 9.0) as usize;
+    let slack = 1e-6 * step;
+    let (first, last) = (
+        ((low - slack) / step).ceil() as i64,
+        ((high + slack) / step).floor() as i64,
+    );
+    (first..=last)
+        .take(4 * count + 4)
+        .map(|i| (i as f64 * step, number(i as f64 * step, decimals)))
+        .collect()
+}
+
+/// Ticks at powers of ten, or at round values when there is less than a decade.
+fn decades(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+    let (first, last) = (low.ceil() as i32, high.floor() as i32);
+    let stride = ((last - first) / (count as i32 + 1) + 1).max(1);
+    if last - first >= 1 {
+        return (first..=last)
+            .filter(|e| e.rem_euclid(stride) == 0)
+            .map(|e| (f64::from(e), format!("10{}", superscript(e))))
+            .collect();
+    }
+    round_ticks(10f64.powf(low), 10f64.powf(high), count)
+        .into_iter()
+        .filter(|(v, _)| *v > 0.0)
+        .map(|(v, label)| (v.log10(), label))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_signed() {
+        let labels: Vec<_> = round_ticks(-1.1, 1.1, 5).into_iter().map(|t| t.1).collect();
+        assert_eq!(labels, ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
+        assert_eq!(round_ticks(0.0, 100.0, 5)[1].1, "20");
+        let log = Axis::new("t", "s").log();
+        let scale = Scale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
+        assert_eq!(scale.ticks[0].1, "10⁻³");
+    }
+
+    #[test]
+    fn whole_numbers_have_no_ticks_between_them() {
+        let axis = Axis::new("cycle number N", "").whole();
+        for (first, last) in [(1.0, 3.0), (1.0, 1.0), (1.0, 12.0), (1.0, 1000.0)] {
+            let scale = Scale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
+            assert!(!scale.ticks.is_empty() && scale.ticks.len() < 14);
+            assert!(
+                scale.ticks.iter().all(|t| !t.1.contains('.')),
+                "{:?}",
+                scale.ticks
+            );
+        }
+    }
+
+    #[test]
+    fn constants_and_nothing_have_a_range() {
+        let axis = Axis::new("φ", "");
+        for values in [vec![], vec![0.0], vec![-3.0, -3.0], vec![f64::NAN]] {
+            let scale = Scale::fit(&axis, values.into_iter(), None, 5).unwrap();
+            assert!(scale.range.0 < scale.range.1);
+            assert!(scale.ticks.len() > 1);
+        }
+        let error = Scale::fit(&axis, [].into_iter(), Some((2.0, 1.0)), 5).unwrap_err();
+        assert!(error.to_string().contains("2 to 1 of axis 'φ'"), "{error}");
+    }
+}

@@ -1,0 +1,112 @@
+//! Deformable bodies in the plane: their elements, in grey or by their von Mises stress.
+
+use super::images;
+use crate::{Outline, Paint, Scale};
+use fretwork_core::bodies::von_mises;
+use fretwork_core::geometry::space::Space;
+use fretwork_core::step::Simulation;
+use fretwork_observe::chart::round_top;
+use std::collections::HashMap;
+
+/// Elements in a window with their corners and stress (Pa); of grains only where asked for.
+fn seen<S: Space>(s: &Simulation<S>, window: [f64; 4], grains: bool) -> Vec<(Vec<[f64; 2]>, f64)> {
+    let period = s.shapes.periodic.period[0];
+    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+    let systems = systems.filter(|system| grains || !system.is_grain());
+    let mut out = Vec::new();
+    for mesh in systems.filter_map(|system| system.deformed_mesh()) {
+        let Some(first) = mesh.points.first() else {
+            continue;
+        };
+        for image in images(first[0], f64::INFINITY, window, period) {
+            let at = |p: &u32| {
+                let x = mesh.points[*p as usize] + mesh.displacement[*p as usize];
+                [x[0] - first[0] + image, x[1]]
+            };
+            for (element, stress) in mesh.elements.chunks_exact(S::D + 1).zip(&mesh.stress) {
+                let corners: Vec<[f64; 2]> = element.iter().map(at).collect();
+                let inside = (0..2).all(|k| {
+                    corners.iter().any(|c| c[k] > window[2 * k])
+                        && corners.iter().any(|c| c[k] < window[2 * k + 1])
+                });
+                if inside {
+                    out.push((corners, von_mises(stress)));
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Grains that deform, by their outlines.
+pub(crate) fn grains<S: Space>(
+    s: &Simulation<S>,
+    window: [f64; 4],
+    paints: &[Paint],
+) -> Vec<Outline> {
+    let bodies = &s.state.bodies;
+    // A grain has the colour of its points.
+    let mut points: HashMap<u32, usize> = HashMap::new();
+    for (k, ball) in s.shapes.balls.iter().enumerate() {
+        points.entry(ball.body).or_insert(k);
+    }
+    let mut out = Vec::new();
+    for surface in s.shapes.surfaces.iter().filter(|f| f.shape.is_closed()) {
+        let b = surface.body as usize;
+        let centre = bodies.position[b];
+        let reach = 2.0 * bodies.length[b];
+        let period = s.shapes.periodic.period[0];
+        let chain: Vec<S::Vector> = surface.shape.outline().concat();
+        let paint = points.get(&surface.body);
+        let paint = paint.map_or(Paint::Grey, |k| super::paint(paints, *k));
+        for image in images(centre[0], reach, window, period) {
+            let at = |p: &S::Vector| {
+                let x = S::rotate(&bodies.rotation[b], p);
+                [image + x[0], centre[1] + x[1]]
+            };
+            out.push(Outline {
+                points: chain.iter().map(at).collect(),
+                label: String::new(),
+                shade: Some(0.25),
+                paint,
+                element: false,
+            });
+        }
+    }
+    out
+}
+
+/// The scale of the stress in a window; none where nothing is stressed.
+pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<Scale> {
+    let most = seen(s, window, true)
+        .iter()
+        .map(|e| e.1)
+        .fold(0.0, f64::max);
+    (most > 0.0).then(|| Scale {
+        label: "von Mises stress".to_owned(),
+        unit: "Pa".to_owned(),
+        top: round_top(most),
+        bonds: false,
+    })
+}
+
+/// The elements in a window, by stress where a scale is given.
+pub(crate) fn elements<S: Space>(
+    s: &Simulation<S>,
+    window: [f64; 4],
+    scale: Option<&Scale>,
+) -> Vec<Outline> {
+    let paint = |stress: f64| scale.map_or(Paint::Grey, |scale| Paint::Value(stress / scale.top));
+    let outline = |(points, stress): (Vec<[f64; 2]>, f64)| Outline {
+        points,
+        label: String::new(),
+        // Colours of a scale are those of its bar.
+        shade: Some(if scale.is_some() { 0.0 } else { 0.5 }),
+        paint: paint(stress),
+        element: true,
+    };
+    seen(s, window, scale.is_some())
+        .into_iter()
+        .map(outline)
+        .collect()
+}

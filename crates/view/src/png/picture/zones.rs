@@ -1,0 +1,72 @@
+//! What sticks and what slips along the surfaces of deformable bodies in the plane, and half-spaces as solids below their surface.
+
+use super::images;
+use crate::{Outline, Paint, ZoneLine};
+use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::step::Simulation;
+use fretwork_observe::tractions::{SurfaceState, Zone};
+
+fn surfaces<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (usize, SurfaceState<S>)> + '_ {
+    (0..s.state.systems.len()).filter_map(|k| Some((k, SurfaceState::of(s, k)?)))
+}
+
+/// Along the surface of each body that touches, from the middle of one facet to that of the next: what does not slip and what slips.
+pub(crate) fn lines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<ZoneLine> {
+    let period = s.shapes.periodic.period[0];
+    let mut out = Vec::new();
+    for (_, state) in surfaces(s) {
+        for ends in state.surface.facets.as_chunks::<2>().0 {
+            let [a, b] = ends.map(|k| state.place(k as usize));
+            let middle = (a + b) * 0.5;
+            for (k, from, to) in [(ends[0], a, middle), (ends[1], middle, b)] {
+                let zone = state.zone[k as usize];
+                if zone == Zone::Open {
+                    continue;
+                }
+                let along = to - from;
+                for x in images(from[0], along.norm(), window, period) {
+                    out.push(ZoneLine {
+                        a: [x, from[1]],
+                        b: [x + along[0], to[1]],
+                        slips: zone == Zone::Slip,
+                    });
+                }
+            }
+        }
+    }
+    out
+}
+
+/// The solids of half-spaces, as far as their cells reach: from the surface to beyond the window.
+pub(crate) fn solids<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
+    let depth = 2.0 * ((window[1] - window[0]) + (window[3] - window[2]));
+    let mut out = Vec::new();
+    for (k, state) in surfaces(s) {
+        let Some(system) = s.state.systems.get(k) else {
+            continue;
+        };
+        let Some(ends) = state.surface.facets.first_chunk::<2>() else {
+            continue;
+        };
+        if system.deformed_mesh().is_some() {
+            continue;
+        }
+        // The body is on the right of the direction from the first point of a facet to the second.
+        let [a, b] = ends.map(|k| state.place(k as usize));
+        let down = if b[0] > a[0] { -depth } else { depth };
+        let places = (0..state.zone.len()).map(|p| state.place(p));
+        let mut points: Vec<[f64; 2]> = places.map(|p| [p[0], p[1]]).collect();
+        let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
+            continue;
+        };
+        points.extend([[last[0], last[1] + down], [first[0], first[1] + down]]);
+        out.push(Outline {
+            points,
+            label: system.name().to_owned(),
+            shade: None,
+            paint: Paint::Grey,
+            element: false,
+        });
+    }
+    out
+}
