@@ -2,12 +2,13 @@
 
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::record::picture::{Camera, Subject};
+use fretwork::record::picture::Camera;
 use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::{Loaded, load};
 use fretwork::shipped::search_path;
-use fretwork::step::Simulation;
+use fretwork::step::{InDimension, Simulation};
+use fretwork_observe::picture::Shows;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -289,9 +290,10 @@ fn end_walls_make_a_narrow_drum_steeper() {
 fn pictured(s: &Simulation<Dim3>, loaded: &Loaded, name: &str) -> Vec<[u8; 3]> {
     let path =
         std::env::temp_dir().join(format!("fretwork-scenes-{}-{name}.png", std::process::id()));
+    let s = InDimension::of(s);
     let camera = Camera::new(s, &loaded.case.output);
-    let drawn = camera.draw(s, Subject::Scene, "", Vec::new(), &path);
-    drawn.unwrap_or_else(|e| panic!("{e}"));
+    let frame = camera.frame(s, &Shows::Scene, "", Vec::new()).unwrap();
+    frame.draw(&path).unwrap_or_else(|e| panic!("{e}"));
     let picture = tiny_skia::Pixmap::load_png(&path).unwrap_or_else(|e| panic!("{e}"));
     let _ = std::fs::remove_file(path);
     let pixels = picture.pixels().iter();

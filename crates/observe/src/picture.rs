@@ -41,6 +41,11 @@ pub struct Picture {
 /// What a picture shows.
 #[derive(Clone, Debug)]
 pub enum Shows {
+    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their bonds if there are bonds; in
+    /// the plane also the forces and bonds between them.
+    Scene,
+    /// Intact and broken bonds.
+    Bonds,
     /// Colours of the balls and then of the pieces.
     Paints(Vec<Paint>),
     /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first. In the plane only.

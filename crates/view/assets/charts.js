@@ -1,4 +1,4 @@
-// Charts: uPlot with the colours of the page, axes with units, zoom that charts over the same axis share, and keys.
+// Charts: uPlot with the colours of the page, axes with units, zoom that charts share, and keys.
 {
   const LIGHT = ["#0072b2", "#c44e00", "#00805c", "#b0508a", "#2a8cc0", "#9a6a00", "#4a4a4a"];
   const DARK = ["#5ab4f0", "#ff9d57", "#3fd0a0", "#e79bc8", "#8fd3f5", "#f0c050", "#c8c8c8"];
@@ -12,6 +12,7 @@
   FW.isDark = () => dark.matches && !printing;
   const ink = () => (FW.isDark() ? ["#c3c8d0", "#2c3038"] : ["#444a54", "#e6e8ec"]);
   const css = (rgb) => `rgb(${rgb.map(Math.round).join(",")})`;
+  const EMPTY = [231, 232, 235];
   const colour = (series, k, gradient, count) => {
     // What is dark on paper is made lighter on a dark page.
     const shown = (rgb) => css(FW.isDark() ? rgb.map((c) => c + 0.45 * (255 - c)) : rgb);
@@ -121,7 +122,7 @@
       ctx.beginPath();
       for (let p = field.starts[k]; p < field.starts[k + 1]; p++) ctx.lineTo(across(field.x[p] * fx), up(field.y[p] * fy));
       ctx.closePath();
-      ctx.fillStyle = ctx.strokeStyle = css(field.scale ? FW.colourOf(range, field.values[k]) : field.classes[field.values[k]][1]);
+      ctx.fillStyle = ctx.strokeStyle = css(!field.scale ? field.classes[field.values[k]][1] : Number.isFinite(field.values[k]) ? FW.colourOf(range, field.values[k]) : EMPTY);
       ctx.fill();
       ctx.stroke();
     }
@@ -188,7 +189,7 @@
   };
 
   // spec: {title, x, y, y2: axes as {name, unit, label, factor, log, whole, range}, series: [{label, x, y, low, high, second, line, dashed,
-  // markers, colour, place}], gradient, field}, with numbers in the units of the axes
+  // markers, colour, place}], gradient, field, link: name of the charts that share their zoom}, with numbers in the units of the axes
   FW.chart = (host, spec) => {
     const plot = FW.element("div", { class: "plot", tabindex: 0, role: "img" });
     host.append(plot);
@@ -201,6 +202,11 @@
     const distr = ({ log }) => (log ? { distr: 3 } : {});
     const named = spec.series.some((s) => s.label) && spec.series.length <= 14;
     let chart = null;
+    const join = (u) => {
+      u.group = spec.link;
+      if (!groups.has(u.group)) groups.set(u.group, new Set());
+      groups.get(u.group).add(u);
+    };
     const leave = () => { if (chart) { groups.get(chart.group)?.delete(chart); chart.destroy(); } };
     const build = () => {
       leave();
@@ -222,13 +228,10 @@
         scales: { x: { time: false, ...distr(spec.x), range: ranged(spec.x, []) }, ...Object.fromEntries(scales) },
         axes: [axis(spec.x, "x", 2), axis(spec.y, "y", 3), ...(spec.y2 ? [axis(spec.y2, "y2", 1)] : [])],
         series: [null, ...series],
-        cursor: { drag: { x: true, y: true, uni: 20 }, sync: { key: spec.x.label }, dataIdx: nearest, points: { size: 0 }, bind: { dblclick: (u) => () => whole(u) } },
+        cursor: { drag: { x: true, y: true, uni: 20 }, sync: { key: spec.link }, dataIdx: nearest, points: { size: 0 }, bind: { dblclick: (u) => () => whole(u) } },
         legend: { show: named || (spec.series.length === 1 && !spec.field), live: true },
-        hooks: { setScale: [(u, key) => { if (key === "x") share(u); }], drawAxes: spec.field ? [cells(spec.field, spec)] : [] },
+        hooks: { ready: [join], setScale: [(u, key) => { if (key === "x") share(u); }], drawAxes: spec.field ? [cells(spec.field, spec)] : [] },
       }, [null, ...points], plot);
-      chart.group = spec.x.label;
-      if (!groups.has(chart.group)) groups.set(chart.group, new Set());
-      groups.get(chart.group).add(chart);
       const says = spec.series.map((s, k) => {
         const finite = points[k][1].filter((v) => v !== null);
         if (!finite.length) return `${s.label}: no values`;

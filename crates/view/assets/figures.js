@@ -16,6 +16,9 @@
     return { name, unit: columns[0].unit, label: unit ? `${name} (${unit})` : name, factor };
   };
 
+  // Charts over time share their zoom, others with those over the same numbers.
+  const link = (x, other) => (x.unit === "s" ? x.label : other);
+
   const any = (host, runs) => {
     heading(host, "Any column of the statistics", "Choose what is drawn over what.");
     const names = [...new Set(runs.flatMap((run) => [...run.columns.keys()]))];
@@ -32,7 +35,8 @@
         label: [run.name, chosen.length > 1 || !run.name ? name : ""].filter(Boolean).join(": "), second: k === 1, x: run.columns.get(x).values, y: run.columns.get(name).values,
       })));
       const [y, y2] = chosen.map((name) => axisOf(name, own(name)));
-      chart = FW.chart(host, { title: chosen.join(", "), x: axisOf(x, own(x)), y, y2, series });
+      const across = axisOf(x, own(x));
+      chart = FW.chart(host, { title: chosen.join(", "), x: across, y, y2, series, link: link(across, "any") });
     };
     const options = names.map((n) => [n, n]);
     host.append(element("div", { class: "tools" },
@@ -52,7 +56,7 @@
       heading(host, figure.title, figure.note);
       const field = figure.field && { ...figure.field, ...Object.fromEntries(["starts", "x", "y", "values"].map((key) => [key, get(figure.field[key])])) };
       const series = figure.series.map((s) => ({ ...s, x: get(s.x), y: get(s.y), low: get(s.low), high: get(s.high) }));
-      FW.chart(host, { ...figure, field, series });
+      FW.chart(host, { ...figure, field, series, link: link(figure.x, figure.series[0]?.x || figure.title) });
     });
   };
 }

@@ -2,9 +2,9 @@
 
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
-use crate::record::picture::Subject;
+use crate::step::InDimension;
 use crate::view::quantity;
-use fretwork_observe::picture::{self, Shows};
+use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::Observed;
 use std::path::PathBuf;
@@ -33,37 +33,30 @@ impl<S: Observed> Recorder<'_, S> {
                 damage_ratio(&self.simulation)
             ));
         }
-        self.camera.follow(&self.simulation);
-        let pictures = self.observers.pictures(&self.simulation);
-        let mut subjects = vec![("frame", Subject::Scene)];
+        self.camera.follow(InDimension::of(&self.simulation));
+        let mut pictures = vec![("frame", Shows::Scene)];
         if self.loaded.case.output.layers.is_some()
             && self.simulation.state.network.bonds_made() > 0
         {
-            subjects.push(("bonds", Subject::Bonds));
+            pictures.push(("bonds", Shows::Bonds));
         }
-        subjects.extend(
-            pictures
-                .iter()
-                .filter_map(|p| Some((p.name, subject::<S>(p)?))),
-        );
-        let notice = self.notice();
-        let mut shown = Vec::new();
-        for picture in &pictures {
-            let Shows::Charts(charts) = &picture.shows else {
-                continue;
+        let own = self.observers.pictures(&self.simulation);
+        pictures.extend(own.into_iter().map(|p| (p.name, p.shows)));
+        let (notice, title) = (self.notice(), &self.loaded.case.name);
+        let simulation = InDimension::of(&self.simulation);
+        let shown = pictures.into_iter().filter_map(|(name, shows)| {
+            let Shows::Charts(mut charts) = shows else {
+                let frame = self
+                    .camera
+                    .frame(simulation, &shows, title, caption.clone())?;
+                return Some((name, drawing::Shows::Scene(Box::new(frame))));
             };
-            let heading = [&[self.loaded.case.name.clone()][..], &caption].concat();
+            let heading = [std::slice::from_ref(title), &caption].concat();
             let heading = heading.join("   ·   ");
-            let mut charts = charts.clone();
             charts.iter_mut().for_each(|c| c.head(&heading));
-            shown.push((picture.name, drawing::Shows::Charts(charts)));
-        }
-        for (name, subject) in subjects {
-            let (title, caption) = (&self.loaded.case.name, caption.clone());
-            let frame = self.camera.frame(&self.simulation, subject, title, caption);
-            shown.push((name, drawing::Shows::Scene(Box::new(frame))));
-        }
-        let pictures = shown.into_iter().map(|(name, shows)| Picture {
+            Some((name, drawing::Shows::Charts(charts)))
+        });
+        let pictures = shown.map(|(name, shows)| Picture {
             shows,
             path: self.picture_path(name, step),
             notice: notice.clone(),
@@ -76,19 +69,4 @@ impl<S: Observed> Recorder<'_, S> {
         let frames = self.out.join("frames");
         frames.join(format!("{name}_{step:08}.png"))
     }
-}
-
-/// How a picture of an observer is drawn; none where the dimension has no such picture, and of charts, which have a page of their own.
-fn subject<S: Observed>(picture: &picture::Picture) -> Option<Subject<'_>> {
-    Some(match &picture.shows {
-        Shows::Paints(paints) => Subject::Painted(paints),
-        Shows::Chains(pairs) if S::D == 2 => Subject::Chains(pairs),
-        Shows::Stress if S::D == 2 => Subject::Stress,
-        Shows::Chains(_) | Shows::Stress | Shows::Charts(_) => return None,
-        Shows::Values { values, label, top } => Subject::Values {
-            values,
-            label,
-            top: *top,
-        },
-    })
 }

@@ -33,7 +33,7 @@ use crate::geometry::space::Space;
 use crate::scene::build::{Built, Dimensional, Loaded, Scene};
 use crate::scene::case::Case;
 use crate::scene::{processes, sampling};
-use crate::step::{Simulation, StepReport};
+use crate::step::{InDimension, Simulation, StepReport};
 use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
@@ -324,7 +324,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             accuracy: AccuracyControl::new(case, &simulation),
             parts: None,
             done: 0,
-            camera: Camera::new(&simulation, &case.output),
+            camera: Camera::new(InDimension::of(&simulation), &case.output),
             drawing: Drawing::default(),
             out: options.out.clone(),
             table: Table::new(columns),
@@ -375,7 +375,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             self.done += self.accuracy.as_ref().map_or(1, AccuracyControl::spanned);
             let step = self.done;
             if phase == 1 && self.simulation.state.control.phase() == 2 {
-                self.camera.dye(&self.simulation);
+                self.camera.dye(InDimension::of(&self.simulation));
                 self.observers.begin(&mut self.simulation);
             }
             self.simulation.between_steps()?;

@@ -1,4 +1,4 @@
-use super::{AnySimulation, FieldValues, GrainFields, RunView};
+use super::{AnySimulation, FieldValues, GrainFields};
 use crate::geometry::space::{Dim2, Dim3};
 use crate::laws::sample_laws::interface;
 use crate::step::Simulation;
@@ -69,7 +69,8 @@ fn fields_are_columns_of_all_that_carry_them() {
         .iter()
         .map(|f| f.width())
         .sum::<usize>();
-    let numbers = run.contact_values(true).iter().map(|v| match v {
+    let values = run.contact_values(true);
+    let numbers = values.iter().map(|v| match v {
         FieldValues::Number(all) | FieldValues::Vector(all) => all.len(),
         FieldValues::Whole(all) => all.len(),
     });

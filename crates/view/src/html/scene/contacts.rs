@@ -1,47 +1,30 @@
 //! Contacts of a state: lines with fields.
 
 use super::detail::Detail;
-use super::range::Ranges;
+use super::range::{Field, Ranges};
 use super::{Note, push_points, states};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 const ROOT: &str = "views/contacts";
 
-/// The fields of contacts: name, unit, description.
+/// The fields of contacts.
 #[derive(Default)]
-pub(super) struct Contacts(Vec<[String; 3]>);
+pub(super) struct Contacts(Vec<Field>);
 
 impl Contacts {
     /// Finds the fields.
     pub fn find(run: &RunFolder) -> Self {
-        let group = format!("{ROOT}/CellData");
-        let field = |name: &str| {
-            let (unit, doc) = run.reader.described(&format!("{group}/{name}"));
-            [name.to_owned(), unit, doc]
-        };
-        // Numbers: the components of vectors are fields of their own.
-        let numbers = run
-            .reader
-            .datasets_in(&group)
-            .filter(|name| run.reader.width(&format!("{group}/{name}")) == Ok(1));
-        Self(numbers.map(field).collect())
+        Self(Field::numbers(run, &format!("{ROOT}/CellData")))
     }
 
     /// The fields for the page.
     pub fn fields(&self, ranges: &Ranges, detail: Detail) -> Value {
-        let kept = self
-            .0
-            .iter()
-            .filter(|f| detail.contacts() && detail.keeps(&f[0]));
-        let field = |[name, unit, doc]: &[String; 3]| {
-            let range = ranges.of("contacts", name)?;
-            Some(
-                json!({"name": name, "unit": unit, "doc": doc, "all": range.all, "most": range.most}),
-            )
-        };
-        kept.filter_map(field).collect()
+        let kept = self.0.iter();
+        let kept = kept.filter(|f| detail.contacts() && detail.keeps(&f.name));
+        kept.filter_map(|f| ranges.head("contacts", &f.name, f))
+            .collect()
     }
 
     /// Adds the arrays of a state.
@@ -70,7 +53,7 @@ impl Contacts {
         push_points(arrays, "contact.a", &from, dimension);
         push_points(arrays, "contact.b", &to, dimension);
         let rows = states::cells(run, "contacts", ("Lines", 1), state)?;
-        for [name, ..] in self.0.iter().filter(|f| detail.keeps(&f[0])) {
+        for Field { name, .. } in self.0.iter().filter(|f| detail.keeps(&f.name)) {
             let values = run
                 .reader
                 .values(&format!("{ROOT}/CellData/{name}"), rows, 1)?;

@@ -2,13 +2,13 @@
 
 use super::detail::Detail;
 use super::outline::{flat, solid};
-use super::range::Ranges;
+use super::range::{Field, Ranges};
 use super::{Note, push_points, states};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
 use fretwork_store::results::shapes::Shaped;
 use fretwork_store::results::shapes::ShapedPiece;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
 const ROOT: &str = "views/grains/PointData";
@@ -24,13 +24,6 @@ const OF_GEOMETRY: [&str; 6] = [
 
 /// Field that the page derives from the components of the velocity.
 const SPEED: &str = "speed";
-
-/// A field in the file.
-struct Field {
-    name: String,
-    unit: String,
-    doc: String,
-}
 
 /// The grains of a run.
 #[derive(Default)]
@@ -53,18 +46,6 @@ impl Grains {
     pub fn find(run: &RunFolder, meshed: HashSet<u64>) -> Result<Self, String> {
         let reader = &run.reader;
         let dimension = run.dimension();
-        // Numbers: the components of vectors are fields of their own.
-        let numbers = reader
-            .datasets_in(ROOT)
-            .filter(|name| reader.width(&format!("{ROOT}/{name}")) == Ok(1));
-        let fields = numbers.map(|name| {
-            let (unit, doc) = reader.described(&format!("{ROOT}/{name}"));
-            Field {
-                name: name.to_owned(),
-                unit,
-                doc,
-            }
-        });
         let shaped = Shaped::read(reader)?.unwrap_or_default();
         let mut parts: HashMap<u64, Vec<usize>> = HashMap::new();
         for (k, piece) in shaped.pieces.iter().enumerate() {
@@ -78,7 +59,7 @@ impl Grains {
         let has = |name: &&&str| reader.has(&format!("{ROOT}/{name}"));
         Ok(Self {
             dimension,
-            fields: fields.collect(),
+            fields: Field::numbers(run, ROOT),
             parts,
             shaped: shaped.bodies.iter().map(|b| b.id).collect(),
             pieces: shaped.pieces,
@@ -104,19 +85,18 @@ impl Grains {
             .fields
             .iter()
             .filter(|f| !OF_GEOMETRY.contains(&f.name.as_str()));
-        let field = |f: &Field| {
-            let range = ranges.of("grains", &f.name)?;
-            Some(
-                json!({"name": f.name, "unit": f.unit, "doc": f.doc, "all": range.all, "most": range.most}),
-            )
-        };
-        let speed = ranges.of("grains", SPEED).zip(self.velocity().next()).map(|(range, of)| {
-            let parts: Vec<&str> = self.velocity().map(|f| f.name.as_str()).collect();
-            json!({
-                "name": SPEED, "unit": of.unit, "doc": "size of the velocity", "of": parts, "all": range.all, "most": range.most,
-            })
+        let speed = self.velocity().next().and_then(|of| {
+            let speed = Field {
+                doc: "size of the velocity".to_owned(),
+                unit: of.unit.clone(),
+                name: SPEED.to_owned(),
+            };
+            let mut head = ranges.head("grains", SPEED, &speed)?;
+            head["of"] = self.velocity().map(|f| f.name.as_str()).collect();
+            Some(head)
         });
-        speed.into_iter().chain(shown.filter_map(field)).collect()
+        let own = shown.filter_map(|f| ranges.head("grains", &f.name, f));
+        speed.into_iter().chain(own).collect()
     }
 
     /// Adds the arrays of a state.

@@ -1,7 +1,7 @@
 //! Bodies and grains that deform, and surfaces that touch: triangles or lines with fields at points and elements. Of tetrahedra only
 //! the faces outside are shown.
 
-use super::range::Ranges;
+use super::range::{Field, Ranges};
 use super::{Note, Places, place, push_points};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -11,10 +11,9 @@ use std::collections::{HashMap, HashSet};
 /// Groups of the views with meshes.
 const GROUPS: [&str; 3] = ["meshes", "elastic_grains", "surfaces"];
 
-struct Field {
-    name: String,
-    unit: String,
-    doc: String,
+/// A field with the count of its numbers at a place.
+struct MeshField {
+    field: Field,
     width: usize,
     of_cells: bool,
 }
@@ -28,7 +27,7 @@ struct Mesh {
     corners: usize,
     cells: Vec<usize>,
     counts: [usize; 2],
-    fields: Vec<Field>,
+    fields: Vec<MeshField>,
 }
 
 /// The meshes of a run.
@@ -67,18 +66,15 @@ impl Meshes {
     pub fn head(&self, ranges: &Ranges) -> Value {
         let mesh = |(k, mesh): (usize, &Mesh)| {
             let group = format!("mesh{k}");
-            let fields: Vec<Value> = mesh
-                .fields
-                .iter()
-                .flat_map(|f| f.parts().into_iter().map(move |(name, _)| (f, name)))
-                .filter_map(|(f, name)| {
-                    let range = ranges.of(&group, &name)?;
-                    Some(json!({
-                        "name": name, "unit": f.unit, "doc": f.doc, "cells": f.of_cells,
-                        "all": range.all, "most": range.most,
-                    }))
-                })
-                .collect();
+            let parts = |f: &MeshField| {
+                let parts = f.parts().into_iter().filter_map(|(name, _)| {
+                    let mut head = ranges.head(&group, &name, &f.field)?;
+                    head["cells"] = json!(f.of_cells);
+                    Some(head)
+                });
+                parts.collect::<Vec<_>>()
+            };
+            let fields: Vec<Value> = mesh.fields.iter().flat_map(parts).collect();
             let name = mesh.path.trim_start_matches("views/");
             json!({"name": name, "corners": mesh.corners, "fields": fields})
         };
@@ -111,7 +107,7 @@ impl Meshes {
                     "PointData"
                 };
                 let count = mesh.counts[usize::from(field.of_cells)];
-                let path = format!("{}/{place_of}/{}", mesh.path, field.name);
+                let path = format!("{}/{place_of}/{}", mesh.path, field.field.name);
                 let values = run
                     .reader
                     .values(&path, (state * count, count), field.width)?;
@@ -120,7 +116,7 @@ impl Meshes {
                 } else {
                     &mesh.used
                 };
-                if field.name == "displacement" {
+                if field.field.name == "displacement" {
                     let moved = pick(&values, field.width, rows);
                     push_points(arrays, &format!("{name}.move"), &moved, dimension);
                     for (from, way) in mesh
@@ -161,18 +157,18 @@ impl Part {
     }
 }
 
-impl Field {
+impl MeshField {
     /// What is shown of a field: its value, the size of a vector, the components of a tensor.
     fn parts(&self) -> Vec<(String, Part)> {
-        let named = |k: usize, of: &str| (format!("{} {of}", self.name), Part::At(k));
+        let named = |k: usize, of: &str| (format!("{} {of}", self.field.name), Part::At(k));
         match self.width {
-            1 => vec![(self.name.clone(), Part::At(0))],
+            1 => vec![(self.field.name.clone(), Part::At(0))],
             6 => ["xx", "yy", "zz", "xy", "yz", "xz"]
                 .into_iter()
                 .enumerate()
                 .map(|(k, n)| named(k, n))
                 .collect(),
-            _ => vec![(format!("{} (size)", self.name), Part::Size)],
+            _ => vec![(format!("{} (size)", self.field.name), Part::Size)],
         }
     }
 }
@@ -205,13 +201,9 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
     for (place, of_cells) in [("PointData", false), ("CellData", true)] {
         let group = format!("{path}/{place}");
         for name in reader.datasets_in(&group).filter(|n| *n != "body") {
-            let full = format!("{group}/{name}");
-            let (unit, doc) = reader.described(&full);
-            fields.push(Field {
-                width: reader.width(&full)?,
-                name: name.to_owned(),
-                unit,
-                doc,
+            fields.push(MeshField {
+                width: reader.width(&format!("{group}/{name}"))?,
+                field: Field::read(run, &group, name),
                 of_cells,
             });
         }

@@ -1,6 +1,34 @@
-//! Ranges of fields over all states that are shown, for the scales of colours.
+//! Fields of a scene, and their ranges over all states that are shown, for the scales of colours.
 
+use crate::html::folder::RunFolder;
+use serde_json::{Value, json};
 use std::collections::HashMap;
+
+/// A field of a view, as its attributes describe it.
+pub(super) struct Field {
+    /// Name.
+    pub name: String,
+    /// SI unit, empty for a pure number.
+    pub unit: String,
+    /// Description.
+    pub doc: String,
+}
+
+impl Field {
+    /// The field of a name in a group of `results.h5`.
+    pub fn read(run: &RunFolder, group: &str, name: &str) -> Self {
+        let (unit, doc) = run.reader.described(&format!("{group}/{name}"));
+        let name = name.to_owned();
+        Self { name, unit, doc }
+    }
+
+    /// The fields of numbers in a group; the components of vectors are fields of their own.
+    pub fn numbers(run: &RunFolder, group: &str) -> Vec<Self> {
+        let names = run.reader.datasets_in(group);
+        let numbers = names.filter(|n| run.reader.width(&format!("{group}/{n}")) == Ok(1));
+        numbers.map(|name| Self::read(run, group, name)).collect()
+    }
+}
 
 /// The range of a field.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +66,12 @@ impl Ranges {
             .or_insert(new);
     }
 
-    /// The range of a field, if it has values.
-    pub fn of(&self, group: &str, name: &str) -> Option<Range> {
-        self.0.get(&(group.to_owned(), name.to_owned())).copied()
+    /// A field for the page under a name, if it has values.
+    pub fn head(&self, group: &str, name: &str, field: &Field) -> Option<Value> {
+        let range = self.0.get(&(group.to_owned(), name.to_owned()))?;
+        Some(json!({
+            "name": name, "unit": field.unit, "doc": field.doc,
+            "all": range.all, "most": range.most,
+        }))
     }
 }

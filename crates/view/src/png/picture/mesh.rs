@@ -66,10 +66,9 @@ pub(crate) fn grains<S: Space>(
             };
             out.push(Outline {
                 points: chain.iter().map(at).collect(),
-                label: String::new(),
                 shade: Some(0.25),
                 paint,
-                element: false,
+                ..Outline::default()
             });
         }
     }
@@ -99,11 +98,11 @@ pub(crate) fn elements<S: Space>(
     let paint = |stress: f64| scale.map_or(Paint::Grey, |scale| Paint::Value(stress / scale.top));
     let outline = |(points, stress): (Vec<[f64; 2]>, f64)| Outline {
         points,
-        label: String::new(),
         // Colours of a scale are those of its bar.
         shade: Some(if scale.is_some() { 0.0 } else { 0.5 }),
         paint: paint(stress),
         element: true,
+        ..Outline::default()
     };
     seen(s, window, scale.is_some())
         .into_iter()

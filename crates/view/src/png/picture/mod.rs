@@ -8,14 +8,14 @@ mod zones;
 
 pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
-use crate::{Disk, DrawError, Frame, Link, LinkState, Outline, Paint, Scale};
+use crate::{Disk, Frame, Link, LinkState, Outline, Paint, Scale};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{InDimension, Simulation};
+use fretwork_observe::picture::Shows;
 use fretwork_observe::placement::is_first;
 use fretwork_scene::case::OutputSpec;
 use links::{forces, links};
-use std::path::Path;
 
 /// View of the scene for a series of pictures.
 #[derive(Clone, Debug)]
@@ -29,38 +29,23 @@ pub struct Camera {
     paints: Vec<Paint>,
 }
 
-/// Subject of a picture.
-#[derive(Clone, Copy, Debug)]
-pub enum Subject<'a> {
-    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their bonds if
-    /// there are bonds; in 2D also the forces and bonds between them.
-    Scene,
-    /// Intact and broken bonds.
-    Bonds,
-    /// Colours of the balls, followed by those of the convex parts.
-    Painted(&'a [Paint]),
-    /// The contacts that carry force, with force chains highlighted: sorted pairs of bodies, the lower index
-    /// first.
-    Chains(&'a [[u32; 2]]),
-    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces (2D).
-    Stress,
-    /// A value of each ball, from 0 to `top`.
-    Values {
-        /// The values.
-        values: &'a [f64],
-        /// Name of the quantity.
-        label: &'a str,
-        /// Value at the dark end of the scale.
-        top: f64,
-    },
+/// Evaluates an expression with a simulation in its dimension.
+macro_rules! in_dimension {
+    ($simulation:expr, |$s:ident| $body:expr) => {
+        match $simulation {
+            InDimension::Dim2($s) => $body,
+            InDimension::Dim3($s) => $body,
+        }
+    };
 }
 
 impl Camera {
     /// A view of the whole scene in its current state, or of the window given in the case.
-    pub fn new<S: Space>(simulation: &Simulation<S>, output: &OutputSpec) -> Self {
+    pub fn new(simulation: InDimension<'_>, output: &OutputSpec) -> Self {
+        let flat = matches!(simulation, InDimension::Dim2(_));
         let mut camera = Self {
             window: output.window.unwrap_or_default(),
-            fixed: output.window.is_some() && S::D == 2,
+            fixed: output.window.is_some() && flat,
             width: output.width,
             layers: output.layers,
             paints: Vec::new(),
@@ -71,18 +56,10 @@ impl Camera {
     }
 
     /// Colours the grains by the layers in which they are now.
-    pub fn dye<S: Space>(&mut self, simulation: &Simulation<S>) {
-        let Some(thickness) = self.layers else { return };
-        let grain = simulation.state.bodies.grain_flags();
-        let all = simulation.shapes.balls.iter().zip(balls(simulation));
-        let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
-            if grain[ball.body as usize] {
-                Paint::Layer((centre[S::D - 1] / thickness).floor() as i64)
-            } else {
-                Paint::Grey
-            }
-        };
-        self.paints = all.map(paint).collect();
+    pub fn dye(&mut self, simulation: InDimension<'_>) {
+        if let Some(thickness) = self.layers {
+            self.paints = in_dimension!(simulation, |s| layers(s, thickness));
+        }
     }
 
     /// Colour of each ball, if there are layers.
@@ -96,17 +73,9 @@ impl Camera {
     }
 
     /// Adapts the window to the current scene, unless the case gives one.
-    pub fn follow<S: Space>(&mut self, simulation: &Simulation<S>) {
+    pub fn follow(&mut self, simulation: InDimension<'_>) {
         if !self.fixed {
-            self.window = Self::whole_of(InDimension::of(simulation));
-        }
-    }
-
-    // Without a type parameter it is compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
-    fn whole_of(simulation: InDimension<'_>) -> [f64; 4] {
-        match simulation {
-            InDimension::Dim2(s) => Self::whole(s),
-            InDimension::Dim3(s) => Self::whole(s),
+            self.window = in_dimension!(simulation, |s| Self::whole(s));
         }
     }
 
@@ -159,70 +128,48 @@ impl Camera {
         w
     }
 
-    /// Draws a picture of a subject.
-    ///
-    /// # Errors
-    /// The file cannot be written.
-    pub fn draw<S: Space>(
-        &self,
-        simulation: &Simulation<S>,
-        subject: Subject<'_>,
-        title: &str,
-        caption: Vec<String>,
-        path: &Path,
-    ) -> Result<(), DrawError> {
-        self.frame(simulation, subject, title, caption).draw(path)
-    }
-
-    /// What a picture of a subject shows, to be drawn later, by any thread.
-    pub fn frame<S: Space>(
-        &self,
-        simulation: &Simulation<S>,
-        subject: Subject<'_>,
-        title: &str,
-        caption: Vec<String>,
-    ) -> Frame {
-        self.frame_of(InDimension::of(simulation), subject, title, caption)
-    }
-
-    // As `whole_of`.
-    fn frame_of(
+    /// A picture, to be drawn later, by any thread; `None` where the dimension has no such picture, and
+    /// for charts, which are drawn by [`crate::draw_panels`].
+    pub fn frame(
         &self,
         simulation: InDimension<'_>,
-        subject: Subject<'_>,
+        shows: &Shows,
         title: &str,
         caption: Vec<String>,
-    ) -> Frame {
-        match simulation {
-            InDimension::Dim2(s) => self.frame_in(s, subject, title, caption),
-            InDimension::Dim3(s) => self.frame_in(s, subject, title, caption),
+    ) -> Option<Frame> {
+        let flat = matches!(simulation, InDimension::Dim2(_));
+        match shows {
+            Shows::Charts(_) => return None,
+            Shows::Chains(_) | Shows::Stress if !flat => return None,
+            _ => {}
         }
+        Some(in_dimension!(simulation, |s| self.frame_in(s, shows, title, caption)))
     }
 
     fn frame_in<S: Space>(
         &self,
         simulation: &Simulation<S>,
-        subject: Subject<'_>,
+        shows: &Shows,
         title: &str,
         caption: Vec<String>,
     ) -> Frame {
         let made: Vec<Paint>;
-        let (paints, scale) = match subject {
-            Subject::Scene if self.paints.is_empty() => {
+        let (paints, scale) = match shows {
+            Shows::Scene if self.paints.is_empty() => {
                 let scale;
                 (made, scale) = quantity::of(simulation);
                 (&made[..], scale)
             }
-            Subject::Scene => (&self.paints[..], None),
-            Subject::Bonds | Subject::Chains(_) => (&[][..], None),
-            Subject::Painted(paints) => (paints, None),
-            Subject::Stress => (&[][..], mesh::scale(simulation, self.window)),
-            Subject::Values { values, label, top } => {
+            Shows::Scene => (&self.paints[..], None),
+            Shows::Bonds | Shows::Chains(_) | Shows::Charts(_) => (&[][..], None),
+            Shows::Paints(paints) => (&paints[..], None),
+            Shows::Stress => (&[][..], mesh::scale(simulation, self.window)),
+            Shows::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
                 let scale = Scale {
-                    label: label.to_owned(),
+                    label: (*label).to_owned(),
                     unit: String::new(),
-                    top,
+                    top: *top,
                     bonds: false,
                 };
                 (&made[..], Some(scale))
@@ -234,15 +181,13 @@ impl Camera {
         let mut along = Vec::new();
         if flat {
             disks = self::disks(simulation, self.window, paints);
-            links = self.lines(simulation, subject);
+            links = self.lines(simulation, shows);
             bodies = outlines(simulation, self.window);
             bodies.extend(zones::solids(simulation, self.window));
-            if matches!(subject, Subject::Stress) {
+            if matches!(shows, Shows::Stress) {
                 along = zones::lines(simulation, self.window);
             }
-            let shown = scale
-                .as_ref()
-                .filter(|_| matches!(subject, Subject::Stress));
+            let shown = scale.as_ref().filter(|_| matches!(shows, Shows::Stress));
             bodies.extend(mesh::elements(simulation, self.window, shown));
             if shown.is_none() {
                 bodies.extend(mesh::grains(simulation, self.window, paints));
@@ -264,21 +209,34 @@ impl Camera {
         }
     }
 
-    /// The contacts drawn as lines for a subject (2D).
-    fn lines<S: Space>(&self, simulation: &Simulation<S>, subject: Subject<'_>) -> Vec<Link> {
-        match subject {
+    /// The contacts drawn as lines (2D).
+    fn lines<S: Space>(&self, simulation: &Simulation<S>, shows: &Shows) -> Vec<Link> {
+        match shows {
             // A map of the bond states only: forces would cover it.
-            Subject::Bonds => {
+            Shows::Bonds => {
                 let bonds = links(simulation, self.window).into_iter();
                 let bonds = bonds.filter(|l| l.state != LinkState::Plain);
                 bonds.map(|l| Link { width: 0.3, ..l }).collect()
             }
-            Subject::Chains(pairs) => forces(simulation, self.window, pairs),
-            Subject::Scene if self.paints.is_empty() => links(simulation, self.window),
+            Shows::Chains(pairs) => forces(simulation, self.window, pairs),
+            Shows::Scene if self.paints.is_empty() => links(simulation, self.window),
             // The colours of grains carry the information: nothing is drawn over them.
             _ => Vec::new(),
         }
     }
+}
+
+/// Colour of each ball by the layer in which it is.
+fn layers<S: Space>(s: &Simulation<S>, thickness: f64) -> Vec<Paint> {
+    let grain = s.state.bodies.grain_flags();
+    let paint = |(ball, (centre, _)): (&Ball<S>, (S::Vector, f64))| {
+        if grain[ball.body as usize] {
+            Paint::Layer((centre[S::D - 1] / thickness).floor() as i64)
+        } else {
+            Paint::Grey
+        }
+    };
+    s.shapes.balls.iter().zip(balls(s)).map(paint).collect()
 }
 
 fn balls<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (S::Vector, f64)> + '_ {
@@ -303,10 +261,9 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
         for image in images(x, piece.bound, window, period) {
             out.push(Outline {
                 points: corners.iter().map(|c| [c[0] - x + image, c[1]]).collect(),
-                label: String::new(),
                 shade,
                 paint: paint(paints, s.shapes.balls.len() + k),
-                element: false,
+                ..Outline::default()
             });
         }
     }
@@ -345,9 +302,7 @@ pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline
         out.push(Outline {
             points: (0..CORNERS).map(corner).collect(),
             label: driven.name.clone(),
-            shade: None,
-            paint: Paint::Grey,
-            element: false,
+            ..Outline::default()
         });
     }
     out
@@ -429,10 +384,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             if points.len() > 3 && first == last {
                 out.push(Outline {
                     points: around(&points, far),
-                    label: String::new(),
-                    shade: None,
-                    paint: Paint::Grey,
-                    element: false,
+                    ..Outline::default()
                 });
                 continue;
             }
@@ -462,9 +414,7 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
             out.push(Outline {
                 points: polygon,
                 label: name,
-                shade: None,
-                paint: Paint::Grey,
-                element: false,
+                ..Outline::default()
             });
         }
     }

@@ -1,7 +1,7 @@
 //! What sticks and what slips along the surfaces of deformable bodies in the plane, and half-spaces as solids below their surface.
 
 use super::images;
-use crate::{Outline, Paint, ZoneLine};
+use crate::{Outline, ZoneLine};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_observe::tractions::{SurfaceState, Zone};
@@ -63,9 +63,7 @@ pub(crate) fn solids<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outli
         out.push(Outline {
             points,
             label: system.name().to_owned(),
-            shade: None,
-            paint: Paint::Grey,
-            element: false,
+            ..Outline::default()
         });
     }
     out
