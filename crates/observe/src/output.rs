@@ -1,5 +1,5 @@
-//! Output of an observer at the end of a run: texts with file names, and figures. A higher layer writes and
-//! draws them.
+//! Output of an observer at the end of a run: texts with file names, and figures. A higher layer
+//! writes and draws them.
 
 use crate::chart::{Chart, Figure};
 

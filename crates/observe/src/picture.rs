@@ -3,8 +3,8 @@
 use super::chart::Chart;
 use serde::{Deserialize, Serialize};
 
-/// Colours of what sticks, of what slips, and of what carries no force (red, green, blue). The first two differ in lightness
-/// too, and are told apart with every deficiency of colour vision.
+/// Colours of what sticks, of what slips, and of what carries no force (red, green, blue). The
+/// first two differ in lightness too, and are told apart with every deficiency of colour vision.
 pub const STICKS: (u8, u8, u8) = (0, 90, 170);
 /// See [`STICKS`].
 pub const SLIPS: (u8, u8, u8) = (250, 225, 40);
@@ -41,16 +41,18 @@ pub struct Picture {
 /// What a picture shows.
 #[derive(Clone, Debug)]
 pub enum Shows {
-    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their bonds if there are bonds; in
-    /// the plane also the forces and bonds between them.
+    /// Grains coloured by layer if there are layers, otherwise by speed, or by the damage of their
+    /// bonds if there are bonds; in the plane also the forces and bonds between them.
     Scene,
     /// Intact and broken bonds.
     Bonds,
     /// Colours of the balls and then of the pieces.
     Paints(Vec<Paint>),
-    /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the lower first. In the plane only.
+    /// The contacts that carry force, those of force chains apart: sorted pairs of bodies, the
+    /// lower first. In the plane only.
     Chains(Vec<[u32; 2]>),
-    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces. In the plane only.
+    /// The von Mises stress of deformable bodies, and what sticks and slips along their surfaces.
+    /// In the plane only.
     Stress,
     /// Charts, on a page of their own.
     Charts(Vec<Chart>),

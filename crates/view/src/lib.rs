@@ -1,6 +1,7 @@
-//! What a run shows, as PNG files and as HTML pages. A chart is described once ([`fretwork_observe::chart`]) and drawn
-//! by both: [`draw_panels`] makes a PNG file, [`report`] and [`compare`] make pages of runs, and a [`Sheet`] is a page of
-//! sections with tables and charts, for studies and fits. [`picture`] draws the scene of a simulation.
+//! What a run shows, as PNG files and as HTML pages. A chart is described once
+//! ([`fretwork_observe::chart`]) and drawn by both: [`draw_panels`] makes a PNG file, [`report`]
+//! and [`compare`] make pages of runs, and a [`Sheet`] is a page of sections with tables and
+//! charts, for studies and fits. [`picture`] draws the scene of a simulation.
 //!
 //! ```text
 //! figures of observers ─► figures.json ─┬─► png ─► NAME.png

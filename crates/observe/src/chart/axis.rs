@@ -2,14 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-/// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m` of the
-/// order of 1e-5 are shown in µm).
+/// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m`
+/// of the order of 1e-5 are shown in µm).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// Quantity, for example `displacement δ`.
     pub name: String,
-    /// SI unit without prefix (`m`, `N`, `Pa`, `s`, `J`, `W`, `N/m`, `m/s`, `m^3`, `kg`), or empty for a pure
-    /// number. Powers are written `m^2` and shown as superscripts. Other units are shown with a power of ten.
+    /// SI unit without prefix (`m`, `N`, `Pa`, `s`, `J`, `W`, `N/m`, `m/s`, `m^3`, `kg`), or empty
+    /// for a pure number. Powers are written `m^2` and shown as superscripts. Other units are shown
+    /// with a power of ten.
     pub unit: String,
     /// Logarithmic scale: non-positive values are omitted.
     pub log: bool,
@@ -79,8 +80,8 @@ fn magnitude(value: f64) -> i32 {
     (value * (1.0 + 1e-12)).log10().floor() as i32
 }
 
-/// Exponent of ten to divide by, and the resulting unit: with an SI prefix if it takes one, otherwise with a
-/// power of ten if the numbers would be long.
+/// Exponent of ten to divide by, and the resulting unit: with an SI prefix if it takes one,
+/// otherwise with a power of ten if the numbers would be long.
 fn shown_unit(unit: &str, magnitude: i32) -> (i32, String) {
     if let Some((exponent, base, prefix)) = prefix(unit, magnitude) {
         let rest = unit.find('/').map_or("", |at| &unit[at..]);

@@ -58,7 +58,8 @@ impl Field {
     }
 }
 
-/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a colour bar.
+/// The smallest of 1, 1.5, 2, 3, 5, 7 times a power of ten not below a value, as the end of a
+/// colour bar.
 pub fn round_top(value: f64) -> f64 {
     let power = 10f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0];

@@ -1,5 +1,5 @@
-//! Figures as data: charts of curves with their axes. A figure is described once; one back end draws it as a
-//! PNG file, another in an HTML page, both from what [`Figure::resolve`] makes of it.
+//! Figures as data: charts of curves with their axes. A figure is described once; one back end
+//! draws it as a PNG file, another in an HTML page, both from what [`Figure::resolve`] makes of it.
 
 mod axis;
 mod field;
@@ -56,8 +56,8 @@ pub struct Series {
     pub place: usize,
     /// Line or markers.
     pub style: Style,
-    /// Lower and upper end of the interval at each point, in the unit of the vertical axis; empty for none. A
-    /// non-finite interval is omitted.
+    /// Lower and upper end of the interval at each point, in the unit of the vertical axis; empty
+    /// for none. A non-finite interval is omitted.
     #[serde(with = "rows::pairs")]
     pub intervals: Vec<(f64, f64)>,
     /// A series of rows is left out where no value exceeds this share of the largest of the chart.
@@ -76,8 +76,8 @@ impl Series {
         }
     }
 
-    /// A column of the statistics over another. It is left out if it is zero throughout, or if the other does
-    /// not change.
+    /// A column of the statistics over another. It is left out if it is zero throughout, or if the
+    /// other does not change.
     pub fn rows(label: impl Into<String>, x: impl Into<Value>, y: impl Into<Value>) -> Self {
         let (x, y, part) = (x.into(), y.into(), Part::All);
         Self::from_source(label, Source::Rows(Rows { x, y, part }))
@@ -149,10 +149,11 @@ pub struct Chart {
     pub x_range: Option<(f64, f64)>,
     /// Vertical range in the axis unit; `None` fits the data.
     pub y_range: Option<(f64, f64)>,
-    /// Colours the series along a gradient from first to last, with the gradient as legend; for superimposed
-    /// cycles.
+    /// Colours the series along a gradient from first to last, with the gradient as legend; for
+    /// superimposed cycles.
     pub colour_by_order: bool,
-    /// Width and height in pixels of a chart that is drawn alone; text and line widths scale with the width.
+    /// Width and height in pixels of a chart that is drawn alone; text and line widths scale with
+    /// the width.
     pub size_px: (u32, u32),
 }
 
@@ -265,8 +266,8 @@ impl Figure {
         }
     }
 
-    /// The figure with the points of all series, from the statistics of a run; charts without data, and those
-    /// beyond the twelfth, are left out.
+    /// The figure with the points of all series, from the statistics of a run; charts without data,
+    /// and those beyond the twelfth, are left out.
     pub fn resolve(&self, columns: &dyn Columns) -> Self {
         let charts = self.charts.iter().map(|c| c.resolve(columns));
         Self {

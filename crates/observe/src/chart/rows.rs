@@ -18,8 +18,8 @@ pub struct Rows {
     pub part: Part,
 }
 
-/// A value of each row: of a column, less its first value or divided by another column where asked, times a
-/// factor.
+/// A value of each row: of a column, less its first value or divided by another column where asked,
+/// times a factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Value {
     /// Name of the column.
@@ -50,8 +50,8 @@ pub enum Part {
     All,
     /// From a time on (s).
     Since(f64),
-    /// A cycle from one time to another (s), with values between rows at both ends, so that it ends where the
-    /// next one begins.
+    /// A cycle from one time to another (s), with values between rows at both ends, so that it ends
+    /// where the next one begins.
     Cycle([f64; 2]),
 }
 

@@ -5,8 +5,9 @@ use crate::picture::{OPEN, SLIPS, STICKS};
 use crate::tractions::{FacetTraction, SurfaceState, Zone};
 use fretwork_core::geometry::space::{Space, VectorLike};
 
-/// The maps of the contact of a surface: what sticks and slips with the tractions along the surface, pressure, shear, and their ratio;
-/// none where nothing is loaded. Tractions are those of its points where these stand for equal areas, or else those of its facets.
+/// The maps of the contact of a surface: what sticks and slips with the tractions along the
+/// surface, pressure, shear, and their ratio; none where nothing is loaded. Tractions are those of
+/// its points where these stand for equal areas, or else those of its facets.
 pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool) -> Vec<Chart> {
     let touching = |k: &usize| state.zone[*k] != Zone::Open;
     let loaded: Vec<usize> = (0..state.zone.len()).filter(touching).collect();
@@ -159,7 +160,8 @@ impl<S: Space> View<'_, S> {
             .filter(|(_, _, corners)| self.shows(corners))
     }
 
-    /// What belongs to each point, in pieces of which a point has several, and the point of each piece.
+    /// What belongs to each point, in pieces of which a point has several, and the point of each
+    /// piece.
     fn points(&self) -> (Shapes, Vec<usize>) {
         let (mut cells, mut seen) = (Vec::new(), Vec::new());
         for (_, points, corners) in self.facets() {
@@ -179,7 +181,8 @@ impl<S: Space> View<'_, S> {
         (cells, seen)
     }
 
-    /// Tractions along the surface at some points, along both axes (Pa): their own, or means of the facets around them.
+    /// Tractions along the surface at some points, along both axes (Pa): their own, or means of the
+    /// facets around them.
     fn around(&self, points: &[usize], own: bool) -> Vec<(usize, [f64; 2])> {
         let state = self.state;
         let mut sums = vec![(S::Vector::zero(), 0.0); state.zone.len()];
@@ -226,8 +229,8 @@ impl<S: Space> View<'_, S> {
     }
 }
 
-/// Where the cells around the corners of a triangle meet: the centre of its circumcircle, which gives squares on a grid, or the middle of
-/// its longest edge where that lies outside.
+/// Where the cells around the corners of a triangle meet: the centre of its circumcircle, which
+/// gives squares on a grid, or the middle of its longest edge where that lies outside.
 fn centre(corners: &[[f64; 2]; 3]) -> [f64; 2] {
     let squared = |i: usize, j: usize| {
         let [dx, dy] = [0, 1].map(|a| corners[i][a] - corners[j][a]);

@@ -31,7 +31,8 @@ pub(super) fn estimated(chart: &mut Chart, name: &str, known: &Estimate, unit: &
     chart.subtitle = Some(text);
 }
 
-/// The friction coefficient at the last complete cycle, with an interval of all half-widths that are known.
+/// The friction coefficient at the last complete cycle, with an interval of all half-widths that
+/// are known.
 pub(super) fn error_bar(cycles: &Cycles, known: &Estimate) -> Series {
     let last = cycles.list.iter().rfind(|c| c.complete);
     let (Some(last), Some(value), true) = (last, known.value, cycles.oscillates()) else {

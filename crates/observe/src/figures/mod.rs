@@ -44,7 +44,8 @@ pub(crate) fn drives<S: Space>(s: &Simulation<S>, test: Option<(&str, usize)>) -
     out
 }
 
-/// Whether a motion or a varying force is imposed: the displacement under a constant load is mostly noise.
+/// Whether a motion or a varying force is imposed: the displacement under a constant load is mostly
+/// noise.
 fn driven_along(dof: &Dof) -> bool {
     match dof {
         Dof::Free | Dof::Fixed => false,
@@ -77,7 +78,8 @@ pub(crate) fn damage_ratio(known: &Estimate) -> Output {
     Output::figure("damage_ratio", [chart], 1)
 }
 
-/// The loops of a fretting test, its friction coefficient, and the forces on the tested body over time.
+/// The loops of a fretting test, its friction coefficient, and the forces on the tested body over
+/// time.
 pub(crate) fn friction_test(cycles: &Cycles, known: &Estimate) -> Vec<Output> {
     let mut out = Vec::new();
     if cycles.oscillates() {

@@ -7,7 +7,8 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, shape};
 
-/// The scars: the depth, in 3D averaged across the sliding, and in 2D the initial and the current profile.
+/// The scars: the depth, in 3D averaged across the sliding, and in 2D the initial and the current
+/// profile.
 pub(crate) fn charts<S: Space>(s: &Simulation<S>) -> Vec<Output> {
     let mut out = Vec::new();
     for scar in s.state.scars.iter().filter(|c| c.deepest() > 0.0) {

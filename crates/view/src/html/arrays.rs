@@ -34,7 +34,8 @@ struct Head {
     high: f64,
 }
 
-/// Named arrays: the head of each in JSON, then the numbers of all, each at a multiple of eight bytes.
+/// Named arrays: the head of each in JSON, then the numbers of all, each at a multiple of eight
+/// bytes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arrays {
     heads: Vec<Head>,

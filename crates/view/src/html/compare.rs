@@ -2,7 +2,7 @@
 
 use crate::html::arrays::Arrays;
 use crate::html::folder::RunFolder;
-use crate::html::page::{Page, difference_table, escape, footer, item, section, value};
+use crate::html::page::{Page, difference_table, escape, footer, item, section, table, value};
 use crate::html::results::{self, ResultRow};
 use crate::html::series::Series;
 use crate::html::{ReportError, figures, write};
@@ -118,9 +118,11 @@ fn verdicts(runs: &[RunFolder], names: &[String], gaps: &[Vec<String>]) -> Strin
             all.join("<br>")
         );
     }
-    format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Verdicts\"><table><thead><tr><th scope=\"col\">Run</th><th scope=\"col\">Case</th>\
-         <th scope=\"col\">Verdict</th><th scope=\"col\">Reasons and notes</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+    table(
+        "",
+        "Verdicts",
+        &["Run", "Case", "Verdict", "Reasons and notes"],
+        &rows,
     )
 }
 
@@ -169,12 +171,8 @@ fn result_table(runs: &[RunFolder], names: &[String]) -> String {
         }
         rows += "</tr>\n";
     }
-    let heads: String = names
-        .iter()
-        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
-        .collect();
-    format!(
-        "<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Results\"><table id=\"side-by-side\"><thead><tr><th scope=\"col\">Result</th>{heads}</tr></thead>\n\
-         <tbody>\n{rows}</tbody></table></div>\n"
-    )
+    let heads = std::iter::once("Result").chain(names.iter().map(String::as_str));
+    let heads: Vec<&str> = heads.collect();
+    let table = table(" id=\"side-by-side\"", "Results", &heads, &rows);
+    format!("<p class=\"lead\">Half-widths are of 95 % intervals, by cause.</p>\n{table}")
 }

@@ -1,5 +1,5 @@
-//! Figures in a page: the charts that observers and other programs describe, as its scripts read them. Numbers
-//! stand packed beside them.
+//! Figures in a page: the charts that observers and other programs describe, as its scripts read
+//! them. Numbers stand packed beside them.
 
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -33,8 +33,8 @@ pub(crate) fn json(figures: &[Figure], numbers: &mut Arrays) -> Vec<Value> {
     charts.map(|(name, c)| chart(name, c, numbers)).collect()
 }
 
-/// The charts of several runs over each other: of each that has more than one curve the entries name run and
-/// curve, and of cycles the last is drawn.
+/// The charts of several runs over each other: of each that has more than one curve the entries
+/// name run and curve, and of cycles the last is drawn.
 pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Vec<Value> {
     let mut all: Vec<(&str, Chart)> = Vec::new();
     for (run, figure) in runs
@@ -170,8 +170,8 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
     })
 }
 
-/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers are named
-/// after `prefix`.
+/// The columns of the statistics of a run, of which any can be drawn over any other; their numbers
+/// are named after `prefix`.
 pub(crate) fn columns(
     name: &str,
     prefix: &str,

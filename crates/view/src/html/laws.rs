@@ -139,7 +139,8 @@ fn derived_wear<'a>(
         .find(|w| w["interface"] == *interface && w["law"] == *law)
 }
 
-/// Parameters of a law: those that a run derived from a hardness, then those of the case win over those of the file, properties of materials and defaults.
+/// Parameters of a law: those that a run derived from a hardness, then those of the case win over
+/// those of the file, properties of materials and defaults.
 fn parameters(
     case: &Case,
     spec: &fretwork_scene::case::InterfaceSpec,

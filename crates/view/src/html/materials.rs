@@ -57,14 +57,16 @@ impl Files {
         out
     }
 
-    /// The parameters of laws that an interface takes from a file: of a material of the case, or of one of parameters.
+    /// The parameters of laws that an interface takes from a file: of a material of the case, or of
+    /// one of parameters.
     pub fn laws_of(&self, case: &Case, spec: &InterfaceSpec) -> Option<&LawFile> {
         let name = spec.parameters_from.as_ref()?;
         let material = case.materials.get(name).and_then(|f| self.laws.get(f));
         material.or_else(|| self.laws.get(name))
     }
 
-    /// The property of a material that a parameter named `young_1` or `young_2` takes, and the file of the material.
+    /// The property of a material that a parameter named `young_1` or `young_2` takes, and the file
+    /// of the material.
     pub fn property(
         &self,
         case: &Case,

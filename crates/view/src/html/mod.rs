@@ -3,8 +3,9 @@
 //! ```text
 //! folder of a run ─► folder (results.h5, summary.json) ─► series, figures, scene, materials ─► page ─► report.html
 //! ```
-//! Data stand in the page as gzip in base64 and are unpacked by the browser; names, units and descriptions of columns and
-//! fields are those of the attributes in `results.h5`. A page loads nothing from a network, and its policy forbids it to.
+//! Data stand in the page as gzip in base64 and are unpacked by the browser; names, units and
+//! descriptions of columns and fields are those of the attributes in `results.h5`. A page loads
+//! nothing from a network, and its policy forbids it to.
 
 mod arrays;
 mod compare;
@@ -33,8 +34,8 @@ pub const DEFAULT_BYTES: usize = 5_000_000;
 
 /// How a report is made.
 pub struct Options<'a> {
-    /// Largest size of the page in bytes, `None` for all that was recorded: states in time, fields and rows are left out to stay
-    /// below it, which the page says.
+    /// Largest size of the page in bytes, `None` for all that was recorded: states in time, fields
+    /// and rows are left out to stay below it, which the page says.
     pub bytes: Option<usize>,
     /// Looks up a law by kind and name, for its parameters and reference.
     pub law: &'a dyn Fn(&str, &str) -> Option<LawInfo>,
@@ -76,7 +77,8 @@ impl ReportError {
     }
 }
 
-/// Makes the report of the run in a folder, `report.html` in it; returns its path and its size in bytes.
+/// Makes the report of the run in a folder, `report.html` in it; returns its path and its size in
+/// bytes.
 ///
 /// # Errors
 /// The folder holds no run, or the page cannot be written.

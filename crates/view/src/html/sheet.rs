@@ -134,11 +134,6 @@ fn html(block: &Block, figures: &mut Vec<Value>, numbers: &mut Arrays) -> String
 }
 
 fn table_html(table: &SheetTable) -> String {
-    let heads: String = table
-        .heads
-        .iter()
-        .map(|h| format!("<th scope=\"col\">{}</th>", escape(h)))
-        .collect();
     let mut rows = String::new();
     for row in &table.rows {
         let mut cells = row.iter();
@@ -153,9 +148,7 @@ fn table_html(table: &SheetTable) -> String {
         true => String::new(),
         false => format!("<p class=\"lead\">{}</p>\n", escape(&table.note)),
     };
-    format!(
-        "{lead}<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table\"><table><thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
-    )
+    lead + &crate::html::page::table("", "Table", &table.heads, &rows)
 }
 
 #[cfg(test)]

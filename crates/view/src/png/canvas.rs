@@ -153,8 +153,8 @@ impl Canvas {
         }
     }
 
-    /// Paints a disk with a colour that depends on the offset from its centre and the distance, in pixels.
-    /// For thousands of grains this is much faster than paths or gradients.
+    /// Paints a disk with a colour that depends on the offset from its centre and the distance, in
+    /// pixels. For thousands of grains this is much faster than paths or gradients.
     pub fn disk(
         &mut self,
         [x, y]: [f32; 2],
@@ -223,8 +223,8 @@ impl Canvas {
         self.stroke(&corners, true, width, colour, None);
     }
 
-    /// Strokes a line through points. Long lines are split into overlapping pieces, since the cost of a
-    /// stroke grows faster than its length.
+    /// Strokes a line through points. Long lines are split into overlapping pieces, since the cost
+    /// of a stroke grows faster than its length.
     pub fn stroke(
         &mut self,
         points: &[[f32; 2]],
@@ -302,8 +302,9 @@ impl Canvas {
         }
     }
 
-    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed fast, some ten times
-    /// as fast as tiny-skia's own writer. What it shows stands in the file as the text `Description`, unless it is empty.
+    /// Writes the surface, which is opaque, to a PNG file: without its alpha channel and compressed
+    /// fast, some ten times as fast as tiny-skia's own writer. What it shows stands in the file as
+    /// the text `Description`, unless it is empty.
     pub fn save(&self, path: &Path, shows: &str) -> Result<(), DrawError> {
         match notice::current() {
             Some(text) => notice::banded(self, &text)?.write_file(path, shows),
@@ -337,7 +338,8 @@ fn write_png(
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
-    // Differences between rows: choosing among all filters for each row takes longer than the rest and saves a tenth of the size.
+    // Differences between rows: choosing among all filters for each row takes longer than the rest
+    // and saves a tenth of the size.
     encoder.set_filter(png::Filter::Up);
     if !shows.is_empty() {
         encoder.add_itxt_chunk("Description".to_owned(), shows.to_owned())?;

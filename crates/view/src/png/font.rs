@@ -23,8 +23,8 @@ pub(crate) struct TextStyle {
     pub size: f32,
     pub colour: Rgb,
     pub anchor: Anchor,
-    /// The light face is thin at small sizes: its outline is thickened by this fraction of the em, so that
-    /// one face serves as regular and semi-bold.
+    /// The light face is thin at small sizes: its outline is thickened by this fraction of the em,
+    /// so that one face serves as regular and semi-bold.
     pub weight: f32,
     /// Rotated to read upwards, for vertical axes.
     pub upwards: bool,
@@ -107,9 +107,9 @@ enum Level {
     Above,
 }
 
-/// Characters of a line with their levels. One or two letters or digits after a single letter and `_` are
-/// subscripts, as in `v_x`; other underscores are part of names. Superscript digits are set from smaller
-/// regular digits, since the faces lack some of them.
+/// Characters of a line with their levels. One or two letters or digits after a single letter and
+/// `_` are subscripts, as in `v_x`; other underscores are part of names. Superscript digits are set
+/// from smaller regular digits, since the faces lack some of them.
 fn levels(text: &str) -> Vec<(char, Level)> {
     let all: Vec<char> = text.chars().collect();
     let word = |k: usize| all.get(k).is_some_and(|c| c.is_alphanumeric() || *c == '_');

@@ -1,6 +1,6 @@
 //! The table of all inputs of a case, and that of inputs that differ between runs.
 
-use super::escape;
+use super::{escape, table};
 use crate::html::folder::RunFolder;
 use fretwork_scene::inputs::{From, Input, of};
 use std::collections::BTreeMap;
@@ -38,9 +38,14 @@ pub(crate) fn html(run: &RunFolder) -> String {
          <div class=\"tools\"><label class=\"search\">Search <input type=\"search\" data-filters=\"inputs-table\" \
          placeholder=\"solver, young, 0.5 ...\"></label>\n\
          <label><input type=\"checkbox\" data-hides=\"inputs-table\" data-class=\"given\"> only what is given</label></div>\n\
-         <div class=\"scroll tall\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs\"><table id=\"inputs-table\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Value</th>\
-         <th scope=\"col\">Unit</th><th scope=\"col\">Origin</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n{}",
+         <div class=\"tall\">{}</div>\n{}",
         inputs.len(),
+        table(
+            " id=\"inputs-table\"",
+            "Inputs",
+            &["Key", "Value", "Unit", "Origin"],
+            &rows
+        ),
         text(run)
     )
 }
@@ -99,12 +104,7 @@ pub(crate) fn difference_table(runs: &[RunFolder], names: &[String]) -> String {
     if rows.is_empty() {
         return "<p>All inputs are the same.</p>\n".to_owned();
     }
-    let heads: String = names
-        .iter()
-        .map(|n| format!("<th scope=\"col\">{}</th>", escape(n)))
-        .collect();
-    format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Inputs that differ\"><table id=\"differences\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Unit</th>{heads}</tr></thead>\n\
-         <tbody>\n{rows}</tbody></table></div>\n"
-    )
+    let fixed = ["Key", "Unit"].into_iter();
+    let heads: Vec<&str> = fixed.chain(names.iter().map(String::as_str)).collect();
+    table(" id=\"differences\"", "Inputs that differ", &heads, &rows)
 }

@@ -1,6 +1,6 @@
 //! What was run: materials with sources, interfaces and laws with their parameters and libraries.
 
-use super::{escape, hash};
+use super::{escape, hash, table};
 use crate::html::laws::{Interface, Loaded};
 use crate::html::materials::Files;
 use crate::html::results::number;
@@ -37,9 +37,10 @@ pub(crate) fn materials(files: &Files) -> String {
     if rows.is_empty() {
         return String::new();
     }
+    let heads = ["Material", "Property", "Value", "Source"];
     format!(
-        "<h3>Materials</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Materials\"><table>\n<thead><tr><th scope=\"col\">Material</th><th scope=\"col\">Property</th>\
-         <th scope=\"col\">Value</th><th scope=\"col\">Source</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
+        "<h3>Materials</h3>\n{}",
+        table("", "Materials", &heads, &rows)
     )
 }
 
@@ -69,10 +70,10 @@ pub(crate) fn interfaces(interfaces: &[Interface]) -> String {
         }
         let table = match rows.is_empty() {
             true => String::new(),
-            false => format!(
-                "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">Law</th><th scope=\"col\">Parameter</th><th scope=\"col\">Value</th>\
-                 <th scope=\"col\">Where it comes from</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
-            ),
+            false => {
+                let heads = ["Law", "Parameter", "Value", "Where it comes from"];
+                table("", "Parameters", &heads, &rows)
+            }
         };
         out += &format!(
             "<details><summary><strong>{}</strong>, between {} and {}: {}</summary>\n{table}</details>\n",
@@ -109,8 +110,12 @@ pub(crate) fn libraries(laws: &[Loaded]) -> String {
         )
     };
     let rows: String = laws.iter().map(row).collect();
-    format!(
-        "<h3>Laws</h3>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Laws\"><table>\n<thead><tr><th scope=\"col\">Kind</th><th scope=\"col\">Law</th><th scope=\"col\">Version</th>\
-         <th scope=\"col\">Certified</th><th scope=\"col\">SHA-256 of its library</th></tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
-    )
+    let heads = [
+        "Kind",
+        "Law",
+        "Version",
+        "Certified",
+        "SHA-256 of its library",
+    ];
+    format!("<h3>Laws</h3>\n{}", table("", "Laws", &heads, &rows))
 }

@@ -115,7 +115,8 @@ impl Page {
     }
 }
 
-/// A text for HTML, in elements and in attributes. Characters that change the direction of text are shown as what they are.
+/// A text for HTML, in elements and in attributes. Characters that change the direction of text are
+/// shown as what they are.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -159,6 +160,17 @@ pub(crate) fn footer(command: &str) -> String {
         "<footer><p>Made by <code>{command}</code>. The page is complete in itself and loads nothing.</p>\n\
          <details><summary>Figures are drawn with uPlot; its licence</summary><pre>{}</pre></details></footer>\n",
         escape(include_str!("../../../assets/uPlot.LICENSE"))
+    )
+}
+
+/// A table in a frame that scrolls sideways: its attributes, a label for who cannot see it, heads
+/// of the columns, and rows as HTML.
+pub(crate) fn table<H: AsRef<str>>(of: &str, label: &str, heads: &[H], rows: &str) -> String {
+    let head = |h: &H| format!("<th scope=\"col\">{}</th>", escape(h.as_ref()));
+    let heads: String = heads.iter().map(head).collect();
+    format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table{of}>\
+         <thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}</tbody></table></div>\n"
     )
 }
 

@@ -72,7 +72,8 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     page.html()
 }
 
-/// The statistics with at most about so many rows, and the figures: what scripts read of them, and the packed numbers.
+/// The statistics with at most about so many rows, and the figures: what scripts read of them, and
+/// the packed numbers.
 fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Series, Value, String) {
     let statistics = Series::read(run, most, gaps);
     let mut numbers = Arrays::default();

@@ -1,5 +1,5 @@
-//! First bodies of a state: outlines in the plane, faces in space. A body that only moved without turning is its first state and a
-//! shift.
+//! First bodies of a state: outlines in the plane, faces in space. A body that only moved without
+//! turning is its first state and a shift.
 
 use super::states;
 use crate::html::arrays::{Arrays, Kind};
@@ -22,7 +22,8 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Adds the arrays of a state; `skip` tells by identity and first point what other parts of the page show.
+    /// Adds the arrays of a state; `skip` tells by identity and first point what other parts of the
+    /// page show.
     pub fn read(
         &mut self,
         run: &RunFolder,

@@ -10,7 +10,8 @@ const FEW: usize = 4;
 /// Detail of the states of a page, from all that was recorded down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Detail {
-    /// 0 all; 1 fields in 254 intervals; 2 without the less usual fields of contacts; 3 without contacts.
+    /// 0 all; 1 fields in 254 intervals; 2 without the less usual fields of contacts; 3 without
+    /// contacts.
     level: u8,
     /// One of so many grains is shown.
     pub every: usize,
@@ -22,7 +23,8 @@ impl Default for Detail {
     }
 }
 
-/// Fields of contacts that are kept to the last, since the viewer draws bonds and force chains by them.
+/// Fields of contacts that are kept to the last, since the viewer draws bonds and force chains by
+/// them.
 const USUAL: [&str; 4] = ["state", "status", "damage", "force_normal"];
 
 impl Detail {

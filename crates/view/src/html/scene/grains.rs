@@ -186,7 +186,8 @@ impl Grains {
         id.iter().zip(corners).map(row).collect()
     }
 
-    /// The outlines of the convex parts about their centres: polygons in the plane, triangles in space.
+    /// The outlines of the convex parts about their centres: polygons in the plane, triangles in
+    /// space.
     fn push_outlines(&self, arrays: &mut Arrays) {
         if self.pieces.is_empty() {
             return;

@@ -1,5 +1,5 @@
-//! Bodies and grains that deform, and surfaces that touch: triangles or lines with fields at points and elements. Of tetrahedra only
-//! the faces outside are shown.
+//! Bodies and grains that deform, and surfaces that touch: triangles or lines with fields at points
+//! and elements. Of tetrahedra only the faces outside are shown.
 
 use super::range::{Field, Ranges};
 use super::{Note, Places, place, push_points};
@@ -21,7 +21,8 @@ struct MeshField {
 struct Mesh {
     path: String,
     points: Vec<f64>,
-    /// Points that are shown, the elements by their places in that list, and the cell that each belongs to.
+    /// Points that are shown, the elements by their places in that list, and the cell that each
+    /// belongs to.
     used: Vec<usize>,
     elements: Vec<usize>,
     corners: usize,

@@ -1,5 +1,5 @@
-//! The scene over time for the viewer: grains, contacts, first bodies and meshes of the recorded states, quantised, each state
-//! packed alone, so that the browser unpacks only what it shows.
+//! The scene over time for the viewer: grains, contacts, first bodies and meshes of the recorded
+//! states, quantised, each state packed alone, so that the browser unpacks only what it shows.
 
 mod bodies;
 mod contacts;
@@ -44,7 +44,8 @@ struct Reading<'a> {
 }
 
 impl Scene {
-    /// Reads the states of a run into at most about `bytes` of the page; `None` if none was recorded.
+    /// Reads the states of a run into at most about `bytes` of the page; `None` if none was
+    /// recorded.
     pub fn read(run: &RunFolder, bytes: Option<usize>, gaps: &mut Vec<String>) -> Option<Self> {
         match Self::try_read(run, bytes) {
             Ok(scene) => scene,
@@ -128,7 +129,8 @@ impl Reading<'_> {
         Ok(frames)
     }
 
-    /// The finest detail of which enough states fit, and the packed size of a state beside the first one.
+    /// The finest detail of which enough states fit, and the packed size of a state beside the
+    /// first one.
     fn choose_detail(
         &mut self,
         last: usize,
@@ -205,7 +207,8 @@ fn place(at: [f64; 3]) -> [i64; 3] {
 /// Places of points.
 type Places = HashSet<[i64; 3]>;
 
-/// `most` of `count` states, equally far apart, with the first and the last; the last alone if one fits.
+/// `most` of `count` states, equally far apart, with the first and the last; the last alone if one
+/// fits.
 fn spread(count: usize, most: usize) -> Vec<usize> {
     if most >= count {
         return (0..count).collect();

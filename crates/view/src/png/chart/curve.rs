@@ -70,7 +70,8 @@ pub(crate) fn draw_series(
         }
     }
     if matches!(style, Style::Markers | Style::LineMarkers) {
-        // Overlapping markers are drawn once: scattered ones by cell, those along a line by distance.
+        // Overlapping markers are drawn once: scattered ones by cell, those along a line by
+        // distance.
         let total: usize = runs.iter().map(Vec::len).sum();
         let scattered = style == Style::Markers;
         let crowded = total > if scattered { 4000 } else { 60 };

@@ -21,9 +21,9 @@ const ASPECTS: [f32; 3] = [0.8, 0.6, 1.16];
 const COLUMNS: usize = 2;
 const GRID: Rgb = [226, 229, 233];
 
-/// Draws charts row by row in a number of columns (at most two) to one PNG file. Charts without data are omitted;
-/// without any chart there is no file. A subtitle common to all charts is drawn once, above the page. A single
-/// chart has its own size.
+/// Draws charts row by row in a number of columns (at most two) to one PNG file. Charts without
+/// data are omitted; without any chart there is no file. A subtitle common to all charts is drawn
+/// once, above the page. A single chart has its own size.
 ///
 /// # Errors
 /// The file cannot be written, or the range or size of a chart cannot be drawn.
@@ -386,7 +386,8 @@ fn ends(chart: &Chart) -> impl Iterator<Item = f64> + '_ {
     })
 }
 
-/// Lines of the heading with their sizes and whether they are bold, wrapped to a width, and the total height.
+/// Lines of the heading with their sizes and whether they are bold, wrapped to a width, and the
+/// total height.
 fn header(chart: &Chart, room: f32, u: f32) -> (Vec<(String, f32, bool)>, f32) {
     let title = (chart.title.as_str(), 31.0 * u, true);
     let subtitle = chart.subtitle.as_deref().unwrap_or_default();

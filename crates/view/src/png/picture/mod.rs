@@ -128,8 +128,8 @@ impl Camera {
         w
     }
 
-    /// A picture, to be drawn later, by any thread; `None` where the dimension has no such picture, and
-    /// for charts, which are drawn by [`crate::draw_panels`].
+    /// A picture, to be drawn later, by any thread; `None` where the dimension has no such picture,
+    /// and for charts, which are drawn by [`crate::draw_panels`].
     pub fn frame(
         &self,
         simulation: InDimension<'_>,
@@ -270,8 +270,8 @@ fn pieces<S: Space>(s: &Simulation<S>, window: [f64; 4], paints: &[Paint]) -> Ve
     out
 }
 
-/// For each first body made of balls that is large in the window, an outline of its largest ball, which is
-/// hidden under its disk and carries the name.
+/// For each first body made of balls that is large in the window, an outline of its largest ball,
+/// which is hidden under its disk and carries the name.
 pub fn named_balls<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     const CORNERS: u32 = 256;
     let least = 0.1 * (window[1] - window[0]).min(window[3] - window[2]);
@@ -421,8 +421,8 @@ fn outlines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<Outline> {
     out
 }
 
-/// The outside of a closed convex polyline that runs counter-clockwise: a square of size `far` with the
-/// polyline cut out, joined by a seam on the right.
+/// The outside of a closed convex polyline that runs counter-clockwise: a square of size `far` with
+/// the polyline cut out, joined by a seam on the right.
 fn around(chain: &[[f64; 2]], far: f64) -> Vec<[f64; 2]> {
     let ring = &chain[..chain.len() - 1];
     let right = (0..ring.len()).max_by(|a, b| ring[*a][0].total_cmp(&ring[*b][0]));

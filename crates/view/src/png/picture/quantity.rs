@@ -1,4 +1,5 @@
-//! Default quantity for the colours of grains: their speed, or the damage of their bonds if there are bonds.
+//! Default quantity for the colours of grains: their speed, or the damage of their bonds if there
+//! are bonds.
 
 use crate::{Paint, Scale};
 use fretwork_core::contact::{BondState, Key};
@@ -8,12 +9,12 @@ use fretwork_core::step::Simulation;
 use fretwork_observe::chart::round_top;
 use fretwork_observe::placement::is_first;
 
-/// Fraction of the grains whose speed is within the colour bar, so that a few fast grains do not make all
-/// others pale.
+/// Fraction of the grains whose speed is within the colour bar, so that a few fast grains do not
+/// make all others pale.
 const WITHIN: f64 = 0.98;
 
-/// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In 2D bonds
-/// are drawn one by one, and the scale is theirs.
+/// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In
+/// 2D bonds are drawn one by one, and the scale is theirs.
 pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
     let values = match (s.state.network.bonds_made() > 0, S::D) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),

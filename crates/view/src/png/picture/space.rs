@@ -15,8 +15,8 @@ struct Side {
     offset: f64,
 }
 
-/// Extent of a plane beyond the grains, as a fraction of their extent; also the largest distance at which it
-/// is shown.
+/// Extent of a plane beyond the grains, as a fraction of their extent; also the largest distance at
+/// which it is shown.
 const MARGIN: f64 = 0.06;
 const FAR: f64 = 0.5;
 
@@ -130,8 +130,8 @@ fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side>
     })
 }
 
-/// The box to which planes and drums are clipped: around grains and bounded surfaces, extended to nearby
-/// planes.
+/// The box to which planes and drums are clipped: around grains and bounded surfaces, extended to
+/// nearby planes.
 fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point) {
     let mut bound = Bound::default();
     for (centre, radius) in balls(s) {

@@ -1,4 +1,5 @@
-//! What sticks and what slips along the surfaces of deformable bodies in the plane, and half-spaces as solids below their surface.
+//! What sticks and what slips along the surfaces of deformable bodies in the plane, and half-spaces
+//! as solids below their surface.
 
 use super::images;
 use crate::{Outline, ZoneLine};
@@ -10,7 +11,8 @@ fn surfaces<S: Space>(s: &Simulation<S>) -> impl Iterator<Item = (usize, Surface
     (0..s.state.systems.len()).filter_map(|k| Some((k, SurfaceState::of(s, k)?)))
 }
 
-/// Along the surface of each body that touches, from the middle of one facet to that of the next: what does not slip and what slips.
+/// Along the surface of each body that touches, from the middle of one facet to that of the next:
+/// what does not slip and what slips.
 pub(crate) fn lines<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Vec<ZoneLine> {
     let period = s.shapes.periodic.period[0];
     let mut out = Vec::new();

@@ -7,7 +7,8 @@ use super::{BROKEN, CHAIN, Link, LinkState, PLAIN};
 use crate::png::canvas::{Canvas, INK, TEXT, mix};
 use crate::png::font::{Anchor, TextStyle, text_width};
 
-/// Draws the legend of the link colours that are present, from a point on the middle of the line; gives where it ends.
+/// Draws the legend of the link colours that are present, from a point on the middle of the line;
+/// gives where it ends.
 pub(crate) fn legend(page: &mut Canvas, links: &[Link], [left, middle]: [f32; 2], u: f32) -> f32 {
     let em = TEXT * u;
     let has = |of: fn(&LinkState) -> bool| links.iter().any(|l| of(&l.state));
@@ -89,8 +90,8 @@ fn round_length(longest: f64) -> (f64, String) {
     (metres, format!("{digits} {unit}"))
 }
 
-/// Adds a straight bar to a path. All bars have the same winding, so that crossing ones do not cut holes into
-/// each other.
+/// Adds a straight bar to a path. All bars have the same winding, so that crossing ones do not cut
+/// holes into each other.
 pub(crate) fn push_bar(path: &mut PathBuilder, a: [f32; 2], b: [f32; 2], width: f32) {
     let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
     let length = dx.hypot(dy);

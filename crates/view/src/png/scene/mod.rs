@@ -74,8 +74,8 @@ pub struct Link {
     pub b: [f64; 2],
     /// Colour.
     pub state: LinkState,
-    /// Force relative to the typical one: 1 is the typical width, 0 the thinnest; values above 4 are drawn as
-    /// 4.
+    /// Force relative to the typical one: 1 is the typical width, 0 the thinnest; values above 4
+    /// are drawn as 4.
     pub width: f64,
 }
 
@@ -86,8 +86,8 @@ pub struct Frame {
     pub title: String,
     /// Texts under the heading (time, cycle, friction), on one line if they fit.
     pub caption: Vec<String>,
-    /// xmin, xmax, ymin, ymax, metres. The picture shows all of it at equal scale in both directions, and
-    /// more if the picture would be too flat.
+    /// xmin, xmax, ymin, ymax, metres. The picture shows all of it at equal scale in both
+    /// directions, and more if the picture would be too flat.
     pub window: [f64; 4],
     /// First bodies, and grains with corners.
     pub bodies: Vec<Outline>,
@@ -256,8 +256,8 @@ impl Frame {
         }
     }
 
-    /// Unit of line width: proportional to the grains, so that links neither cover small grains nor vanish
-    /// between large ones.
+    /// Unit of line width: proportional to the grains, so that links neither cover small grains nor
+    /// vanish between large ones.
     fn line_unit(&self, field: &Canvas, map: &Map, u: f32) -> f32 {
         let (sum, count) = self
             .seen(field, map)
@@ -336,8 +336,8 @@ fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
     (r > 0.0 && near(at[0], width) && near(at[1], height)).then_some((at, r))
 }
 
-/// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm exceeds
-/// single precision.
+/// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm
+/// exceeds single precision.
 fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
     let margin = 8.0 / map.scale;
     let (width, height) = (

@@ -68,7 +68,8 @@ fn value(v: f64) -> Rgb {
     mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
-/// Draws a colour bar of a length in layout units with its ticks and name, from a point on the middle of the bar; the ticks are below.
+/// Draws a colour bar of a length in layout units with its ticks and name, from a point on the
+/// middle of the bar; the ticks are below.
 pub(crate) fn colour_bar(
     page: &mut Canvas,
     scale: &Scale,

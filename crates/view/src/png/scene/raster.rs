@@ -138,8 +138,8 @@ impl Raster {
         (covered, hidden)
     }
 
-    /// Draws a straight line, hidden by objects nearer by more than `lift` pixels, so that a line on a steep
-    /// face is not hidden by that face.
+    /// Draws a straight line, hidden by objects nearer by more than `lift` pixels, so that a line
+    /// on a steep face is not hidden by that face.
     pub fn line(&mut self, a: Corner, b: Corner, width: f64, lift: f64, colour: Rgb, share: f32) {
         let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
         let length = dx.hypot(dy);
@@ -177,7 +177,8 @@ impl Raster {
         }
     }
 
-    /// Halves the resolution, by the mean of four pixels; width, height, and rows of red, green and blue.
+    /// Halves the resolution, by the mean of four pixels; width, height, and rows of red, green and
+    /// blue.
     pub fn halved(&self) -> (usize, usize, Vec<Rgb>) {
         let (width, height) = (self.width / 2, self.height / 2);
         let mut out = Vec::with_capacity(width * height);

@@ -1,5 +1,5 @@
-//! 3D scene rendered to pixels: grains, and first bodies as walls that are transparent where grains are
-//! behind them.
+//! 3D scene rendered to pixels: grains, and first bodies as walls that are transparent where grains
+//! are behind them.
 
 use super::paint::Coloured;
 use super::raster::{Corner, Cover, Raster};
@@ -229,8 +229,8 @@ impl Scene {
         seen
     }
 
-    /// For a normal: its component towards the viewer, and the light from the upper left in front of the
-    /// picture.
+    /// For a normal: its component towards the viewer, and the light from the upper left in front
+    /// of the picture.
     fn light(&self, n: &[f64; 3]) -> (f64, f64) {
         const LIGHT: [f64; 3] = [-0.45, 0.6, 0.661];
         let ([x, y], z) = self.view.project(*n);

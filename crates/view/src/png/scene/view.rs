@@ -9,9 +9,9 @@ pub struct View {
 }
 
 impl View {
-    /// View with z upwards; the viewer is at `azimuth` radians from the negative y axis, counterclockwise
-    /// seen from above, and `elevation` radians above the horizontal. `View::new(0.0, 0.0)` shows x to the
-    /// right and z upwards.
+    /// View with z upwards; the viewer is at `azimuth` radians from the negative y axis,
+    /// counterclockwise seen from above, and `elevation` radians above the horizontal.
+    /// `View::new(0.0, 0.0)` shows x to the right and z upwards.
     pub fn new(azimuth: f64, elevation: f64) -> Self {
         let ((sa, ca), (se, ce)) = (azimuth.sin_cos(), elevation.sin_cos());
         Self {
@@ -21,8 +21,8 @@ impl View {
         }
     }
 
-    /// Projected position of a point, and its coordinate towards the viewer, in the length unit of the point
-    /// (m).
+    /// Projected position of a point, and its coordinate towards the viewer, in the length unit of
+    /// the point (m).
     pub fn project(&self, point: [f64; 3]) -> ([f64; 2], f64) {
         let dot = |a: &[f64; 3]| a[0] * point[0] + a[1] * point[1] + a[2] * point[2];
         ([dot(&self.right), dot(&self.up)], dot(&self.towards))

@@ -24,7 +24,8 @@ pub struct ZoneLine {
     pub slips: bool,
 }
 
-/// Draws a band inside each body along its surface, on a dark rim that sets it off from any colour; `point` gives the pixels of a place.
+/// Draws a band inside each body along its surface, on a dark rim that sets it off from any colour;
+/// `point` gives the pixels of a place.
 pub(crate) fn draw(
     field: &mut Canvas,
     lines: &[ZoneLine],
