@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Corners of each cell, in the units of the axes.
-    pub cells: Vec<Vec<[f64; 2]>>,
+    pub cells: Vec<Vec<[f32; 2]>>,
     /// What the colours say.
     pub colours: Colours,
     /// Arrows from a place, and their length as a share of the longest, along both axes.
-    pub arrows: Vec<([f64; 2], [f64; 2])>,
+    pub arrows: Vec<([f32; 2], [f32; 2])>,
     /// Entry of the arrows in the legend: what the longest is.
     pub arrow_label: String,
 }

@@ -30,7 +30,10 @@ pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool)
         let [xmin, xmax, ymin, ymax] = view.window;
         (chart.x_range, chart.y_range) = (Some((xmin, xmax)), Some((ymin, ymax)));
         chart.field = Some(Field {
-            cells: cells.to_vec(),
+            cells: cells
+                .iter()
+                .map(|c| c.iter().copied().map(single).collect())
+                .collect(),
             colours,
             arrows: Vec::new(),
             arrow_label: String::new(),
@@ -38,7 +41,8 @@ pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool)
         chart
     };
     let longest = tractions.iter().fold(0.0, |most: f64, t| most.max(t.shear));
-    let arrow = |(k, along): (usize, [f64; 2])| (view.at(k), along.map(|x| x / longest));
+    let arrow =
+        |(k, along): (usize, [f64; 2])| (single(view.at(k)), single(along.map(|x| x / longest)));
     let drawn = view.around(&loaded, equal).into_iter();
     let mut zones = chart("Stick and slip", &cells, zones(state, &points));
     if let Some(field) = &mut zones.field {
@@ -62,6 +66,11 @@ pub(crate) fn charts<S: Space>(name: &str, state: &SurfaceState<S>, equal: bool)
     add("Shear", "Pa", &|t| t.shear);
     add("Shear over pressure", "", &ratio);
     out
+}
+
+/// Figures need no more digits.
+fn single(p: [f64; 2]) -> [f32; 2] {
+    p.map(|x| x as f32)
 }
 
 /// What sticks and slips at some points.

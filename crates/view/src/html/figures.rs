@@ -145,10 +145,13 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
         *sum += cell.len();
         Some(*sum as f64)
     }));
-    let part = |numbers: &mut Arrays, of: fn(&[f64; 2]) -> f64| {
+    let part = |numbers: &mut Arrays, of: fn(&[f32; 2]) -> f64| {
         numbers.number(&corners().map(of).collect::<Vec<_>>())
     };
-    let (x, y) = (part(numbers, |p| p[0]), part(numbers, |p| p[1]));
+    let (x, y) = (
+        part(numbers, |p| p[0].into()),
+        part(numbers, |p| p[1].into()),
+    );
     let (values, scale) = match &field.colours {
         Colours::Classes { of, .. } => (of.iter().map(|k| *k as f64).collect(), Value::Null),
         Colours::Values { values, scale } => {

@@ -19,7 +19,7 @@ impl Layout<'_> {
             return;
         };
         let (top, side) = (field.top(), self.plot.width as f32);
-        let place = |[x, y]: [f64; 2]| self.place((x, y));
+        let place = |[x, y]: [f32; 2]| self.place((x.into(), y.into()));
         for (k, cell) in field.cells.iter().enumerate() {
             let points: Vec<[f32; 2]> = cell.iter().map(|p| place(*p)).collect();
             let colour = colour(field, k, top);
@@ -35,7 +35,7 @@ impl Layout<'_> {
                 continue;
             }
             drawn.push(at);
-            let by = [*dx as f32 * ARROW * side, -*dy as f32 * ARROW * side];
+            let by = [dx * ARROW * side, -dy * ARROW * side];
             // Its middle is at the place.
             let tail = [at[0] - 0.5 * by[0], at[1] - 0.5 * by[1]];
             arrow(page, tail, by, self.u);
@@ -115,7 +115,7 @@ mod tests {
     use fretwork_observe::picture::{SLIPS, STICKS};
 
     fn chart(colours: Colours) -> Chart {
-        let square = |x: f64| vec![[x, 0.0], [x + 1e-3, 0.0], [x + 1e-3, 2e-3], [x, 2e-3]];
+        let square = |x: f32| vec![[x, 0.0], [x + 1e-3, 0.0], [x + 1e-3, 2e-3], [x, 2e-3]];
         let [x, y] = ["position x", "position y"].map(|name| Axis::new(name, "m"));
         let mut chart = Chart::new("Stick and slip, flat", x, y);
         chart.subtitle = Some("case".to_owned());
