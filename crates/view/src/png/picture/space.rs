@@ -1,6 +1,7 @@
 //! 3D scene of a picture: grains, and first bodies clipped to the region that grains can reach.
 
 use super::{balls, paint};
+use crate::png::scene::clip::{Side, clip, sides_of_box};
 use crate::{Faces, Paint, Scene, Sphere, View};
 use fretwork_core::geometry::shape::Carried;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -8,12 +9,6 @@ use fretwork_core::step::Simulation;
 use fretwork_observe::placement::{is_first, piece_centre, piece_outline};
 
 type Point = [f64; 3];
-
-/// A half-space that is kept: normal and offset, n . x <= d.
-struct Side {
-    normal: Point,
-    offset: f64,
-}
 
 /// Extent of a plane beyond the grains, as a fraction of their extent; also the largest distance at
 /// which it is shown.
@@ -69,7 +64,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
     let (low, high) = room(s, &surfaces);
     let reach = length(&sub(&high, &low)).max(f64::MIN_POSITIVE);
     // The open sides of planes; the inside of a drum is open, and clips the planes across it.
-    let planes: Vec<Option<Side>> = surfaces.iter().map(|f| solid_side(s, f)).collect();
+    let planes: Vec<Option<Side<3>>> = surfaces.iter().map(|f| solid_side(s, f)).collect();
     let walls = surfaces.iter().enumerate().map(|(k, surface)| {
         let polygons: Vec<Vec<Point>> = if surface.shape.bounded() {
             placed(s, surface, surface.shape.outline())
@@ -77,7 +72,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
             let b = surface.body as usize;
             let from = sub(&s.state.bodies.position[b].padded(), &low);
             let all = 2.0 * (reach + length(&from));
-            let mut sides = cuboid(&low, &high);
+            let mut sides = sides_of_box(&low, &high);
             for (other, plane) in planes.iter().enumerate() {
                 sides.extend(plane.iter().filter(|_| other != k).map(|p| Side {
                     normal: p.normal,
@@ -90,7 +85,7 @@ fn walls<S: Space>(s: &Simulation<S>) -> Vec<Faces> {
                 }
             }
             let faces = placed(s, surface, surface.shape.faces_within(all));
-            faces.into_iter().map(|f| cut(f, &sides)).collect()
+            faces.into_iter().map(|f| clip(f, &sides)).collect()
         };
         Faces {
             polygons: polygons.into_iter().filter(|p| p.len() > 2).collect(),
@@ -120,7 +115,7 @@ fn placed<S: Space>(
 }
 
 /// The open side of a plane; `None` for other surfaces.
-fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side> {
+fn solid_side<S: Space>(s: &Simulation<S>, surface: &Carried<S>) -> Option<Side<3>> {
     let b = surface.body as usize;
     let normal = S::rotate(&s.state.bodies.rotation[b], &surface.shape.flat()?).padded();
     let at = s.state.bodies.position[b] + S::rotate(&s.state.bodies.rotation[b], &surface.offset);
@@ -164,7 +159,7 @@ fn room<S: Space>(s: &Simulation<S>, surfaces: &[&Carried<S>]) -> (Point, Point)
     for side in surfaces.iter().filter_map(|f| solid_side(s, f)) {
         let corners =
             (0..8).map(|k| [0, 1, 2].map(|i| if k >> i & 1 == 1 { high[i] } else { low[i] }));
-        let above = |p: &Point| side.offset - dot(&side.normal, p);
+        let above = |p: &Point| -side.outside(p);
         let feet: Vec<Point> = corners
             .filter(|p| (0.0..FAR * size).contains(&above(p)))
             .map(|p| [0, 1, 2].map(|i| p[i] + above(&p) * side.normal[i]))
@@ -212,20 +207,8 @@ impl Bound {
     }
 }
 
-/// The six sides of a box.
-fn cuboid(low: &Point, high: &Point) -> Vec<Side> {
-    let side = |k: usize| {
-        let (axis, sign) = (k / 2, if k.is_multiple_of(2) { 1.0 } else { -1.0 });
-        let mut normal = [0.0; 3];
-        normal[axis] = sign;
-        let offset = if sign > 0.0 { high[axis] } else { -low[axis] };
-        Side { normal, offset }
-    };
-    (0..6).map(side).collect()
-}
-
 /// Inner half-spaces of the faces of a drum.
-fn inside(faces: &[Vec<Point>]) -> Vec<Side> {
+fn inside(faces: &[Vec<Point>]) -> Vec<Side<3>> {
     let side = |face: &Vec<Point>| {
         let (a, b, c) = (face.first()?, face.get(1)?, face.get(2)?);
         let (p, q) = (sub(b, a), sub(c, b));
@@ -241,27 +224,6 @@ fn inside(faces: &[Vec<Point>]) -> Vec<Side> {
     faces.iter().filter_map(side).collect()
 }
 
-/// Clips a convex polygon to all half-spaces.
-fn cut(polygon: Vec<Point>, sides: &[Side]) -> Vec<Point> {
-    let mut kept = polygon;
-    for side in sides {
-        let outside = |p: &Point| dot(&side.normal, p) - side.offset;
-        let before = std::mem::take(&mut kept);
-        for (i, b) in before.iter().enumerate() {
-            let a = &before[(i + before.len() - 1) % before.len()];
-            let (da, db) = (outside(a), outside(b));
-            if (da > 0.0) != (db > 0.0) {
-                let t = da / (da - db);
-                kept.push([0, 1, 2].map(|k| a[k] + t * (b[k] - a[k])));
-            }
-            if db <= 0.0 {
-                kept.push(*b);
-            }
-        }
-    }
-    kept
-}
-
 fn dot(a: &Point, b: &Point) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
@@ -272,29 +234,4 @@ fn sub(a: &Point, b: &Point) -> Point {
 
 fn length(a: &Point) -> f64 {
     dot(a, a).sqrt()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_polygon_is_cut_to_a_box() {
-        let wide = vec![
-            [-9.0, -9.0, 0.5],
-            [9.0, -9.0, 0.5],
-            [9.0, 9.0, 0.5],
-            [-9.0, 9.0, 0.5],
-        ];
-        let sides = cuboid(&[0.0; 3], &[1.0, 2.0, 3.0]);
-        let found = cut(wide.clone(), &sides);
-        let area: f64 = (0..found.len())
-            .map(|k| {
-                let (p, q) = (found[k], found[(k + 1) % found.len()]);
-                0.5 * (p[0] * q[1] - p[1] * q[0])
-            })
-            .sum();
-        assert!((area - 2.0).abs() < 1e-12, "{found:?}");
-        assert!(cut(wide, &cuboid(&[0.0; 3], &[1.0, 1.0, 0.25])).is_empty());
-    }
 }

@@ -1,5 +1,6 @@
 //! Picture of the scene: bodies, grains and interactions.
 
+pub(crate) mod clip;
 mod frame;
 pub(crate) mod paint;
 mod raster;
@@ -13,6 +14,7 @@ use tiny_skia::PathBuilder;
 
 use crate::png::canvas::{Canvas, DrawError, INK, PAGE, Rgb, SOFT_INK, TEXT, mix};
 use crate::png::font::{Anchor, TextStyle, text_width};
+use clip::{clip, sides_of_box};
 use frame::{caption_lines, centroid, push_bar};
 use fretwork_observe::picture::Paint;
 use paint::{Coloured, DAMAGED, SOUND, Scale};
@@ -344,29 +346,9 @@ fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
         f64::from(field.pixmap.width()),
         f64::from(field.pixmap.height()),
     );
-    // Lower and upper bounds along x, then y, as (axis, sign, bound).
-    let sides = [
-        (0, 1.0, map.left - margin),
-        (0, -1.0, -(map.left + width / map.scale + margin)),
-        (1, 1.0, map.top - height / map.scale - margin),
-        (1, -1.0, -(map.top + margin)),
-    ];
-    let mut kept: Vec<_> = points.to_vec();
-    for (axis, sign, bound) in sides {
-        let inside = |p: &[f64; 2]| sign * p[axis] - bound;
-        let before = std::mem::take(&mut kept);
-        for (i, b) in before.iter().enumerate() {
-            let a = &before[(i + before.len() - 1) % before.len()];
-            let (da, db) = (inside(a), inside(b));
-            if (da < 0.0) != (db < 0.0) {
-                let t = da / (da - db);
-                kept.push([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
-            }
-            if db >= 0.0 {
-                kept.push(*b);
-            }
-        }
-    }
+    let low = [map.left - margin, map.top - height / map.scale - margin];
+    let high = [map.left + width / map.scale + margin, map.top + margin];
+    let kept = clip(points.to_vec(), &sides_of_box(&low, &high));
     kept.into_iter().map(|p| map.point(p)).collect()
 }
 
