@@ -75,14 +75,25 @@ pub(crate) const TEXT: f32 = 28.0;
 
 /// Wraps text into lines of a width, broken at spaces.
 pub(crate) fn wrapped(text: &str, size: f32, room: f32) -> Vec<String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    joined(&words, " ", size, room)
+}
+
+/// Joins parts in as few lines of a width as hold them.
+pub(crate) fn joined<T: AsRef<str>>(
+    parts: &[T],
+    between: &str,
+    size: f32,
+    room: f32,
+) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    for word in text.split_whitespace() {
+    for part in parts.iter().map(AsRef::as_ref) {
         match lines.last_mut() {
-            Some(line) if font::text_width(&format!("{line} {word}"), size) <= room => {
-                line.push(' ');
-                line.push_str(word);
+            Some(line) if font::text_width(&format!("{line}{between}{part}"), size) <= room => {
+                *line += between;
+                *line += part;
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(part.to_owned()),
         }
     }
     lines
@@ -94,6 +105,13 @@ pub(crate) fn mix(a: Rgb, b: Rgb, t: f64) -> Rgb {
     std::array::from_fn(|i| {
         (f64::from(a[i]) + t * (f64::from(b[i]) - f64::from(a[i]))).round() as u8
     })
+}
+
+/// Interpolates along a table of colours, with `t` in 0..1.
+pub(crate) fn along(table: &[Rgb], t: f64) -> Rgb {
+    let place = t.clamp(0.0, 1.0) * (table.len() - 1) as f64;
+    let k = (place as usize).min(table.len() - 2);
+    mix(table[k], table[k + 1], place - k as f64)
 }
 
 fn paint(colour: Rgb) -> Paint<'static> {

@@ -1,6 +1,6 @@
 //! Curves in pixels: colours, thinning, lines and markers.
 
-use crate::png::canvas::{Canvas, Rgb, WHITE, mix};
+use crate::png::canvas::{Canvas, Rgb, WHITE, along};
 use fretwork_observe::chart::Style;
 
 /// Colours for readers with colour vision deficiency (Okabe and Ito).
@@ -24,9 +24,7 @@ const GRADIENT: [Rgb; 5] = [
 ];
 
 pub(crate) fn gradient(t: f64) -> Rgb {
-    let at = t.clamp(0.0, 1.0) * (GRADIENT.len() - 1) as f64;
-    let i = (at as usize).min(GRADIENT.len() - 2);
-    mix(GRADIENT[i], GRADIENT[i + 1], at - i as f64)
+    along(&GRADIENT, t)
 }
 
 /// Keeps the first, lowest, highest and last point of each pass through a pixel column.

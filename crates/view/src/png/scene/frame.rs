@@ -1,5 +1,6 @@
 //! Elements around the field of a picture: legend, scale bar, caption.
 
+use fretwork_observe::chart::quantity;
 use tiny_skia::PathBuilder;
 
 use super::paint::{DAMAGED, SOUND};
@@ -80,14 +81,7 @@ fn round_length(longest: f64) -> (f64, String) {
         _ => 1.0,
     };
     let metres = factor * 10f64.powf(power);
-    let (value, unit) = match metres {
-        m if m >= 0.999 => (m, "m"),
-        m if m >= 0.999e-3 => (m * 1e3, "mm"),
-        m if m >= 0.999e-6 => (m * 1e6, "µm"),
-        m => (m * 1e9, "nm"),
-    };
-    let digits = (value * 1e3).round() / 1e3;
-    (metres, format!("{digits} {unit}"))
+    (metres, quantity(metres, "m", 1))
 }
 
 /// Adds a straight bar to a path. All bars have the same winding, so that crossing ones do not cut
@@ -119,21 +113,6 @@ pub(crate) fn centroid(points: &[[f32; 2]]) -> Option<[f32; 2]> {
         ];
     }
     (area != 0.0).then(|| [sum[0] / area, sum[1] / area])
-}
-
-/// Joins texts in as few lines as fit.
-pub(crate) fn caption_lines(facts: &[String], size: f32, room: f32) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for fact in facts {
-        match lines.last_mut() {
-            Some(line) if text_width(&format!("{line}   ·   {fact}"), size) <= room => {
-                line.push_str("   ·   ");
-                line.push_str(fact);
-            }
-            _ => lines.push(fact.clone()),
-        }
-    }
-    lines
 }
 
 #[cfg(test)]

@@ -12,10 +12,10 @@ use std::path::Path;
 
 use tiny_skia::PathBuilder;
 
-use crate::png::canvas::{Canvas, DrawError, INK, PAGE, Rgb, SOFT_INK, TEXT, mix};
+use crate::png::canvas::{Canvas, DrawError, INK, PAGE, Rgb, SOFT_INK, TEXT, joined, mix};
 use crate::png::font::{Anchor, TextStyle, text_width};
 use clip::{clip, sides_of_box};
-use frame::{caption_lines, centroid, push_bar};
+use frame::{centroid, push_bar};
 use fretwork_observe::picture::Paint;
 use paint::{Coloured, DAMAGED, SOUND, Scale};
 use solid::{Place, Scene};
@@ -158,7 +158,7 @@ impl Frame {
         };
 
         let room = self.width_px as f32 - 2.0 * side;
-        let lines = caption_lines(&self.caption, TEXT * u, room);
+        let lines = joined(&self.caption, "   ·   ", TEXT * u, room);
         let title = if self.title.is_empty() { 0.0 } else { 42.0 * u };
         let top = (title + lines.len() as f32 * 38.0 * u + 24.0 * u).round();
         // Under the field: the colour bar and the scale bar, then the legend of the links.

@@ -1,6 +1,6 @@
 //! Colours of grains.
 
-use crate::png::canvas::{Canvas, DrawError, INK, Rgb, TEXT, mix};
+use crate::png::canvas::{Canvas, DrawError, INK, Rgb, TEXT, along, mix};
 use crate::png::font::{Anchor, TextStyle, text_width};
 use fretwork_observe::chart::Axis;
 use fretwork_observe::picture::Paint;
@@ -57,15 +57,9 @@ impl Coloured for Paint {
             Self::Loose => dim(LOOSE),
             Self::Out => dim(OUT),
             Self::Value(v) if v.is_nan() => mix(GREY[0], GREY[1], 0.6),
-            Self::Value(v) => dim(value(v)),
+            Self::Value(v) => dim(along(&VALUES, v)),
         }
     }
-}
-
-fn value(v: f64) -> Rgb {
-    let place = v.clamp(0.0, 1.0) * (VALUES.len() - 1) as f64;
-    let k = (place as usize).min(VALUES.len() - 2);
-    mix(VALUES[k], VALUES[k + 1], place - k as f64)
 }
 
 /// Draws a colour bar of a length in layout units with its ticks and name, from a point on the
@@ -86,7 +80,7 @@ pub(crate) fn colour_bar(
         let share = f64::from(i) / f64::from(length);
         let colour = match scale.bonds {
             true => mix(SOUND, DAMAGED, share),
-            false => value(share),
+            false => along(&VALUES, share),
         };
         page.rect([left + i as f32, top, 1.0, thick], colour);
     }
