@@ -7,22 +7,35 @@ use crate::html::series::Series;
 use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series as Curve, Style};
 use serde_json::{Value, json};
 
+/// Limit on the cells of a chart in a page.
+const MOST_CELLS: usize = 20_000;
+
 /// The figures that the observers of a run described, with numbers from its statistics.
 pub(crate) fn of_run(run: &RunFolder, rows: &Series, gaps: &mut Vec<String>) -> Vec<Figure> {
     let text = std::fs::read_to_string(run.path.join(Figure::FILE));
     let parsed = text
         .map_err(|e| e.to_string())
         .and_then(|t| serde_json::from_str::<Vec<Figure>>(&t).map_err(|e| e.to_string()));
-    match parsed {
-        Ok(figures) => figures.iter().map(|f| f.resolve(rows)).collect(),
-        Err(reason) => {
+    let mut figures = parsed.unwrap_or_else(|reason| {
+        gaps.push(format!(
+            "Figures are missing, but for that of any column: {} cannot be read ({reason}). Runs of older versions have none.",
+            Figure::FILE
+        ));
+        Vec::new()
+    });
+    for figure in &mut figures {
+        *figure = figure.resolve(rows);
+        let small = |c: &Chart| c.field.as_ref().is_none_or(|f| f.cells.len() <= MOST_CELLS);
+        let all = figure.charts.len();
+        figure.charts.retain(small);
+        if figure.charts.len() < all {
+            let name = &figure.name;
             gaps.push(format!(
-                "Figures are missing, but for that of any column: {} cannot be read ({reason}). Runs of older versions have none.",
-                Figure::FILE
+                "A map of more than {MOST_CELLS} cells is in {name}.png alone."
             ));
-            Vec::new()
         }
     }
+    figures
 }
 
 /// The charts of a run for the page.
