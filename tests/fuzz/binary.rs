@@ -52,7 +52,7 @@ fn damaged(name: &'static str, seeds: Vec<Vec<u8>>) -> impl FnMut(&mut Pcg64) ->
 fn damaged_contact_problems() {
     let campaign = Campaign {
         kind: "contact problems",
-        count: 1000,
+        count: 500,
         scene: 0,
         taken: true,
     };
@@ -90,7 +90,7 @@ fn results(case: &Path, folder: &Path) -> Vec<u8> {
 fn damaged_results() {
     let campaign = Campaign {
         kind: "results",
-        count: 1000,
+        count: 500,
         scene: 0,
         taken: true,
     };
@@ -140,7 +140,7 @@ const SOLID: &str = r#"Polyhedra(material: "grain", grains: [(at: [0.0, 0.0, 0.0
 fn damaged_shapes() {
     let campaign = Campaign {
         kind: "shapes",
-        count: 1000,
+        count: 500,
         scene: 0,
         taken: true,
     };
@@ -172,7 +172,7 @@ fn loaded(case: &Path) -> Loaded {
 fn damaged_states() {
     let campaign = Campaign {
         kind: "states",
-        count: 1000,
+        count: 500,
         scene: 0,
         taken: true,
     };

@@ -1,17 +1,14 @@
 //! The fretting layer of angular grains with elastic contacts, in a window of a fifth: its steps
 //! are solved to any tolerance, and say what they get wrong.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::solve::Report;
 use fretwork::solve::error::Norm;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// The layer before it is loaded.
 fn layer(more: &[&str]) -> Simulation<Dim2> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/wheel_rail_fretting.ron");
     let window = [
         "periodic.x=8e-5",
         "grains.0.high=[8e-5, 4.32e-5]",
@@ -22,10 +19,7 @@ fn layer(more: &[&str]) -> Simulation<Dim2> {
         "bodies.wheel.mass=2200.0",
         "bodies.wheel.dofs.y=Force(Table([(0.0, -448.0), (0.005, -448.0), (0.022, -8.96e4)]))",
     ];
-    let sets: Vec<String> = window.iter().chain(more).map(|s| (*s).to_owned()).collect();
-    let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::case("wheel_rail_fretting", &[&window[..], more].concat())
 }
 
 /// The layer at 1.12 GPa, shortly after the wheel began to slide.

@@ -1,9 +1,7 @@
 //! Attraction on more contacts than a law is given at a time.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
-use std::path::Path;
 
 const COUNT: usize = 1300;
 const RADIUS: f64 = 1e-3;
@@ -34,10 +32,7 @@ fn a_ceiling_holds_every_disk() {
             share * weight,
             disks.join(", ")
         );
-        let loaded = load_text("ceiling.ron", &text, Path::new("."), &[]);
-        let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build_in::<Dim2>(&search_path());
-        let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+        let mut s = scene::text::<Dim2>(&text);
         for _ in 0..40 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }

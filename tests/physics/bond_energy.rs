@@ -1,15 +1,13 @@
 //! Energy that broken bonds release, over what their laws declare.
 
+use crate::scene;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
-use fretwork::record::{Observed, Run, RunOptions};
+use fretwork::record::Observed;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
-use fretwork::shipped::search_path;
 use fretwork_observe::summary::{BondEnergies, Reference, Summary};
-use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of the grip
 /// (m/s).
@@ -41,20 +39,7 @@ fn without_files() -> [String; 4] {
 }
 
 fn run<S: Dimensional + Observed>(loaded: &Loaded) -> Summary {
-    static COUNT: AtomicU32 = AtomicU32::new(0);
-    let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = format!("fretwork-bond-energy-{}-{count}", std::process::id());
-    let out = std::env::temp_dir().join(name);
-    let built = loaded
-        .build_in::<S>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let done = Run::new(loaded, built, &options).execute(&mut |_| ControlFlow::Continue(()));
-    let _ = std::fs::remove_dir_all(&out);
-    done.unwrap_or_else(|e| panic!("{e}"))
+    scene::finished(loaded, scene::built::<S>(loaded), |_| {})
 }
 
 /// Pulls one bond in steps of an opening (m) until it is long broken, with damage law and coupling
@@ -243,16 +228,9 @@ fn bonds_that_break_within_one_step_are_counted() {
 #[test]
 fn a_slow_pull_on_the_bench_is_the_fracture_energy() {
     let found = |law: &str| -> Interface {
-        let file = format!(
-            "{}/cases/verification/bond_mode_1.ron",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let sets = [law.to_owned(), CUT.to_owned()];
+        let sets = [law, CUT];
         let sets = if law.is_empty() { &sets[1..] } else { &sets };
-        let loaded =
-            fretwork::scene::load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
-        let built = loaded.build_in::<Dim2>(&search_path());
-        built.unwrap().simulation.laws[0].clone()
+        scene::case::<Dim2>("verification/bond_mode_1", sets).laws[0].clone()
     };
     let mac = found("");
     let mut bench = Bench::new(mac.clone(), 2, 0.5);

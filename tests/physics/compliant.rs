@@ -1,6 +1,8 @@
 //! Compliant contacts against closed forms: force, impact, chain, partial slip; energy; every
 //! method of the solver.
 
+use crate::scene;
+use crate::stepping::{closes, go};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
@@ -34,9 +36,7 @@ fn built<S: Dimensional>(law: &str, parameters: &str, step: f64, rest: &str) -> 
         S::D
     );
     let text = quote(&text);
-    let loaded = load_text("compliant.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 /// Keys of parameters are strings.
@@ -59,13 +59,8 @@ fn quote(text: &str) -> String {
 }
 
 fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
-    for _ in 0..n {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        let solver = &report.solver;
-        assert!(solver.converged, "step {}: {solver:?}", s.state.steps);
-    }
-    let closes = s.state.energy.relative_residual();
-    assert!(closes < 1e-12, "the ledger is off by {closes:e}");
+    go(s, n);
+    closes(s, 1e-12);
 }
 
 fn near(got: f64, wanted: f64, share: f64) {

@@ -2,6 +2,7 @@
 //! a step passes it untouched.
 
 use crate::extremes::bench::{G, Sketch};
+use crate::stepping::steps;
 use fretwork::geometry::convex::passing::{PairMotion, keep_ball_apart};
 use fretwork::geometry::convex::polygon::Polygon;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
@@ -16,12 +17,6 @@ use std::fmt::Write as _;
 
 fn build<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
     sketch.build().unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
 }
 
 /// The velocity and spin of the only grain.
@@ -92,7 +87,7 @@ fn slides_on<S: Dimensional>(floor: &str, bodies: &str) {
             let step = s.options.scheme.h;
             // Slow ones over one joint.
             let way = if v < 0.5 { 0.3 } else { 4.0 };
-            go(&mut s, (way / (v * step)) as usize);
+            steps(&mut s, (way / (v * step)) as usize);
             let (velocity, spin) = motion(&s);
             println!(
                 "{}D, {name} on {floor} at {v} m/s: {velocity:?}, {spin:?}",
@@ -169,7 +164,7 @@ fn passes<S: Dimensional>(past: &str) {
                         ..Sketch::default()
                     });
                     let (before, _) = motion(&s);
-                    go(&mut s, 800);
+                    steps(&mut s, 800);
                     let (after, spin) = motion(&s);
                     assert!(
                         (after - before).norm() < 1e-12 && spin.norm() < 1e-12,
@@ -225,7 +220,7 @@ fn slides_deep<S: Dimensional>(floor: &str, bodies: &str) {
                     grains: grain,
                     ..Sketch::default()
                 });
-                go(&mut s, (2.0 / step) as usize);
+                steps(&mut s, (2.0 / step) as usize);
                 let (velocity, spin) = motion(&s);
                 let what = format!(
                     "{}D, {name} on {floor}, {contact}{of_contact}, {depth} m deep: {velocity:?}, {spin:?}",
@@ -301,7 +296,7 @@ fn stops_at_a_step<S: Dimensional>() {
                 });
                 let mut farthest = 0.0f64;
                 for _ in 0..(1.5 / step) as usize {
-                    go(&mut s, 1);
+                    steps(&mut s, 1);
                     let grain = s.state.bodies.grains().next().expect("a grain");
                     farthest = farthest.max(s.state.bodies.position[grain][0]);
                 }
@@ -449,7 +444,7 @@ fn an_edge_of_the_case_is_none_of_the_solution() {
         grains: sliders::<Dim2>(0.2)[0].clone(),
         ..Sketch::default()
     });
-    go(&mut s, 4000);
+    steps(&mut s, 4000);
     assert!(motion(&s).0[0] < 0.1, "{:?}", motion(&s));
     assert_eq!(s.state.network.step_size.edges, 0);
 }

@@ -1,12 +1,10 @@
 //! Contacts that hold each other: columns of springs between fixed plates, and stacks of unlike
 //! weights.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// Gravity (m/s^2).
 const G: f64 = 9.81;
@@ -47,9 +45,7 @@ fn column<S: Dimensional>(grains: usize, law: &str, rest: &str) -> Simulation<S>
         at(height(grains - 1) + RADIUS - OVERLAP),
         list.join(", ")
     );
-    let loaded = load_text("column.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 /// Radius of the grains, and overlap of each contact (m).
@@ -143,9 +139,7 @@ fn stand(density: f64, stacks: usize, tolerance: f64, time: f64) -> Standing {
         tops.concat(),
         cubes.join(", ")
     );
-    let loaded = load_text("stack.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<Dim3>(&search_path()));
-    let mut s = built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation;
+    let mut s = scene::text::<Dim3>(&text);
     let driven = s.state.bodies.driven.iter();
     let tops = driven.filter(|d| d.name.starts_with("top"));
     let tops: Vec<usize> = tops.map(|d| d.body as usize).collect();
@@ -218,9 +212,7 @@ fn a_grain_that_sticks_to_a_moving_plate_is_no_error() {
     grains: [List(material: "grain", grains: [(at: [0.034, 0.09307], radius: 0.004, velocity: [0.7, 0.0]), (at: [0.042, 0.09307], radius: 0.0039)])],
     output: (frames: 0, views: 0, figures: false),
 )"#;
-    let loaded = load_text("stuck.ron", text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<Dim2>(&search_path()));
-    let mut s = built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation;
+    let mut s = scene::text::<Dim2>(text);
     let mut sweeps = 0;
     for k in 1..=2000 {
         let solver = s.step().unwrap_or_else(|e| panic!("{e}")).solver;

@@ -2,14 +2,13 @@
 //! of the places and velocities that are given, the drives feel it, and their work is what springs
 //! store and friction takes.
 
+use crate::scene;
+use crate::stepping::{closes, go};
 use fretwork::bodies::Driven;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
-use std::path::Path;
 
 const RADIUS: f64 = 0.02;
 
@@ -41,18 +40,12 @@ fn ball<S: Dimensional>(interface: &str, step: f64, dofs: &str, more: &str) -> S
 )"#,
         S::D
     );
-    let loaded = load_text("imposed.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
-    for _ in 0..n {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        assert!(report.solver.converged, "{:?}", report.solver);
-    }
-    let closes = s.state.energy.relative_residual();
-    assert!(closes < 1e-12, "the ledger is off by {closes:e}");
+    go(s, n);
+    closes(s, 1e-12);
 }
 
 /// The force that the contacts put on the ball (N; N/m in 2D) and their moment (N m).
@@ -218,9 +211,7 @@ fn a_held_side_of_a_deformable_body_presses_a_spring() {
         dofs: (x: Velocity(Constant(0.0)), y: Displacement(Ramp(from: 0.0, to: -1e-5, start: 0.0, end: 0.001))))],
     output: (frames: 0, views: 0),
 )"#;
-    let loaded = load_text("held.ron", text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<Dim2>(&search_path()));
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::text::<Dim2>(text);
     steps(&mut s, 300);
     let touching = s.state.network.contacts.iter();
     let touching = touching.filter(|c| c.impulse.norm() > 0.0).count();

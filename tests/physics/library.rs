@@ -1,5 +1,6 @@
 //! Scenes made in Rust, without any file: the same scenes as those of case files.
 
+use crate::scene;
 use fretwork::bodies::{Dof, TimeFunction};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::case::{
@@ -103,8 +104,7 @@ fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64>
         builder.load()
     };
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::built::<S>(&loaded).simulation;
     let mut steps = 0;
     let ended = s.run_until(1e-3, |_, report| {
         assert!(report.solver.converged);

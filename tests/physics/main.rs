@@ -37,12 +37,17 @@ mod pull_off;
 mod rate;
 mod restitution;
 mod rolling;
+#[path = "../support/scene.rs"]
+mod scene;
 mod scenes;
 mod solids;
 mod solvers;
 mod squeezed;
+mod stepping;
 mod sweep;
 mod systems;
+#[path = "../support/temp.rs"]
+mod temp;
 mod third_body;
 mod verification;
 mod wear;

@@ -1,31 +1,16 @@
 //! Blocks: convex polygons with several contact points a pair, and the closed forms of masonry.
 
+use crate::scene;
+use crate::stepping::until;
 use fretwork::contact::Key;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// Acceleration of gravity (m/s^2).
 const G: f64 = 9.81;
 
 fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<Dim2>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    built.simulation
-}
-
-/// Steps until a time; every step must converge.
-fn until(s: &mut Simulation<Dim2>, end: f64) {
-    while s.state.time < end - 0.5 * s.options.scheme.h {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        let solver = &report.solver;
-        assert!(solver.converged, "step {}: {solver:?}", s.state.steps);
-    }
+    scene::built(&scene::loaded(case, sets)).simulation
 }
 
 /// One step.

@@ -1,9 +1,7 @@
 //! Damage coupled at the middle of a step: laws with internal variables, and bonds that turn.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::Path;
 
 /// What is left of a bond: damage, internal variables, and the energy that it released (J/m).
 #[derive(Debug, PartialEq)]
@@ -16,7 +14,6 @@ struct Left {
 /// The bond of the verification cases between disks of radius 1 m, whose upper one moves as given,
 /// after `steps` steps of 20 ms in all.
 fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/bond_mode_1.ron");
     let mut sets = vec![
         format!("bodies.1.dofs={dofs}"),
         format!("time.step={:e}", 0.02 / f64::from(steps)),
@@ -24,9 +21,8 @@ fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
         format!("coupling={coupling}"),
     ];
     sets.extend(laws.iter().map(|l| format!("interfaces.grain.{l}")));
-    let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let loaded = scene::loaded("verification/bond_mode_1", &sets);
+    let mut s = scene::built::<Dim2>(&loaded).simulation;
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -2,13 +2,12 @@
 //! by annulus; friction takes energy in every step, and its bound is that of the force with
 //! damping.
 
+use crate::scene;
+use crate::stepping::{closes, go};
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 const RADIUS: f64 = 0.02;
 const YOUNG: f64 = 7e10;
@@ -36,9 +35,7 @@ fn scene<S: Dimensional>(law: &str, step: f64, rest: &str) -> Simulation<S> {
 )"#,
         S::D
     );
-    let loaded = load_text("mindlin.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 fn hertz(more: &str) -> String {
@@ -119,8 +116,7 @@ impl Annuli {
 /// Whatever friction gave back it has taken before.
 fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
     for _ in 0..n {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        assert!(report.solver.converged, "{:?}", report.solver);
+        go(s, 1);
         let e = s.state.energy;
         assert!(
             e.friction >= -1e-9 * e.scale,
@@ -130,8 +126,7 @@ fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
             s.state.steps
         );
     }
-    let closes = s.state.energy.relative_residual();
-    assert!(closes < 1e-12, "the ledger is off by {closes:e}");
+    closes(s, 1e-12);
 }
 
 fn ramp(t: f64, points: &[(f64, f64)]) -> f64 {

@@ -1,18 +1,14 @@
 //! Linear and angular momentum of isolated bodies, whatever the law of their contacts.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::laws::Kind;
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::{built_in, search_path};
+use fretwork::shipped::built_in;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 fn built<S: Dimensional>(text: &str) -> Simulation<S> {
-    let loaded = load_text("isolated.ron", text, Path::new("."), &[]);
-    let loaded = loaded.unwrap_or_else(|e| panic!("{e}\n{text}"));
-    let built = loaded.build_in::<S>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(text)
 }
 
 /// Linear and angular momentum about the origin, and the sums of their sizes.

@@ -1,14 +1,13 @@
 //! Conjugate gradients on a step of a real packing: a biaxial compression in motion.
 
-use fretwork::scene::{Scene, load};
+use crate::scene;
+use fretwork::scene::Scene;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::solver::{Limits, Method, solve};
-use std::path::Path;
 
 /// The contact problems of steps in which 100 disks are compressed, by the seed of the sample.
 fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
-    let case = format!("{}/cases/biaxial.ron", env!("CARGO_MANIFEST_DIR"));
     let mut sets: Vec<String> = [
         // The alert distance by default: how the methods compare hangs on the packing.
         "detection=()",
@@ -21,7 +20,7 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     .to_vec();
     sets.push(format!("interfaces.grains.parameters.contact.mu={mu}"));
     sets.push(format!("seed={seed}"));
-    let loaded = load(Path::new(&case), &sets).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = scene::loaded("biaxial", &sets);
     let scene = loaded.build(&search_path());
     let Scene::Dim2(built) = scene.unwrap_or_else(|e| panic!("{e}")) else {
         panic!("the case is plane");

@@ -2,21 +2,13 @@
 //! absolute thresholds, a norm that calls a packing solved before the load has crossed it, and
 //! threads that change the results.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
-    let file = format!("{}/cases/benchmarks/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    loaded
-        .build_in::<S>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"))
-        .simulation
+    scene::case(&format!("benchmarks/{case}"), sets)
 }
 
 /// Scales lengths by 2^-20 (grains of a few nanometres) and times by 2^-10, so that gravity is the

@@ -1,9 +1,8 @@
 //! A shear cell of spheres that is periodic along x and y: what it keeps, and that an image is as
 //! good as a grain.
 
+use crate::scene;
 use fretwork::geometry::space::Dim3;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 
@@ -30,16 +29,7 @@ fn cell() -> Simulation<Dim3> {
     grains: [Deposit(material: "glass", count: 120, sizes: Uniform(radius: (0.0035, 0.0045)),
         low: [0.0, 0.0, 0.0], high: [0.05, 0.042, 0.05])],
 )"#;
-    let path = std::env::temp_dir().join(format!(
-        "fretwork-cell-{}-{:?}.ron",
-        std::process::id(),
-        std::thread::current().id()
-    ));
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
-    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let _ = std::fs::remove_file(path);
-    let built = loaded.build_in::<Dim3>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::text::<Dim3>(text)
 }
 
 fn momentum(s: &Simulation<Dim3>) -> Vector3<f64> {

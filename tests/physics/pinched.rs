@@ -1,13 +1,11 @@
 //! Bodies held between others by friction alone, where contacts are hyperstatic: Coulomb's bound on
 //! the sum of the friction forces says whether they hang or fall.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
-use std::path::Path;
 
 /// Mass of what is held (kg), force of each pad (N), gravity (m/s^2).
 const MASS: f64 = 0.045;
@@ -104,9 +102,7 @@ impl Pinched {
 )"#,
             self.dimension, self.bodies, self.grains
         );
-        let loaded = load_text("pinched.ron", &text, Path::new("."), &[]);
-        let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-        built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+        scene::text::<S>(&text)
     }
 
     /// The largest speed and displacement of what is held after a time, along gravity.

@@ -1,14 +1,15 @@
 //! What changes during a run: gravity, pressures, gates, phases; and drums. Against closed forms.
 
+use crate::scene;
+use crate::stepping::steps;
 use fretwork::bodies::Bodies;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
+use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::Path;
 
 const G: f64 = 9.81;
 
@@ -26,40 +27,17 @@ fn case(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn file(text: &str) -> PathBuf {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = format!("fretwork-programme-{}-{number}.ron", std::process::id());
-    let path = std::env::temp_dir().join(name);
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
-    path
-}
-
 fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
-    let path = file(&case(S::D, lines));
-    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let _ = std::fs::remove_file(path);
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::text(&case(S::D, lines))
 }
 
 fn refused(lines: &str, said: &str) {
-    let path = file(&case(2, lines));
-    let error = match load(&path, &[]) {
+    let loaded = load_text("refused.ron", &case(2, lines), Path::new("."), &[]);
+    let error = match loaded.and_then(|loaded| loaded.build(&search_path())) {
         Err(e) => e.to_string(),
-        Ok(loaded) => match loaded.build(&search_path()) {
-            Err(e) => e.to_string(),
-            Ok(_) => panic!("accepted: {lines}"),
-        },
+        Ok(_) => panic!("accepted: {lines}"),
     };
-    let _ = std::fs::remove_file(path);
     assert!(error.contains(said), "{error}");
-}
-
-fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
-    for _ in 0..n {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
 }
 
 fn body<S: Space>(bodies: &Bodies<S>, name: &str) -> usize {

@@ -1,10 +1,9 @@
 //! Overlaps that are taken out by moving bodies: who moves how far, what that gives, and what
 //! stays.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::{Vector2, Vector3};
 
@@ -25,16 +24,7 @@ fn built<S: Dimensional>(head: &str) -> Simulation<S> {
     {head}
 )"#
     );
-    let path = std::env::temp_dir().join(format!(
-        "fretwork-overlaps-{}-{:?}.ron",
-        std::process::id(),
-        std::thread::current().id()
-    ));
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
-    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let _ = std::fs::remove_file(path);
-    let built = loaded.build_in::<S>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::text::<S>(&text)
 }
 
 const SMOOTH: &str =

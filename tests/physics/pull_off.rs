@@ -9,13 +9,11 @@
 //! gamma (2 R) lambda (1 - exp(-d/lambda)) up to the rupture at d = V^(1/3) (V. Richefeu et al.,
 //! Phys. Rev. E 73 (2006) 051304).
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
 use std::f64::consts::PI;
-use std::path::Path;
 
 /// Radius of balls and disks (m).
 const RADIUS: f64 = 3.7e-5;
@@ -145,9 +143,7 @@ fn scene<S: Dimensional>(
 )"#,
         S::D
     );
-    let loaded = load_text("pull_off.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {

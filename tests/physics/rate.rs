@@ -6,12 +6,10 @@
 //! (A. Ruina, J. Geophys. Res. 88 (1983) 10359-10370); sliding on a spring is steady above the
 //! stiffness (b - a) P/D_c, and not below (ibid.).
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
-use std::path::Path;
 
 const MU_0: f64 = 0.6;
 const V_0: f64 = 1e-6;
@@ -47,9 +45,7 @@ fn block<S: Dimensional>(law: &str, step: f64, theta: f64, dofs: &str) -> Simula
 }
 
 fn built<S: Dimensional>(text: &str) -> Simulation<S> {
-    let loaded = load_text("rate.ron", text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(text)
 }
 
 fn rate_and_state(a: f64, b: f64, d_c: f64, slip_law: bool) -> String {

@@ -1,11 +1,9 @@
 //! Newton's restitution beside what else changes the velocity asked of a contact.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// A ball that moves towards a plane which it overlaps by 0.1 mm.
 fn ball<S: Dimensional>(speed: f64, correction: f64) -> Simulation<S> {
@@ -28,9 +26,7 @@ fn ball<S: Dimensional>(speed: f64, correction: f64) -> Simulation<S> {
 )"#,
         S::D
     );
-    let loaded = load_text("rebound.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 fn rebounds<S: Dimensional>() {

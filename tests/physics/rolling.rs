@@ -1,10 +1,8 @@
 //! A wheel that rolls on a compliant rail against the closed form of a brush: depth and length of
 //! the patch, friction from creep to full slip, and the power of its forces against the heat.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::Path;
 
 const RADIUS: f64 = 0.46;
 const LOAD: f64 = 1.333e7;
@@ -38,7 +36,6 @@ fn roll(creepage: f64, step: f64, layered: bool) -> Rolling {
 
 /// The means are those of the time from 0.03 s to `end` (s).
 fn roll_until(end: f64, creepage: f64, step: f64, layered: bool) -> Rolling {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/wheel_rail_rolling.ron");
     let spin = -(1.0 + creepage) / RADIUS;
     let mut sets = vec![
         format!("bodies.wheel.dofs.rz=Velocity(Constant({spin:e}))"),
@@ -49,9 +46,8 @@ fn roll_until(end: f64, creepage: f64, step: f64, layered: bool) -> Rolling {
         sets.push(format!("grains.0={skin}"));
         sets.push("grains.1.count=1".to_owned());
     }
-    let loaded = load(&case, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let loaded = scene::loaded("wheel_rail_rolling", &sets);
+    let mut s = scene::built::<Dim2>(&loaded).simulation;
     let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.expect("the case has a wheel");
     let wheel = s.state.bodies.driven[place].body;
@@ -182,7 +178,6 @@ fn a_third_body_lowers_and_flattens_the_curve() {
 /// it.
 #[test]
 fn a_foundation_over_an_overlap_is_at_rest() {
-    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/hanging.ron");
     let sets = [
         "interfaces.0.cohesion=\"elastic-foundation\"",
         "interfaces.0.parameters.cohesion={\"k_n\": 1e8, \"k_t\": 1e8}",
@@ -190,9 +185,7 @@ fn a_foundation_over_an_overlap_is_at_rest() {
         "gravity=[0.0, 0.0]",
         "solver.correction=0.2",
     ];
-    let loaded = load(&case, &sets.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::case::<Dim2>("verification/hanging", &sets);
     for _ in 0..100 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

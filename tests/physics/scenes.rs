@@ -1,16 +1,15 @@
 //! Silo, drum and plane shear, smaller than in `cases/`: what an expert would look at first.
 
+use crate::scene;
 use fretwork::contact::detect::centre;
 use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
-use fretwork::record::{RunOptions, Summary, run};
+use fretwork::scene::Loaded;
 use fretwork::scene::build::{Built, Dimensional};
-use fretwork::scene::{Loaded, load};
-use fretwork::shipped::search_path;
 use fretwork::step::{InDimension, Simulation};
 use fretwork_observe::picture::Shows;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::path::Path;
 
 const G: f64 = 9.81;
 
@@ -19,38 +18,14 @@ fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
 }
 
 fn case_in<S: Dimensional>(name: &str, sets: &[&str]) -> (Loaded, Built<S>) {
-    let path = format!("{}/cases/{name}.ron", env!("CARGO_MANIFEST_DIR"));
-    let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = without
-        .iter()
-        .chain(sets)
-        .map(|s| (*s).to_owned())
-        .collect();
-    let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let loaded = scene::loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
+    let built = scene::built::<S>(&loaded);
     (loaded, built)
 }
 
 /// Runs a case to its end, in a folder that is left for `look` and then removed.
 fn finished(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
-    let (loaded, built) = case(name, sets);
-    recorded(&loaded, built, look)
-}
-
-fn recorded<S: Dimensional>(loaded: &Loaded, built: Built<S>, look: impl FnOnce(&Path)) -> Summary {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = format!("fretwork-scenes-{}-{number}", std::process::id());
-    let out: PathBuf = std::env::temp_dir().join(name);
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let summary = run(loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
-    look(&out);
-    let _ = std::fs::remove_dir_all(out);
-    summary
+    scene::ran::<Dim2>(name, sets, look)
 }
 
 fn place(s: &Simulation<Dim2>, name: &str) -> usize {
@@ -277,7 +252,7 @@ fn end_walls_make_a_narrow_drum_steeper() {
             more,
         ];
         let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets.concat());
-        recorded(&loaded, built, |_| {}).measures["slope"].to_degrees()
+        scene::finished(&loaded, built, |_| {}).measures["slope"].to_degrees()
     };
     let walls = angle(&[]);
     let endless = angle(&["bodies.ends.vanishes=1e-6", "periodic=(y:0.043)"]);
@@ -476,12 +451,7 @@ fn as_many_balls_leave_a_cradle_as_come() {
 /// the flat has a surface.
 #[test]
 fn a_first_body_that_is_a_ball_is_named() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/cases/fretting_scar.ron");
-    let loaded = fretwork::scene::load(std::path::Path::new(file), &[]).unwrap();
-    let built = loaded
-        .build_in::<fretwork::geometry::space::Dim2>(&search_path())
-        .unwrap();
-    let s = &built.simulation;
+    let s = &scene::case::<Dim2>("fretting_scar", &[]);
     let named = fretwork::record::picture::named_balls(s, [-5e-3, 5e-3, -1e-3, 4e-3]);
     let named: Vec<String> = named.into_iter().map(|o| o.label).collect();
     assert_eq!(named, ["cylinder"]);

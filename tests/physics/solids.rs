@@ -1,11 +1,10 @@
 //! Solids in space: polyhedra, capsules, clusters and meshes, and inertia that differs by axis.
 
+use crate::scene;
+use crate::stepping::until;
 use fretwork::geometry::space::{Dim3, MatrixLike};
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
-use std::path::Path;
 
 type V = Vector3<f64>;
 
@@ -13,21 +12,7 @@ type V = Vector3<f64>;
 const G: f64 = 9.81;
 
 fn scene(case: &str, sets: &[String]) -> Simulation<Dim3> {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<Dim3>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    built.simulation
-}
-
-/// Steps until a time; every step must converge.
-fn until(s: &mut Simulation<Dim3>, end: f64) {
-    while s.state.time < end - 0.5 * s.options.scheme.h {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        let solver = &report.solver;
-        assert!(solver.converged, "step {}: {solver:?}", s.state.steps);
-    }
+    scene::built(&scene::loaded(case, sets)).simulation
 }
 
 /// The greatest speed of a grain (m/s).

@@ -1,12 +1,10 @@
 //! Imposed motions that nothing can obey: no finite impulses are a solution, and a run says so with
 //! the names of the bodies.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use fretwork::step::{ImpossibleMotions, Simulation};
-use std::path::Path;
 
 /// A lid over a floor with grains between them; the solver's settings and the contact law.
 fn pressed<S: Dimensional>(lid: &str, grains: &str, solver: &str, law: &str) -> Simulation<S> {
@@ -34,9 +32,7 @@ fn pressed<S: Dimensional>(lid: &str, grains: &str, solver: &str, law: &str) -> 
 )"#,
         S::D
     );
-    let loaded = load_text("pressed.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 const DRIVEN: &str = "Displacement(Ramp(from: 0, to: -5e-3, start: 0, end: 0.05))";
@@ -146,9 +142,7 @@ fn driven_bodies_that_overlap_are_named() {
     output: (frames: 0, views: 0, figures: false),
 )"#
         );
-        let loaded = load_text("blocks.ron", &text, Path::new("."), &[]);
-        let built = loaded.and_then(|l| l.build_in::<Dim3>(&search_path()));
-        built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+        scene::text::<Dim3>(&text)
     };
     let down = "z: Velocity(-0.1)";
     let (told_of, ..) = told(&mut scene(down, RIGID), 10);

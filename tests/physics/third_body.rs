@@ -1,16 +1,16 @@
 //! The third body against closed forms: affine and rigid fields, cut disks and balls, a column
 //! under gravity, stress, and energies by place against the ledger.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
 use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
 use fretwork::record::summary::Uncertainty;
-use fretwork::record::{RunEnd, RunOptions, Summary, run};
-use fretwork::scene::build::{Built, Dimensional};
-use fretwork::scene::{Loaded, load};
-use fretwork::shipped::search_path;
+use fretwork::record::{RunEnd, Summary};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::{Loaded, load_text};
 use fretwork::step::Simulation;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -40,11 +40,7 @@ fn case(dimension: usize, lines: &str) -> String {
 }
 
 fn opened(text: &str) -> Result<Loaded, String> {
-    let path = own(".ron");
-    std::fs::write(&path, text).unwrap_or_else(|e| panic!("{e}"));
-    let loaded = load(&path, &[]).map_err(|e| e.to_string());
-    let _ = std::fs::remove_file(path);
-    loaded
+    load_text("test.ron", text, Path::new("."), &[]).map_err(|e| e.to_string())
 }
 
 /// A floor at the origin, a lid at a height, and disks or balls between; cells of one metre along x
@@ -89,8 +85,7 @@ struct Seen<S: Space> {
 /// Changes a scene, looks at it once a second later, and reads what is written.
 fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::built::<S>(&loaded).simulation;
     let case = &loaded.case;
     let mut observers = measures::<S>(&case.measures, case.inertia_scaling, case.heat.is_some());
     observers.begin(&mut s);
@@ -430,26 +425,7 @@ fn stresses_of_the_bins_add_up() {
 }
 
 fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
-    let path = format!("{}/cases/wheel_rail_rigid.ron", env!("CARGO_MANIFEST_DIR"));
-    let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = without
-        .iter()
-        .chain(sets)
-        .map(|s| (*s).to_owned())
-        .collect();
-    let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built: Built<Dim2> = loaded
-        .build_in(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let out = own("");
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
-    look(&out);
-    let _ = std::fs::remove_dir_all(out);
-    summary
+    scene::ran::<Dim2>("wheel_rail_rigid", sets, look)
 }
 
 /// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction

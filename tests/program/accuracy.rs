@@ -1,5 +1,6 @@
 //! A run that chooses its step: for a law that asks for a smaller one, and for an accuracy.
 
+use crate::temp::TempFolder;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -45,14 +46,11 @@ const BLOCK: &str = r#"(
     output: (frames: 0, views: 0, figures: false),
 )"#;
 
-pub struct Folder(pub PathBuf);
+pub struct Folder(pub TempFolder);
 
 impl Folder {
     pub fn new(name: &str) -> Self {
-        let name = format!("fretwork-accuracy-{}-{name}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(TempFolder::new(&format!("accuracy-{name}")))
     }
 
     /// Runs a case into a folder here.
@@ -90,12 +88,6 @@ impl Folder {
                 std::iter::once(name.to_owned()).chain(values).collect()
             })
             .collect()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

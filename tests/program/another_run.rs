@@ -8,7 +8,6 @@ use fretwork::record::results::{Header, Part, Results};
 use fretwork::record::statistics::Column;
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
-use std::process::Command;
 
 use super::grains::{Folder, case};
 
@@ -17,14 +16,7 @@ const STEPS: u32 = 400;
 impl Folder {
     /// Runs a case into the folder `out`, and in this process too: the same bits.
     fn run<S: Dimensional>(&self, case: &str) -> Simulation<S> {
-        let path = self.write("first.ron", case);
-        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-            .args(["run".as_ref(), path.as_os_str(), "--out".as_ref()])
-            .arg(self.0.join("out"))
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}");
+        self.record(case);
         let mut first = self
             .build::<S>(case)
             .unwrap_or_else(|e| panic!("{e}"))

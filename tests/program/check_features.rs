@@ -1,6 +1,7 @@
 //! `fretwork check` lists what a scene has switched on and what is off, with the bytes that each
 //! takes.
 
+use crate::temp::TempFolder;
 use std::process::Command;
 
 /// What `check` says of a case: the features that are on, those that are off, and the whole text.
@@ -129,13 +130,11 @@ fn what_does_not_change_is_off() {
 }
 
 /// A folder with a case, taken away at the end.
-struct Made(std::path::PathBuf);
+struct Made(TempFolder);
 
 impl Made {
     fn new(name: &str, text: &str) -> Self {
-        let folder =
-            std::env::temp_dir().join(format!("fretwork-check-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
+        let folder = TempFolder::new(&format!("check-{name}"));
         std::fs::write(folder.join("case.ron"), text).unwrap();
         Self(folder)
     }
@@ -155,12 +154,6 @@ impl Made {
         let left: Vec<_> = std::fs::read_dir(&self.0).unwrap().collect();
         assert_eq!(left.len(), 1, "check wrote something: {left:?}");
         String::from_utf8_lossy(&output.stdout).into_owned()
-    }
-}
-
-impl Drop for Made {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

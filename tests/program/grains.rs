@@ -1,9 +1,11 @@
 //! Cases of grains on a floor, each in a folder of its own.
 
+use crate::temp::TempFolder;
 use fretwork::scene::build::{Built, Dimensional};
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use std::path::PathBuf;
+use std::process::Command;
 
 const STONE: &str = r#"(doc: "stone", density: (value: 2600.0, unit: "kg/m^3", source: "quartz"))"#;
 
@@ -28,13 +30,12 @@ pub fn case(dimension: usize, material: &str, grains: &str, bodies: &str) -> Str
 }
 
 /// A folder of a test, with two materials; it goes with it.
-pub struct Folder(pub PathBuf);
+pub struct Folder(pub TempFolder);
 
 impl Folder {
     /// A new one of this name.
     pub fn new(name: &str) -> Self {
-        let name = format!("fretwork-grains-{}-{name}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
+        let folder = TempFolder::new(&format!("grains-{name}"));
         std::fs::create_dir_all(folder.join("materials")).unwrap();
         let folder = Self(folder);
         folder.write("materials/stone.ron", STONE);
@@ -49,17 +50,24 @@ impl Folder {
         path
     }
 
+    /// Runs a case, written there, into the folder `out`, which is returned.
+    pub fn record(&self, case: &str) -> PathBuf {
+        let (path, out) = (self.write("first.ron", case), self.0.join("out"));
+        let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
+            .args(["run".as_ref(), path.as_os_str(), "--out".as_ref()])
+            .arg(&out)
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        out
+    }
+
     /// Builds a case, written there.
     pub fn build<S: Dimensional>(&self, case: &str) -> Result<Built<S>, String> {
         let path = self.write("case.ron", case);
         let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
         let built = loaded.build_in::<S>(&search_path());
         built.map_err(|e| e.to_string())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }

@@ -1,38 +1,26 @@
 //! What a run says of its heat: an account that does not close, half-spaces, laws that are not
 //! asked, laws with a clock of their own.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::statistics::Table;
 use fretwork::record::summary::Uncertainty;
-use fretwork::record::{RunEnd, RunOptions, Summary, run, run_observers};
+use fretwork::record::{RunEnd, Summary, run_observers};
+use fretwork::scene::Loaded;
 use fretwork::scene::build::Built;
-use fretwork::scene::{Loaded, load};
-use fretwork::shipped::search_path;
 use std::process::Command;
 use std::time::Duration;
 
 fn built(case: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
-    let path = format!(
-        "{}/cases/verification/thermal/{case}.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
     let fixed = ["output.figures=false", "uncertainty.repeats=0"];
-    let sets: Vec<String> = fixed.iter().chain(sets).map(|s| (*s).to_owned()).collect();
-    let loaded = load(path.as_ref(), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let sets = [&fixed[..], sets].concat();
+    let loaded = scene::loaded(&format!("verification/thermal/{case}"), &sets);
+    let built = scene::built::<Dim2>(&loaded);
     (loaded, built)
 }
 
-fn ran(name: &str, (loaded, built): (Loaded, Built<Dim2>)) -> Summary {
-    let folder = format!("fretwork-heat-{}-{name}", std::process::id());
-    let options = RunOptions {
-        out: std::env::temp_dir().join(folder),
-        threads: 1,
-    };
-    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
-    std::fs::remove_dir_all(options.out).unwrap();
-    summary
+fn ran((loaded, built): (Loaded, Built<Dim2>)) -> Summary {
+    scene::finished(&loaded, built, |_| {})
 }
 
 /// Warnings of a category.
@@ -44,14 +32,14 @@ fn of<'a>(summary: &'a Summary, category: &str) -> Vec<&'a String> {
 
 #[test]
 fn an_account_of_heat_that_does_not_close_is_a_reason() {
-    let summary = ran("closes", built("half_space", &[]));
+    let summary = ran(built("half_space", &[]));
     assert!(summary.measures["heat_residual_relative"] < 1e-9);
     assert!(summary.trustworthy, "{:?}", summary.warnings);
     // A joule that nothing put in, to the ten that flow.
     let (loaded, mut built) = built("half_space", &[]);
     let heat = built.simulation.state.heat.as_mut().unwrap();
     heat.ledger.imposed += 1.0;
-    let summary = ran("open", (loaded, built));
+    let summary = ran((loaded, built));
     let off = summary.measures["heat_residual_relative"];
     assert!((off - 1.0 / 11.0).abs() < 1e-6, "{off}");
     assert!(!summary.trustworthy);
@@ -62,10 +50,10 @@ fn an_account_of_heat_that_does_not_close_is_a_reason() {
 
 #[test]
 fn a_transport_law_without_heat_is_told_once() {
-    let with = ran("with", built("two_half_spaces", &["time.end=1e-4"]));
+    let with = ran(built("two_half_spaces", &["time.end=1e-4"]));
     assert!(of(&with, "NO HEAT").is_empty(), "{:?}", with.warnings);
     let without = ["time.end=1e-4", "heat=None"];
-    let summary = ran("without", built("two_half_spaces", &without));
+    let summary = ran(built("two_half_spaces", &without));
     let told = of(&summary, "NO HEAT");
     assert_eq!(told.len(), 1);
     assert!(told[0].contains("transport law of `contact`") && told[0].contains("`heat: ()`"));
@@ -78,7 +66,7 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
     for (depth, told) in [(None, false), (Some(4.1), false), (Some(3.0), true)] {
         let depth = depth.map(|d: f64| d * reach);
         let set = format!("heat.bodies.rail.store.depth={depth:?}");
-        let summary = ran("depth", built("half_space", &[&set]));
+        let summary = ran(built("half_space", &[&set]));
         let found = &summary.heat.as_ref().unwrap().half_spaces[0];
         assert!((found.reach / reach - 1.0).abs() < 1e-9);
         let given = depth.unwrap_or(6.0 * reach);
@@ -93,13 +81,13 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
 /// Both corners of the block conduct alike, and one of them is beside the range of the floor.
 #[test]
 fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
-    let summary = ran("inside", built("two_half_spaces", &["time.end=1e-4"]));
+    let summary = ran(built("two_half_spaces", &["time.end=1e-4"]));
     assert!(of(&summary, "HEAT OUT OF RANGE").is_empty());
     let sets = [
         "time.end=1e-4",
         "heat.bodies.floor.store.over=[(-0.5e-3, 1.5e-3)]",
     ];
-    let summary = ran("outside", built("two_half_spaces", &sets));
+    let summary = ran(built("two_half_spaces", &sets));
     let spaces = &summary.heat.as_ref().unwrap().half_spaces;
     let shares: Vec<f64> = spaces.iter().map(|h| h.outside).collect();
     assert!((shares[0] - 0.5).abs() < 1e-9 && shares[1] == 0.0);

@@ -1,16 +1,15 @@
 //! `fretwork law new`, followed literally: the printed commands build a law, certify it and run a
 //! case with it.
 
+use crate::temp::TempFolder;
 use std::path::Path;
 use std::process::{Command, Output};
 
-struct Place(std::path::PathBuf);
+struct Place(TempFolder);
 
 impl Place {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("fretwork-new-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(TempFolder::new(&format!("new-{name}")))
     }
 
     fn shell(&self, line: &str) -> Output {
@@ -34,12 +33,6 @@ impl Place {
         let error = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.success(), "{line}\n{said}\n{error}");
         said
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

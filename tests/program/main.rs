@@ -34,7 +34,11 @@ mod results;
 mod resume;
 mod same_bits;
 mod samples;
+#[path = "../support/scene.rs"]
+mod scene;
 mod solve;
 mod study;
+#[path = "../support/temp.rs"]
+mod temp;
 mod trade;
 mod wear_coefficient;

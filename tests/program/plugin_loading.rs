@@ -1,4 +1,5 @@
 //! What the loader accepts, what it refuses and with which words: small plugins in C, made here.
+use crate::temp::TempFolder;
 use fretwork::laws::{Call, Kind, LawError, Plugin, SearchPath, search};
 use fretwork::shipped::search_path;
 use fretwork_abi::FwBatch;
@@ -8,13 +9,11 @@ use std::process::Command;
 const INCLUDE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/plugins/abi/include");
 
 /// A folder of its own for each test, removed at its end.
-struct Folder(PathBuf);
+struct Folder(TempFolder);
 
 impl Folder {
     fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("fretwork-{test}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(TempFolder::new(test))
     }
 
     /// Compiles C text into the library `file`.
@@ -38,12 +37,6 @@ impl Folder {
             &search::file_name(Kind::DAMAGE, name),
             &source(name, fields, "return &table;"),
         )
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

@@ -2,10 +2,7 @@
 
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::{Built, Dimensional};
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use std::path::Path;
-use std::process::Command;
 
 use super::grains::{Folder, case};
 
@@ -147,25 +144,10 @@ fn a_table_gives_grains() {
 /// bit.
 fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     let folder = Folder::new(name);
-    let path = folder.write("first.ron", &case(S::D, "stone", grains, ""));
-    let out = folder.0.join("out");
-    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-        .args([
-            "run".as_ref(),
-            path.as_os_str(),
-            "--out".as_ref(),
-            out.as_os_str(),
-        ])
-        .output()
-        .unwrap();
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    let first = case(S::D, "stone", grains, "");
+    let out = folder.record(&first);
     // The same run in this process.
-    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
+    let built = folder.build::<S>(&first);
     let mut first = built.unwrap_or_else(|e| panic!("{e}")).simulation;
     let steps = |s: &mut fretwork::step::Simulation<S>, n: u32| {
         for _ in 0..n {
@@ -252,18 +234,7 @@ fn states_that_cannot_be_read_are_refused_with_a_sentence() {
     let said = refusal(folder.sample::<Dim2>(&state(&other)));
     assert!(said.contains("no `/views/grains`"), "{said}");
     // A file cut off at any place: a state or a sentence, never a panic.
-    let path = folder.write("first.ron", &case(2, "stone", DEPOSIT, ""));
-    let out = folder.0.join("out");
-    let output = Command::new(env!("CARGO_BIN_EXE_fretwork"))
-        .args([
-            "run".as_ref(),
-            path.as_os_str(),
-            "--out".as_ref(),
-            out.as_os_str(),
-        ])
-        .output()
-        .unwrap();
-    assert!(output.status.success());
+    let out = folder.record(&case(2, "stone", DEPOSIT, ""));
     let whole = std::fs::read(out.join("results.h5")).unwrap();
     let cut = folder.0.join("cut.h5");
     for part in 1..40 {

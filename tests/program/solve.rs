@@ -1,25 +1,19 @@
 //! `fretwork solve` from outside: exit codes, sentences, JSON, the file of the solution.
 
+use crate::temp::TempFolder;
 use fretwork::record::fclib::{self, Problem};
 use fretwork::solve::local::scale_free::scale_free_error;
 use fretwork::solve::local::solver::{self, Limits, Method, field_error};
 use fretwork::solve::local::{Csr, GlobalProblem, LocalProblem, Reduction};
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A folder of its own, removed at the end.
-struct Folder(PathBuf);
+struct Folder(TempFolder);
 
 impl Folder {
     fn new() -> Self {
-        static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!("fretwork-solve-{}-{number}", std::process::id());
-        let folder = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&folder).unwrap();
-        Self(folder)
+        Self(TempFolder::new("solve"))
     }
 
     fn path(&self, name: &str) -> String {
@@ -36,12 +30,6 @@ impl Folder {
         let path = self.path(name);
         fclib::write_local(path.as_ref(), problem, name, "a test").unwrap();
         path
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

@@ -81,99 +81,79 @@ fn of_damage<L: DamageLaw + Parameters>(
     })
 }
 
-fn near(what: &str, angle: f64, found: f64, expected: f64, tolerance: f64) {
-    assert!(
-        (found / expected - 1.0).abs() < tolerance,
-        "{what} at {angle} degrees: {found:e} for {expected:e}"
-    );
+/// Compares at one angle (degrees).
+fn near(angle: f64) -> impl Fn(&str, f64, f64, f64) {
+    move |what, found, expected, tolerance| {
+        let near = (found / expected - 1.0).abs() < tolerance;
+        assert!(
+            near,
+            "{what} at {angle} degrees: {found:e} for {expected:e}"
+        );
+    }
 }
 
 #[test]
 fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
+    const XU: [f64; 4] = [2e6, 1e-6, 1.5e-6, 1e-5];
+    const CAMANHO: [f64; 6] = [1e13, 5e6, 8e6, 10.0, 30.0, 1.8];
+    const PLATEAU: [f64; 4] = [1e13, 1e6, 5.0, 0.5];
     for angle in ANGLES {
-        let shear = angle.to_radians().sin().powi(2);
+        let near = near(angle);
+        let xu = of_cohesion::<XuNeedleman>(&XU, angle, 4e-5);
+        near("xu-needleman", xu.work, E * 2e6 * 1e-6, 1e-4);
 
-        let xu = [2e6, 1e-6, 1.5e-6, 1e-5];
-        let pulled = of_cohesion::<XuNeedleman>(&xu, angle, 4e-5);
-        near("xu-needleman", angle, pulled.work, E * 2e6 * 1e-6, 1e-4);
-
-        let camanho = [1e13, 5e6, 8e6, 10.0, 30.0, 1.8];
-        let pulled = of_cohesion::<CamanhoDavila>(&camanho, angle, 2e-5);
-        let [n, t] = pulled.peak;
+        let camanho = of_cohesion::<CamanhoDavila>(&CAMANHO, angle, 2e-5);
+        let [n, t] = camanho.peak;
+        let energy = 10.0 + 20.0 * angle.to_radians().sin().powi(2).powf(1.8);
         near(
             "camanho-davila, envelope",
-            angle,
             (n / 5e6).hypot(t / 8e6),
             1.0,
             1e-3,
         );
-        near(
-            "camanho-davila",
-            angle,
-            pulled.work,
-            10.0 + 20.0 * shear.powf(1.8),
-            1e-3,
-        );
+        near("camanho-davila", camanho.work, energy, 1e-3);
 
-        let plateau = [1e13, 1e6, 5.0, 0.5];
-        let pulled = of_cohesion::<TvergaardHutchinson>(&plateau, angle, 2e-5);
-        let [n, t] = pulled.peak;
-        near(
-            "tvergaard-hutchinson, envelope",
-            angle,
-            n.hypot(t),
-            1e6,
-            1e-3,
-        );
-        near("tvergaard-hutchinson", angle, pulled.work, 5.0, 1e-3);
+        let plateau = of_cohesion::<TvergaardHutchinson>(&PLATEAU, angle, 2e-5);
+        let [n, t] = plateau.peak;
+        near("tvergaard-hutchinson, envelope", n.hypot(t), 1e6, 1e-3);
+        near("tvergaard-hutchinson", plateau.work, 5.0, 1e-3);
     }
-    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma
-    // delta_n/delta_t at delta_t/sqrt(2).
-    let pure = |angle| {
-        let xu = [2e6, 1e-6, 1.5e-6, 1e-5];
-        of_cohesion::<XuNeedleman>(&xu, angle, 2e-5).peak
-    };
-    near("xu-needleman, strength", 0.0, pure(0.0)[0], 2e6, 1e-6);
-    near(
-        "xu-needleman, strength",
-        90.0,
-        pure(90.0)[1],
-        SQRT_2 * E.sqrt() * 2e6 / 1.5,
-        1e-6,
-    );
+    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma delta_n/delta_t at
+    // delta_t/sqrt(2).
+    let pure = |angle| of_cohesion::<XuNeedleman>(&XU, angle, 2e-5).peak;
+    near(0.0)("xu-needleman, strength", pure(0.0)[0], 2e6, 1e-6);
+    let shear = SQRT_2 * E.sqrt() * 2e6 / 1.5;
+    near(90.0)("xu-needleman, strength", pure(90.0)[1], shear, 1e-6);
 }
 
-/// Shear stiffness of half and of three times the normal one: the traction reaches the strength,
-/// and the area is the energy.
+/// Shear stiffness of half and of three times the normal one: the traction reaches the strength, and the area is
+/// the energy.
 #[test]
 fn mixed_mode_of_damage_laws_is_that_of_their_references() {
+    const STRENGTH: f64 = 3e5;
+    const ENERGY: f64 = 0.5;
     for (angle, ratio) in ANGLES.iter().flat_map(|a| [(*a, 0.5), (*a, 3.0)]) {
+        let (near, k) = (near(angle), [1e12, ratio * 1e12]);
+        let check = |what: &str, Pulled { peak: [n, t], work }: Pulled| {
+            near(what, n.hypot(t), STRENGTH, 2e-3);
+            near(what, work, ENERGY, 2e-3);
+        };
         for m in [1.0, 2.0] {
-            let k = [1e12, ratio * 1e12];
-            let (strength, energy) = (3e5, 0.5);
-            let curves = [
-                (
-                    "linear-softening",
-                    of_damage::<LinearSoftening>(&[strength, energy], m, k, angle, 1e-5),
-                ),
-                (
-                    "exponential-softening",
-                    of_damage::<ExponentialSoftening>(&[strength, energy, 1e-4], m, k, angle, 3e-5),
-                ),
-                (
-                    "trapezoidal",
-                    of_damage::<Trapezoidal>(&[strength, energy, 0.5], m, k, angle, 1e-5),
-                ),
-            ];
-            for (what, Pulled { peak: [n, t], work }) in curves {
-                near(what, angle, n.hypot(t), strength, 2e-3);
-                near(what, angle, work, energy, 2e-3);
-            }
+            let values = [STRENGTH, ENERGY];
+            let linear = of_damage::<LinearSoftening>(&values, m, k, angle, 1e-5);
+            check("linear-softening", linear);
+            let values = [STRENGTH, ENERGY, 1e-4];
+            let exponential = of_damage::<ExponentialSoftening>(&values, m, k, angle, 3e-5);
+            check("exponential-softening", exponential);
+            let values = [STRENGTH, ENERGY, 0.5];
+            check(
+                "trapezoidal",
+                of_damage::<Trapezoidal>(&values, m, k, angle, 1e-5),
+            );
         }
         // psi = w/2 at the onset with m = 2; what is stored where it is cut is released too.
-        let k = [1e12, ratio * 1e12];
         let (w, cut) = (0.1, 1e-3);
-        let Pulled { work, .. } = of_damage::<Mac>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
-        near("mac", angle, work, w * (1.0 - 0.5 * cut), 2e-3);
+        let mac = of_damage::<Mac>(&[w, 0.0, cut, 1e30], 2.0, k, angle, 5e-5);
+        near("mac", mac.work, w * (1.0 - 0.5 * cut), 2e-3);
     }
 }

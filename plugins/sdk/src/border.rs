@@ -141,6 +141,25 @@ unsafe fn site(b: &FwBatch, k: usize) -> Site {
     }
 }
 
+/// # Safety
+/// As [`site`].
+#[inline(always)]
+unsafe fn intact(b: &FwBatch, k: usize) -> Intact {
+    // SAFETY: a column is null or has n > k values.
+    unsafe {
+        Intact {
+            energy: at(b.energy_intact, k),
+            traction: [at(b.intact_n, k), at(b.intact_t1, k), at(b.intact_t2, k)],
+            moment: [
+                at(b.intact_moment_n, k),
+                at(b.intact_moment_t1, k),
+                at(b.intact_moment_t2, k),
+            ],
+            degradation: b.degradation,
+        }
+    }
+}
+
 /// The parameters as a slice.
 ///
 /// # Safety
@@ -289,6 +308,22 @@ pub unsafe extern "C" fn fracture_energy<L: Law>(values: *const f64, angle: f64)
     asked.ok().flatten().unwrap_or(f64::NAN)
 }
 
+/// Declares functions of the table: what each does with a contact of a batch.
+macro_rules! calls {
+    ($($(#[$doc:meta])* $name:ident<$law:ident>, $commit:literal: $each:expr;)*) => { $(
+        $(#[$doc])*
+        ///
+        /// # Safety
+        /// As required by the ABI: a valid batch and message.
+        pub unsafe extern "C" fn $name<L: $law>(
+            batch: *const FwBatch,
+            message: *mut FwMessage,
+        ) -> i32 {
+            over::<L, $commit>(batch, message, $each)
+        }
+    )* };
+}
+
 /// `prepare` of a contact law.
 ///
 /// # Safety
@@ -341,29 +376,15 @@ pub unsafe extern "C" fn contact_prepare<L: ContactLaw>(
     })
 }
 
-/// `commit` of a contact law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn contact_commit<L: ContactLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, true>(batch, message, |law, _, _, site, state| {
+calls! {
+    /// `commit` of a contact law.
+    contact_commit<ContactLaw>, true: |law: &L, _, _, site, state| {
         law.commit(site, state);
         None
-    })
-}
+    };
 
-/// `prepare` of a cohesion law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, false>(batch, message, |law, b, k, site, state| {
+    /// `prepare` of a cohesion law.
+    cohesion_prepare<CohesionLaw>, false: |law: &L, b, k, site, state| {
         let t = law.traction(site, state);
         give!(
             b,
@@ -383,83 +404,32 @@ pub unsafe extern "C" fn cohesion_prepare<L: CohesionLaw>(
             out_stiffness_twist = t.stiffness_twist,
             out_stiffness_bend = t.stiffness_bend,
         )
-    })
-}
+    };
 
-/// `energy` of a cohesion law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn cohesion_energy<L: CohesionLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, false>(batch, message, |law, b, k, site, state| {
+    /// `energy` of a cohesion law.
+    cohesion_energy<CohesionLaw>, false: |law: &L, b, k, site, state| {
         give!(b, k, out_energy = law.energy(site, state))
-    })
-}
+    };
 
-/// `commit` of a cohesion law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn cohesion_commit<L: CohesionLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state| {
+    /// `commit` of a cohesion law.
+    cohesion_commit<CohesionLaw>, true: |law: &L, b, k, site, state| {
         give!(b, k, out_damage = law.commit(site, state))
-    })
-}
+    };
 
-/// `commit` of a damage law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn damage_commit<L: DamageLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state| {
+    /// `commit` of a damage law.
+    damage_commit<DamageLaw>, true: |law: &L, b, k, site, state| {
         // SAFETY: k < n.
-        let intact = unsafe {
-            Intact {
-                energy: at(b.energy_intact, k),
-                traction: [at(b.intact_n, k), at(b.intact_t1, k), at(b.intact_t2, k)],
-                moment: [
-                    at(b.intact_moment_n, k),
-                    at(b.intact_moment_t1, k),
-                    at(b.intact_moment_t2, k),
-                ],
-                degradation: b.degradation,
-            }
-        };
+        let intact = unsafe { intact(b, k) };
         give!(b, k, out_damage = law.grow(site, &intact, state))
-    })
-}
+    };
 
-/// `commit` of a wear law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn wear_commit<L: WearLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state| {
+    /// `commit` of a wear law.
+    wear_commit<WearLaw>, true: |law: &L, b, k, site, state| {
         give!(b, k, out_volume = law.volume(site, state))
-    })
-}
+    };
 
-/// `commit` of a transport law.
-///
-/// # Safety
-/// As required by the ABI: a valid batch and message.
-pub unsafe extern "C" fn transport_commit<L: TransportLaw>(
-    batch: *const FwBatch,
-    message: *mut FwMessage,
-) -> i32 {
-    over::<L, true>(batch, message, |law, b, k, site, state| {
+    /// `commit` of a transport law.
+    transport_commit<TransportLaw>, true: |law: &L, b, k, site, state| {
         let conductance = law.conductance(site, state);
         give!(
             b,
@@ -467,5 +437,5 @@ pub unsafe extern "C" fn transport_commit<L: TransportLaw>(
             out_conductance = conductance.thermal,
             out_electric_conductance = conductance.electric,
         )
-    })
+    };
 }

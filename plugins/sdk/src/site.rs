@@ -1,5 +1,7 @@
 //! What a law knows of a contact.
 
+use crate::Conductance;
+
 /// Input of a law for one contact. Vectors are (n, t1, t2), SI units.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Site {
@@ -131,6 +133,14 @@ impl Site {
         match self.resistivity > 0.0 {
             true => self.constriction(1.0 / self.resistivity, half_width),
             false => 0.0,
+        }
+    }
+
+    /// Heat and current through a spot of this half-width (m).
+    pub fn through_spot(&self, half_width: f64) -> Conductance {
+        Conductance {
+            thermal: self.constriction(self.conductivity, half_width),
+            electric: self.electric_constriction(half_width),
         }
     }
 

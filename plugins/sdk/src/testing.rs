@@ -223,6 +223,26 @@ pub fn cohesion_stays_finite<L: CohesionLaw + Default + Debug>() {
     }
 }
 
+/// The friction coefficient of a law without internal variables at a velocity (n, t1, t2) (m/s).
+pub fn friction_at<L: ContactLaw>(law: &L, velocity: [f64; 3]) -> f64 {
+    let site = Site {
+        velocity,
+        ..Site::default()
+    };
+    law.friction(&site, &[]).mu
+}
+
+/// A contact in space under a compressive force (N), over 1 m^2 and a step of 1 s.
+pub fn pressed(force: f64) -> Site {
+    Site {
+        impulse: [force, 0.0, 0.0],
+        area: 1.0,
+        h: 1.0,
+        dimension: 3,
+        ..Site::default()
+    }
+}
+
 /// Friction at any velocity and radius is finite and not negative.
 ///
 /// # Panics

@@ -6,19 +6,13 @@ mod plane;
 mod plate;
 mod space;
 
+use crate::scene;
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// A case of the project, with `--set`s.
 fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::case::<S>(case, sets)
 }
 
 /// One step, which must converge.

@@ -2,9 +2,7 @@
 //! and its mass is that of the case.
 
 use super::*;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
-use std::path::Path;
+use crate::scene;
 
 /// A rigid disk of 5 mm that is pulled off a square of 20 mm, which is rigid with no elements.
 fn pulled(elements: usize) -> Simulation<Dim2> {
@@ -27,10 +25,7 @@ fn pulled(elements: usize) -> Simulation<Dim2> {
     {deforms}
 )"#
     );
-    let loaded = load_text("pulled_off.ron", &text, Path::new("."), &[]);
-    let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::text::<Dim2>(&text);
     go(&mut s, 20);
     s
 }
@@ -60,10 +55,7 @@ fn a_ball_that_deforms_has_its_mass() {
     grains: [List(material: "disk", grains: [(at: [0.0, 0.0], radius: 0.005)])],
     elastic_grains: [(material: "disk", elements: 2)],
 )"#;
-    let loaded = load_text("disk.ron", text, Path::new("."), &[]);
-    let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let s = scene::text::<Dim2>(text);
     let disk = std::f64::consts::PI * 0.005 * 0.005;
     near(1200.0 * disk, s.state.systems.get(0).unwrap().mass(), 1e-12);
     near(

@@ -1,9 +1,7 @@
 //! Cases of `cases/verification/elastic/` against the closed forms that they name.
 
 use super::*;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::Path;
+use crate::scene;
 
 /// The steel of the cases (`contact_steel`), and its modulus without lateral strain (Pa).
 const POISSON: f64 = 0.28;
@@ -12,10 +10,7 @@ const UNIAXIAL: f64 = YOUNG * (1.0 - POISSON) / ((1.0 + POISSON) * (1.0 - 2.0 * 
 const DENSITY: f64 = 7800.0;
 
 fn case(name: &str) -> Simulation<Dim2> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/elastic");
-    let loaded = load(&folder.join(format!("{name}.ron")), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::case(&format!("verification/elastic/{name}"), &[])
 }
 
 #[test]

@@ -1,9 +1,7 @@
 //! Points of a mesh that come closer to a surface in a step than contacts are known.
 
 use super::*;
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
-use std::path::Path;
+use crate::scene;
 
 /// A block of points that is lowered by 1 um a step on one that touches with its flat or wavy
 /// surface, to an overlap of 5 um of both without load: the force of its holder (N/m).
@@ -24,9 +22,7 @@ fn pressed(profile: &str, theta: f64, alert: f64) -> f64 {
              touches: Points("bottom")),
         ])"#
     );
-    let loaded = load_text("blocks", &text, Path::new("."), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::text::<Dim2>(&text);
     while s.state.time < 0.03 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -9,11 +9,8 @@ mod rolling;
 use super::*;
 use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
 use fretwork::process::cycle::{Rubbed, RubbedBody};
-use fretwork::scene::load_text;
-use fretwork::shipped::search_path;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
-use std::path::Path;
 
 /// A rail and a wheel: G 82 GPa, nu 0.28, where a line contact of R 500 mm has a = 1 mm under 178.9
 /// N/mm.

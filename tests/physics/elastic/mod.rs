@@ -30,6 +30,7 @@ mod wear;
 mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
+use crate::stepping::{closes, go, near};
 use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
 use fretwork::elastic::generate::{
     Coarsening, Grid, block, even, graded, mapped_block, mapped_grid,
@@ -103,13 +104,6 @@ fn add<S: Deformable>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
     s.add_system(system)
 }
 
-fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        assert!(report.solver.converged, "{:?}", report.solver);
-    }
-}
-
 fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
     let system = s.state.systems.get(system).unwrap();
     system.deformed_mesh().unwrap()
@@ -129,19 +123,4 @@ fn ramp(to: f64, end: f64) -> Option<Dof> {
         start: 0.0,
         end,
     }))
-}
-
-/// The ledger closes to rounding.
-fn closes<S: Space>(s: &Simulation<S>, tolerance: f64) {
-    let off = s.state.energy.relative_residual();
-    assert!(off < tolerance, "{off:e}: {:?}", s.state.energy);
-}
-
-fn near(expected: f64, obtained: f64, tolerance: f64) {
-    let off = (obtained - expected).abs();
-    assert!(
-        off <= tolerance * expected.abs(),
-        "expected {expected:e}, obtained {obtained:e}: off by {:e}",
-        off / expected.abs()
-    );
 }

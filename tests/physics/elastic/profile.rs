@@ -1,23 +1,15 @@
 //! Blocks with a profile on a side.
 
 use super::*;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
+use crate::scene;
 use std::f64::consts::PI;
-use std::path::Path;
 
 /// Westergaard's wave, of which contact covers 2 a with sin^2(pi a/L) = p/p*, p* = pi E* D/L, and
 /// the pressure on the crest is 2 p/sin(pi a/L) (K. L. Johnson, "Contact Mechanics", 1985, section
 /// 13.2).
 #[test]
 fn a_wavy_block_is_pressed_as_westergaard_says() {
-    let file = format!(
-        "{}/cases/verification/elastic/wavy_block.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let s = &mut built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let s = &mut scene::case::<Dim2>("verification/elastic/wavy_block", &[]);
     go(s, 12);
     let (length, size) = (1e-3, 1.5625e-5);
     let mean = 3.5780e5 / length;

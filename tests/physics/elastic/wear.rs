@@ -2,9 +2,7 @@
 //! the scar widens.
 
 use super::*;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::Path;
+use crate::scene;
 
 /// k of Archard's law and mu in the case (1/Pa, 1).
 const K: f64 = 2e-11;
@@ -14,11 +12,7 @@ const PERIOD: f64 = 0.05;
 
 /// A repository's case with changes.
 pub fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(&file, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::case(name, sets)
 }
 
 /// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of

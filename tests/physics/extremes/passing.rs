@@ -2,6 +2,7 @@
 //! run says that they may not have, when and which.
 
 use super::bench::{G, Sketch, ball, floor, grains, place};
+use crate::stepping::steps;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
@@ -16,12 +17,6 @@ fn still() -> Sketch {
 
 fn built<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
-}
-
-fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
 }
 
 fn momentum<S: Space>(s: &Simulation<S>) -> S::Vector {
@@ -58,7 +53,7 @@ fn a_driven_blade_takes_along_what_it_meets() {
     });
     let blade = s.state.bodies.driven[0].body as usize;
     for _ in 0..20 {
-        go(&mut s, 1);
+        steps(&mut s, 1);
         let side = s.state.bodies.position[blade].x + 0.005;
         for b in s.state.bodies.grains() {
             let near = s.state.bodies.position[b].x - 0.01;
@@ -85,7 +80,7 @@ fn a_thin_capsule_does_not_fall_through_a_row_of_grains() {
     let before = momentum(&s);
     let thrown = moving(&s);
     for _ in 0..20 {
-        go(&mut s, 1);
+        steps(&mut s, 1);
         let plate = s.state.bodies.position[thrown].y;
         for b in (0..10).filter(|b| *b != thrown) {
             let up = s.state.bodies.position[b].y;
@@ -115,7 +110,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
         ..still()
     };
     let mut s = built::<Dim2>(&paddle);
-    go(&mut s, 3);
+    steps(&mut s, 3);
     let v = s.state.bodies.velocity[0];
     // Pushed in the sense of the rotation, no faster than where it was touched.
     let along = -v.x * angle.sin() + v.y * angle.cos();
@@ -133,7 +128,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
     let before = momentum(&s);
     let rod = moving(&s);
     let grain = 1 - rod;
-    go(&mut s, 3);
+    steps(&mut s, 3);
     assert!(s.state.bodies.velocity[grain].norm() > 1.0);
     assert!(s.state.bodies.spin[rod][0] < 299.0);
     let scale = s.state.bodies.mass[grain] * s.state.bodies.velocity[grain].norm();
@@ -157,7 +152,7 @@ fn head_on<S: Dimensional>() {
             ..still()
         });
         let before = momentum(&s);
-        go(&mut s, 20);
+        steps(&mut s, 20);
         assert!((momentum(&s) - before).norm() < 1e-12 * before.norm());
         for (b, v) in expected.into_iter().enumerate() {
             assert!(
@@ -187,7 +182,7 @@ fn fast_balls_that_miss_each_other_do_not_meet() {
             grains: grains("m0", &[moving, ball(&format!("[{x}, {aside}, 0.0]"), 0.01)]),
             ..still()
         });
-        go(&mut s, 5);
+        steps(&mut s, 5);
         assert_eq!(s.state.bodies.velocity[0].x, 200.0, "{x} {aside}");
         assert_eq!(s.state.bodies.velocity[1], nalgebra::Vector3::zeros());
         silent(&s);
@@ -216,7 +211,7 @@ fn a_fast_sphere_stays_in_front_of_a_wall() {
             Ok(s) => s,
             Err(e) => panic!("{e}"),
         };
-        go(&mut s, 20);
+        steps(&mut s, 20);
         let z = s.state.bodies.position[0].z;
         assert!((z - top - 0.01).abs() < 1e-6, "{shape}: {z}");
         silent(&s);
@@ -235,7 +230,7 @@ fn speed_makes_no_bonds() {
         ..still()
     });
     let before = momentum(&s);
-    go(&mut s, 3);
+    steps(&mut s, 3);
     assert!(s.state.network.step_size.foreseen > 0);
     assert_eq!(s.state.network.bonds_made(), 0);
     assert!((s.state.bodies.velocity[1].x - 15.0).abs() < 1e-6);
@@ -260,7 +255,7 @@ fn slow_scenes_do_without() {
         grains: grains("m0", &stack),
         ..still()
     });
-    go(&mut s, 500);
+    steps(&mut s, 500);
     let step_size = &s.state.network.step_size;
     assert_eq!((step_size.foreseen, step_size.repeated_solves), (0, 0));
     silent(&s);
@@ -279,7 +274,7 @@ fn a_surface_that_starts_to_turn_holds_a_slow_ball() {
     });
     let floor = s.state.bodies.driven[0].body as usize;
     for _ in 0..150 {
-        go(&mut s, 1);
+        steps(&mut s, 1);
         let normal = Dim2::rotate(&s.state.bodies.rotation[floor], &nalgebra::Vector2::y());
         let height = normal.dot(&s.state.bodies.position[0]);
         assert!(height > 0.01 - 5e-4, "{height}");
@@ -297,7 +292,7 @@ fn a_flap_that_starts_to_turn_hits_what_is_in_its_way() {
         grains: grains("m0", &[ball("[0.38, 0.1]", 0.01)]),
         ..still()
     });
-    go(&mut s, 14);
+    steps(&mut s, 14);
     assert!(
         s.state.bodies.velocity[0].norm() > 1.0,
         "{:?}",
@@ -319,7 +314,7 @@ fn what_is_passed_before_detection_is_reported() {
         grains: grains("m0", &[moving, ball("[0.05, 0.0]", 0.01)]),
         ..still()
     });
-    go(&mut s, 1);
+    steps(&mut s, 1);
     passed(&s);
 
     let kicked = |x: f64| {
@@ -330,7 +325,7 @@ fn what_is_passed_before_detection_is_reported() {
             grains: grains("m0", &[ball(&format!("[{x}, 0.0]"), 0.01)]),
             ..still()
         });
-        go(&mut s, 15);
+        steps(&mut s, 15);
         s
     };
     passed(&kicked(0.025));
@@ -345,7 +340,7 @@ fn what_is_passed_before_detection_is_reported() {
 }
 
 /// A ball at 200 m/s on to two at rest, with restitution.
-fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation<Dim2> {
+fn row_of_three(e: f64, step: f64, places: [f64; 2], count: usize) -> Simulation<Dim2> {
     let moving = "(at: [0.0, 0.0], radius: 0.01, velocity: [200.0, 0.0])".to_owned();
     let at = |x: f64| ball(&format!("[{x}, 0.0]"), 0.01);
     let mut s = built::<Dim2>(&Sketch {
@@ -358,7 +353,7 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], steps: usize) -> Simulation
     let before = momentum(&s);
     let energy = s.state.bodies.kinetic_energy();
     for _ in 0..steps {
-        go(&mut s, 1);
+        steps(&mut s, 1);
         // None goes through another.
         for pair in [0, 1] {
             let apart = s.state.bodies.position[pair + 1].x - s.state.bodies.position[pair].x;
@@ -412,7 +407,7 @@ fn a_ball_does_not_bounce_through_another() {
         ..still()
     });
     for _ in 0..20 {
-        go(&mut s, 1);
+        steps(&mut s, 1);
         let [rear, front] = [0, 1].map(|b: usize| s.state.bodies.position[b].x);
         assert!(front - rear > 0.015 && front < 0.991, "{rear} {front}");
     }

@@ -8,6 +8,7 @@ mod spring;
 mod stiffening;
 
 use crate::extremes::bench::{G, Sketch, ball, floor, grains, place, plane, volume};
+use crate::stepping::{closes, go, near, steps};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::record::code::{decode, encode};
 use fretwork::scene::build::Dimensional;
@@ -34,46 +35,12 @@ fn at<S: Space>(x: f64, up: f64) -> S::Vector {
     place
 }
 
-fn go<S: Space>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        let report = s.step().unwrap_or_else(|e| panic!("{e}"));
-        assert!(
-            report.solver.converged,
-            "step {}: {:?}",
-            s.state.steps, report.solver
-        );
-    }
-}
-
-/// The same where a heap is hyperstatic, which sweeps may not solve to the tolerance: the ledger
-/// closes and bits are equal all the same.
-fn falls<S: Space>(s: &mut Simulation<S>, steps: usize) {
-    for _ in 0..steps {
-        s.step().unwrap_or_else(|e| panic!("{e}"));
-    }
-}
-
 /// Positions of the contactors of the first system.
 fn contactors<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
     let bodies = s.state.systems.bodies(0).iter();
     bodies
         .map(|b| s.state.bodies.position[*b as usize])
         .collect()
-}
-
-/// The ledger closes to rounding.
-fn closes<S: Space>(s: &Simulation<S>, tolerance: f64) {
-    let off = s.state.energy.relative_residual();
-    assert!(off < tolerance, "{off:e}: {:?}", s.state.energy);
-}
-
-fn near(expected: f64, obtained: f64, tolerance: f64) {
-    let off = (obtained - expected).abs();
-    assert!(
-        off <= tolerance * expected.abs(),
-        "expected {expected:e}, obtained {obtained:e}: off by {:e}",
-        off / expected.abs()
-    );
 }
 
 /// Momentum of the grains and of the first system, along the first axis.
@@ -404,11 +371,11 @@ fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
     }
 }
 
-fn ledger_of_heap<S: Dimensional>(theta: f64, steps: usize, tolerance: f64) {
+fn ledger_of_heap<S: Dimensional>(theta: f64, count: usize, tolerance: f64) {
     let mut s = heap::<S>(theta);
     let mut seen = [false; 3];
-    for _ in 0..steps {
-        falls(&mut s, 1);
+    for _ in 0..count {
+        steps(&mut s, 1);
         kinds(&s, &mut seen);
     }
     assert_eq!(seen, [true; 3]);
@@ -429,7 +396,7 @@ fn state<S: Space>(s: &Simulation<S>) -> Vec<u8> {
 
 fn goes_on<S: Dimensional>() {
     let (mut whole, mut resumed) = (heap::<S>(0.5), heap::<S>(0.5));
-    falls(&mut whole, 300);
+    steps(&mut whole, 300);
     let bytes = state(&whole);
     let saved: State<S> = decode(&bytes).unwrap();
     assert!(resumed.restore(saved));
@@ -437,8 +404,8 @@ fn goes_on<S: Dimensional>() {
         state(&resumed) == bytes,
         "what is put back is not what was kept"
     );
-    falls(&mut whole, 100);
-    falls(&mut resumed, 100);
+    steps(&mut whole, 100);
+    steps(&mut resumed, 100);
     assert!(
         state(&whole) == state(&resumed),
         "the steps after it differ"
@@ -469,7 +436,7 @@ fn threads_do_not_change_its_bits() {
         pool.unwrap().install(|| {
             let mut s = heap::<Dim2>(0.5);
             s.options.solver.parallel = threads > 1;
-            falls(&mut s, 400);
+            steps(&mut s, 400);
             state(&s)
         })
     };

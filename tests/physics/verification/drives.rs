@@ -1,17 +1,15 @@
 //! Imposed motion: bodies are where their functions of time say, at every instant, and the work of
 //! it is booked.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
+use fretwork::scene::Loaded;
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::{Loaded, load};
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
-use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 const H: f64 = 1e-3;
 
@@ -31,25 +29,12 @@ fn text(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn file(text: &str) -> PathBuf {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    let number = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = format!("fretwork-drives-{}-{number}.ron", std::process::id());
-    let path = std::env::temp_dir().join(name);
-    std::fs::write(&path, text).unwrap();
-    path
-}
-
 fn loaded(dimension: usize, lines: &str) -> Loaded {
-    let path = file(&text(dimension, lines));
-    let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    std::fs::remove_file(path).ok();
-    loaded
+    scene::loaded_text(&text(dimension, lines))
 }
 
 fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
-    let built = loaded(S::D, lines).build_in::<S>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::text(&text(S::D, lines))
 }
 
 /// One body of 3 kg with this drive on one degree of freedom.
@@ -477,8 +462,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let ran = |frequency: f64| {
         let loaded = case(frequency);
-        let built = loaded.build_in::<Dim2>(&search_path());
-        let built = built.unwrap_or_else(|e| panic!("{e}"));
+        let built = scene::built::<Dim2>(&loaded);
         let name = format!("fretwork-drives-{}-{frequency}", std::process::id());
         let out = std::env::temp_dir().join(name);
         let options = RunOptions {
@@ -531,7 +515,9 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
             summary.reasons.iter().any(|r| r.starts_with(heading)),
             aliased
         );
-        let path = file(case(frequency).source.text());
+        let name = format!("fretwork-drives-{}-{frequency}.ron", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::write(&path, case(frequency).source.text()).unwrap();
         let mut check = std::process::Command::new(env!("CARGO_BIN_EXE_fretwork"));
         let output = check
             .current_dir(env!("CARGO_MANIFEST_DIR"))

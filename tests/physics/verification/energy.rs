@@ -1,12 +1,8 @@
 //! Identities: the energy ledger, friction from forces and from heat, action and reaction.
 
 use super::Table;
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::record::run::{RunOptions, run};
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use fretwork::step::Simulation;
-use std::path::Path;
 
 pub fn all(table: &mut Table) {
     ledger(table);
@@ -16,26 +12,8 @@ pub fn all(table: &mut Table) {
 
 /// Bonds and friction under a moving lid, theta = 1/2, as the program runs and reports it.
 fn ledger(table: &mut Table) {
-    let out = std::env::temp_dir().join(format!("fretwork_energy_{}", std::process::id()));
-    let file = format!(
-        "{}/cases/verification/energy.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let sets = [
-        "output.frames=0".to_owned(),
-        "output.figures=false".to_owned(),
-        "uncertainty.repeats=0".to_owned(),
-    ];
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<Dim2>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
-    std::fs::remove_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
+    let sets = ["output.frames=0", "output.figures=false"];
+    let summary = scene::ran::<Dim2>("verification/energy", &sets, |_| {});
     let e = &summary.energy;
     assert!(
         e.elastic > 0.0 && e.friction > 0.0,
@@ -55,21 +33,7 @@ fn ledger(table: &mut Table) {
 
 /// A frictionless bond pulled away and sheared: there is no pressure, so no friction coefficient.
 fn pulled(table: &mut Table) {
-    let out = std::env::temp_dir().join(format!("fretwork_pulled_{}", std::process::id()));
-    let file = format!(
-        "{}/cases/verification/pulled_friction.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<Dim2>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let summary = run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
-    std::fs::remove_dir_all(&out).unwrap_or_else(|e| panic!("{e}"));
+    let summary = scene::ran::<Dim2>("verification/pulled_friction", &[], |_| {});
     let mu = summary.friction_coefficient.unwrap_or(0.0);
     table.compare(
         "pulled_friction",
@@ -82,13 +46,7 @@ fn pulled(table: &mut Table) {
 
 /// The shear cell: ledger, and the impulses on all bodies sum to zero.
 fn three_dimensions(table: &mut Table) {
-    let file = format!("{}/cases/shear_cell_3d.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets = ["time.end=0.07".to_owned()];
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let mut s: Simulation<Dim3> = loaded
-        .build_in(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"))
-        .simulation;
+    let mut s = scene::case::<Dim3>("shear_cell_3d", &["time.end=0.07"]);
     let mut momentum = 0.0f64;
     while s.state.time < 0.07 {
         let before: Vec<_> = s.state.bodies.velocity.clone();

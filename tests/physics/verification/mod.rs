@@ -14,12 +14,10 @@ mod solvers;
 mod stages;
 mod thermal;
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 /// Acceleration of gravity in the cases (m/s^2).
 const G: f64 = 9.81;
@@ -51,19 +49,15 @@ impl Table {
             self.failed.push(line);
         }
     }
+
+    /// What should add up to nothing, as a share.
+    fn closes(&mut self, case: &str, quantity: &str, off: f64, tolerance: f64) {
+        self.compare(case, quantity, 0.0, off, tolerance);
+    }
 }
 
 fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
-    let file = format!(
-        "{}/cases/verification/{case}.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<S>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    built.simulation
+    scene::case(&format!("verification/{case}"), sets)
 }
 
 fn plane(case: &str, sets: &[&str]) -> Simulation<Dim2> {

@@ -1,13 +1,12 @@
 //! Every method in a run: a closed form where there is one, else what plain Gauss-Seidel finds.
 
 use super::{G, Table, scene};
+use crate::scene::loaded;
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 const ALL: [&str; 10] = [
     "Auto",
@@ -148,12 +147,7 @@ fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: 
         let set = format!("solver.method={method}");
         let mut all = vec![set.as_str()];
         all.extend(sets);
-        let file = format!(
-            "{}/cases/verification/{case}.ron",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let owned: Vec<String> = all.iter().map(|s| (*s).to_owned()).collect();
-        let loaded = load(Path::new(&file), &owned).unwrap_or_else(|e| panic!("{e}"));
+        let loaded = loaded(&format!("verification/{case}"), &all);
         let steps = (loaded.case.time.end / loaded.case.time.step).round() as u64;
         let mut s: Simulation<S> = scene(case, &all);
         let start = s.state.bodies.position.clone();
@@ -188,13 +182,8 @@ fn refused() {
         ("rolling_stop_sphere", "Newton", "rotation"),
         ("rolling_stop_disk", "Interior", "rotation"),
     ] {
-        let file = format!(
-            "{}/cases/verification/{case}.ron",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let loaded = load(Path::new(&file), &[format!("solver.method={method}")]);
-        let error = loaded
-            .unwrap_or_else(|e| panic!("{e}"))
+        let method = format!("solver.method={method}");
+        let error = loaded(&format!("verification/{case}"), &[method])
             .build(&search_path())
             .expect_err("is refused")
             .to_string();

@@ -1,13 +1,11 @@
 //! Drives that follow one another, and the biaxial test that is made with them.
 
 use super::{Table, plane, until};
+use crate::scene;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::biaxial::Biaxial;
 use fretwork::record::stress::love_weber;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::Path;
 
 pub fn all(table: &mut Table) {
     cart(table);
@@ -116,11 +114,8 @@ fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
 /// gives.
 fn biaxial(table: &mut Table) {
     let name = "biaxial";
-    let root = env!("CARGO_MANIFEST_DIR");
-    let file = format!("{root}/cases/verification/biaxial.ron");
-    let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let loaded = scene::loaded("verification/biaxial", &[""; 0]);
+    let mut s = scene::built::<Dim2>(&loaded).simulation;
     let spec = loaded
         .case
         .biaxial

@@ -1,33 +1,16 @@
 //! The mass ledger of whole runs, against what the scene makes happen.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::Summary;
-use fretwork::record::run::{RunOptions, run};
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn folder(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("fretwork-wear-{}-{name}", std::process::id()))
 }
 
 fn summary(case: &str, sets: &[&str]) -> Summary {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let without = ["uncertainty.repeats=0"];
-    let sets: Vec<String> = without
-        .iter()
-        .chain(sets)
-        .map(|s| (*s).to_owned())
-        .collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded
-        .build_in::<Dim2>(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"));
-    let options = RunOptions {
-        out: folder(case.rsplit('/').next().unwrap()),
-        threads: 1,
-    };
-    run(&loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"))
+    scene::ran::<Dim2>(case, sets, |_| {})
 }
 
 #[test]
@@ -75,19 +58,14 @@ fn a_zone_that_comes_and_goes_ejects_and_gives_back() {
 fn debris_remembers_the_bonds_that_broke_before_the_last() {
     use fretwork::process::circuit::Circuit;
     use fretwork::scene::circuit;
-    let file = format!(
-        "{}/cases/verification/falling_debris.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
     // A heavy grain beside a light one: its root breaks first.
     let sets = [
         "grains.0=List(material: \"grain\", grains: [(at: [0.0, -0.1], radius: 0.1), (at: [0.2, -0.1], radius: 0.1), (at: [0.2, -0.3], radius: 0.1)])",
         "interfaces.1.parameters.cohesion={\"k_n\": 1e8, \"k_t\": 1e6}",
     ]
     .map(str::to_owned);
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let loaded = scene::loaded("verification/falling_debris", &sets);
+    let mut s = scene::built::<Dim2>(&loaded).simulation;
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let (mut when, mut cost) = (Vec::new(), 0.0);

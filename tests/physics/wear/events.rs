@@ -1,21 +1,15 @@
 //! Breaks of bonds, and what is spent at contacts, against the ledger's sums.
 
+use crate::scene;
 use fretwork::contact::ContactDissipation;
 use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::Path;
 
 /// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books,
 /// and what breaks tell of themselves adds up to the fracture energy, with what intact bonds lost
 /// on the way.
 fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
-    let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::case::<S>(case, sets);
     s.state.network.dissipation = Some(Vec::new());
     let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);
     for _ in 0..steps {

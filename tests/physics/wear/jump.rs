@@ -1,43 +1,26 @@
 //! Jumps over cycles, against runs that compute every cycle.
 
+use crate::scene;
 use fretwork::geometry::space::Dim2;
+use fretwork::record::Summary;
 use fretwork::record::jump::JumpSummary;
-use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::load;
-use fretwork::shipped::search_path;
-use std::path::{Path, PathBuf};
 
-/// Runs a case into a folder of its own; its summary, and the depths of the scar of `flat` if there
-/// is one (m).
-fn ran(case: &str, name: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
-    let mut all = vec![
-        "output.figures=false".to_owned(),
-        "output.frames=0".to_owned(),
-        "uncertainty.repeats=0".to_owned(),
-    ];
-    all.extend(sets.iter().map(|s| (*s).to_owned()));
-    let loaded = load(&path, &all).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    let built = built.unwrap_or_else(|e| panic!("{e}"));
-    let out: PathBuf =
-        std::env::temp_dir().join(format!("fretwork-jump-{name}-{}", std::process::id()));
-    let options = RunOptions {
-        out: out.clone(),
-        threads: 1,
-    };
-    let summary = run(&loaded, built, &options, &mut |_| ()).unwrap_or_else(|e| panic!("{e}"));
-    let text = std::fs::read_to_string(out.join("scar_flat.csv")).unwrap_or_default();
-    let depth = |line: &str| line.rsplit(',').next().and_then(|x| x.parse().ok());
-    let depths = text.lines().skip(1).filter_map(depth).collect();
-    let _ = std::fs::remove_dir_all(&out);
+/// The summary of a case, and the depths of the scar of `flat` if there is one (m).
+fn ran(case: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
+    let sets = [&["output.figures=false", "output.frames=0"], sets].concat();
+    let mut depths: Vec<f64> = Vec::new();
+    let summary = scene::ran::<Dim2>(case, &sets, |out| {
+        let text = std::fs::read_to_string(out.join("scar_flat.csv")).unwrap_or_default();
+        let depth = |line: &str| line.rsplit(',').next().and_then(|x| x.parse::<f64>().ok());
+        depths.extend(text.lines().skip(1).filter_map(depth));
+    });
     (summary, depths)
 }
 
 fn refused(case: &str, sets: &[&str]) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    match load(&path, &sets) {
+    match load(&scene::file(case), &sets) {
         Ok(_) => panic!("{sets:?} was taken"),
         Err(e) => e.to_string(),
     }
@@ -60,8 +43,8 @@ fn twenty_times_fewer<'a>(jumped: &'a Summary, full: &Summary) -> &'a JumpSummar
 /// cycle.
 #[test]
 fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
-    let (jumped, profile) = ran("fretting_wear_jump", "scar", &[]);
-    let (full, expected) = ran("fretting_wear_jump", "scar-full", &["jump=None"]);
+    let (jumped, profile) = ran("fretting_wear_jump", &[]);
+    let (full, expected) = ran("fretting_wear_jump", &["jump=None"]);
     let jump = twenty_times_fewer(&jumped, &full);
     assert!(full.jump.is_none());
     let volume = jump.wear_volume / full.wear.volume_first_bodies - 1.0;
@@ -99,8 +82,8 @@ fn a_scar_by_jumps_is_the_scar_of_all_cycles() {
 /// Damage of a bond under cycles of force, which grows ever faster as the bond weakens.
 #[test]
 fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
-    let (jumped, _) = ran("verification/bond_fatigue", "bond", &[]);
-    let (full, _) = ran("verification/bond_fatigue", "bond-full", &["jump=None"]);
+    let (jumped, _) = ran("verification/bond_fatigue", &[]);
+    let (full, _) = ran("verification/bond_fatigue", &["jump=None"]);
     let jump = twenty_times_fewer(&jumped, &full);
     let error = jumped.mean_damage / full.mean_damage - 1.0;
     println!(
@@ -131,18 +114,14 @@ fn the_damage_of_a_bond_by_jumps_is_that_of_all_cycles() {
 fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
     let soft = "interfaces.0.parameters.damage.length=0.4";
     let wear = "interfaces.0.wear=\"broken-bonds\"";
-    let (jumped, _) = ran("verification/bond_fatigue", "breaks", &[soft, wear]);
+    let (jumped, _) = ran("verification/bond_fatigue", &[soft, wear]);
     assert_eq!(jumped.broken, 1);
     // A jump that broke the bond was off by something, and says so.
     let estimate = jumped.jump.as_ref().unwrap().error_estimate;
     assert!(estimate.is_some_and(|e| e > 0.0), "{estimate:?}");
     // What a bond gives when it breaks it gives once, however many cycles the step stands for.
     let once = jumped.wear.volume_third_body;
-    let (full, _) = ran(
-        "verification/bond_fatigue",
-        "breaks-full",
-        &[soft, wear, "jump=None"],
-    );
+    let (full, _) = ran("verification/bond_fatigue", &[soft, wear, "jump=None"]);
     assert_eq!(full.broken, 1);
     assert!(once > 0.0 && (once / full.wear.volume_third_body - 1.0).abs() < 1e-12);
     assert!(
@@ -157,8 +136,8 @@ fn a_bond_that_breaks_in_a_jump_closes_the_ledger() {
 #[test]
 fn surfaces_that_follow_seldom_do_so_at_once_in_a_jump() {
     let sets = ["bodies.flat.wears.every=40", "jump.cycles=300"];
-    let (seldom, _) = ran("fretting_wear_jump", "seldom", &sets);
-    let (often, _) = ran("fretting_wear_jump", "often", &["jump.cycles=300"]);
+    let (seldom, _) = ran("fretting_wear_jump", &sets);
+    let (often, _) = ran("fretting_wear_jump", &["jump.cycles=300"]);
     let [a, b] = [&seldom, &often].map(|s| s.scars[0].depth);
     println!("depth {:.1e} of that which follows every step", a / b - 1.0);
     assert!((a / b - 1.0).abs() < 0.1, "{a} {b}");
@@ -167,7 +146,7 @@ fn surfaces_that_follow_seldom_do_so_at_once_in_a_jump() {
 #[test]
 fn at_most_one_cycle_is_no_jump() {
     let sets = ["jump.at_most=1", "jump.cycles=12"];
-    let (summary, _) = ran("verification/bond_fatigue", "none", &sets);
+    let (summary, _) = ran("verification/bond_fatigue", &sets);
     let jump = summary.jump.unwrap();
     assert_eq!((jump.computed_cycles, jump.represented_cycles), (12, 12));
     assert!(jump.jumps.is_empty());
@@ -231,9 +210,7 @@ fn jumps_that_mean_nothing_are_refused() {
 /// The wear of a half-space is what a jump may carry on, without a law of damage.
 #[test]
 fn wear_of_half_spaces_may_jump() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/fretting_wear_elastic.ron");
-    let sets = ["jump=(after: 3, at_most: 50)".to_owned()];
-    load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
+    scene::loaded("fretting_wear_elastic", &["jump=(after: 3, at_most: 50)"]);
 }
 
 /// Drives of what holds deformable bodies repeat with each cycle too.

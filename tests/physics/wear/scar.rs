@@ -1,22 +1,13 @@
 //! Surfaces that wear: what the laws book is what is gone, and contacts follow.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::load;
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::wear::{Form, shape};
-use std::path::{Path, PathBuf};
-
-fn case(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"))
-}
 
 fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
-    let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
-    let loaded = load(&case(name), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::case::<S>(name, sets);
     s.state.network.dissipation = Some(Vec::new());
     s
 }
@@ -299,11 +290,8 @@ fn a_punch_that_rocks_wears_a_w_and_one_that_is_held_a_u() {
 /// and the volume stays that of the ledger's energy.
 #[test]
 fn volume_is_alpha_times_the_energy_where_the_motion_turns() {
-    let file = format!("{}/cases/fretting_scar.ron", env!("CARGO_MANIFEST_DIR"));
-    let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"].map(str::to_owned);
-    let loaded = fretwork::scene::load(std::path::Path::new(&file), &sets).unwrap();
-    let path = search_path();
-    let mut s = loaded.build_in::<Dim2>(&path).unwrap().simulation;
+    let sets = [ENERGY, "interfaces.0.parameters.wear={\"alpha\": 5e-11}"];
+    let mut s = scene::case::<Dim2>("fretting_scar", &sets);
     let (mut volume, mut given) = (0.0, 0);
     while s.state.time < 0.1 {
         let totals = s.step().unwrap().totals;

@@ -1,21 +1,17 @@
 //! What wear leaves on disk, and how a run ends that wore a surface through.
 
+use crate::scene;
+use crate::temp::TempFolder;
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::load;
 use fretwork::scene::standard::{self, Cut};
-use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-struct Folder(PathBuf);
+struct Folder(TempFolder);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let name = format!("fretwork-scar-{name}-{}", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
+        Self(TempFolder::new(&format!("scar-{name}")))
     }
 
     fn read(&self, name: &str) -> String {
@@ -24,21 +20,11 @@ impl Folder {
     }
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn worn_slide() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/worn_slide.ron")
-}
-
 fn run(out: &Folder, sets: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fretwork"));
     command
         .arg("run")
-        .arg(worn_slide())
+        .arg(scene::file("verification/worn_slide"))
         .arg("--out")
         .arg(&out.0);
     for set in sets {
@@ -48,9 +34,8 @@ fn run(out: &Folder, sets: &[&str]) -> Output {
 }
 
 fn build(sets: &[String]) -> Simulation<Dim2> {
-    let loaded = load(&worn_slide(), sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    let loaded = scene::loaded("verification/worn_slide", sets);
+    scene::built(&loaded).simulation
 }
 
 /// x, z, z_first, depth, row by row.

@@ -1,14 +1,13 @@
 //! Debris of polygons and polyhedra, whose faces are tied at several points: a plate that tears off
 //! its grip.
 
+use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::process::circuit::Circuit;
 use fretwork::scene::build::Dimensional;
-use fretwork::scene::{circuit, load};
-use fretwork::shipped::search_path;
+use fretwork::scene::circuit;
 use fretwork::step::Simulation;
 use std::collections::HashSet;
-use std::path::Path;
 
 #[test]
 fn a_plate_of_polygons_comes_loose() {
@@ -45,10 +44,6 @@ fn walk<S: Dimensional>(s: &Simulation<S>, from: u32) -> Vec<bool> {
 }
 
 fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
-    let file = format!(
-        "{}/cases/verification/{case}.ron",
-        env!("CARGO_MANIFEST_DIR")
-    );
     // With damage at the start of a step bonds release more, and the crack of this sample runs
     // through.
     let sets = [
@@ -56,9 +51,8 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
         "coupling=Explicit",
     ]
     .map(str::to_owned);
-    let loaded = load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let loaded = scene::loaded(&format!("verification/{case}"), &sets);
+    let mut s = scene::built::<S>(&loaded).simulation;
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let base = account.bases()[0];

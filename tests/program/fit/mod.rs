@@ -2,8 +2,8 @@
 //! directions that the measurements do not tell, ends of ranges, failed runs, resuming, and wrong
 //! input.
 
+use crate::temp::TempFolder;
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// A slider whose velocity rises to 4 m/s: friction is mu_0 ((1 - A) exp(-B v) + A), Polach's law,
@@ -25,13 +25,11 @@ const SLIDER: &str = r#"(
 )"#;
 
 /// A folder of a test with the case and a measured curve, taken away at its end.
-struct Folder(PathBuf);
+struct Folder(TempFolder);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("fretwork-fit-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).unwrap();
+        let path = TempFolder::new(&format!("fit-{name}"));
         let folder = Self(path);
         folder.put("slider.ron", SLIDER);
         folder.put("measured.csv", &measured(0.3));
@@ -72,12 +70,6 @@ impl Folder {
         let output = self.fit(parameters, more, set);
         assert_eq!(output.status.code(), Some(2));
         String::from_utf8_lossy(&output.stderr).into_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

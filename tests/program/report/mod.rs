@@ -4,20 +4,18 @@
 mod pages;
 mod refusals;
 
+use crate::temp::TempFolder;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// A short run with bonds, a friction test and a title that would be markup.
 const CASE: &str = include_str!("bonded.ron");
 
-struct Trial(PathBuf);
+struct Trial(TempFolder);
 
 impl Trial {
     fn new(name: &str) -> Self {
-        let dir =
-            std::env::temp_dir().join(format!("fretwork-report-{}-{name}", std::process::id()));
-        std::fs::remove_dir_all(&dir).ok();
-        std::fs::create_dir_all(&dir).unwrap();
+        let dir = TempFolder::new(&format!("report-{name}"));
         std::fs::write(dir.join("case.ron"), CASE).unwrap();
         Self(dir)
     }
@@ -45,12 +43,6 @@ impl Trial {
 
     fn page(&self, name: &str) -> String {
         read(&self.path(name))
-    }
-}
-
-impl Drop for Trial {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
     }
 }
 

@@ -190,10 +190,10 @@ fn a_biaxial_test() {
 #[test]
 fn deformable_bodies() {
     let sets = [
-        "time.end=0.024",
+        "time.end=0.012",
         "output.checkpoint=Steps(4)",
         "output.frames=2",
-        "output.views=20",
+        "output.views=10",
         "output.figures=false",
     ];
     let job = Job {

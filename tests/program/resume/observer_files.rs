@@ -3,11 +3,11 @@
 //! starts over.
 
 use super::common::{Folder, files, same};
+use crate::scene;
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
-use fretwork::shipped::search_path;
 
 use fretwork::record::{
     Observer, Paint, Picture, Run, RunEnd, RunOptions, Shows, Summary, stopped,
@@ -83,8 +83,7 @@ const SETS: [&str; 4] = [
 fn cradle() -> (Loaded, Built<Dim3>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim3>(&search_path());
-    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let built = scene::built::<Dim3>(&loaded);
     (loaded, built)
 }
 

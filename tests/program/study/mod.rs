@@ -9,6 +9,7 @@ mod refusals;
 mod said;
 mod shipped;
 
+use crate::temp::TempFolder;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -28,13 +29,11 @@ const BEAD: &str = r#"(doc: "a bead", density: (value: 2500.0, unit: "kg/m^3", s
 const MU: &str = "interfaces.all.parameters.contact.mu";
 
 /// A folder of a test with the heap and its material, taken away at its end.
-struct Folder(PathBuf);
+struct Folder(TempFolder);
 
 impl Folder {
     fn new(name: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("fretwork-study-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
+        let path = TempFolder::new(&format!("study-{name}"));
         std::fs::create_dir_all(path.join("materials")).unwrap();
         let folder = Self(path);
         folder.put("heap.ron", HEAP);
@@ -90,12 +89,6 @@ impl Folder {
             .collect();
         all.sort();
         all
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

@@ -9,8 +9,8 @@ mod refusals;
 mod rung;
 mod scatter;
 
+use crate::temp::TempFolder;
 use serde_json::Value;
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 /// A MAC bond (C = 1e12 N/m3, w = 0.1 J/m2, b = 0) opened from 0 to 10 u0, u0 = sqrt(w/C): beyond
@@ -37,15 +37,11 @@ pub const HEAP: &str = r#"(
 )"#;
 
 /// A folder of a test, taken away at its end.
-pub struct Folder(pub PathBuf);
+pub struct Folder(pub TempFolder);
 
 impl Folder {
     pub fn new(name: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("fretwork-trade-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&path);
-        std::fs::create_dir_all(&path).unwrap_or_else(|e| panic!("{e}"));
-        Self(path)
+        Self(TempFolder::new(&format!("trade-{name}")))
     }
 
     pub fn file(&self, name: &str, text: &str) -> String {
@@ -56,12 +52,6 @@ impl Folder {
 
     pub fn out(&self) -> String {
         self.0.join("out").display().to_string()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 

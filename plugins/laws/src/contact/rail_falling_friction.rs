@@ -27,14 +27,7 @@ impl ContactLaw for RailFallingFriction {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn at(law: &RailFallingFriction, velocity: [f64; 3]) -> f64 {
-        let site = Site {
-            velocity,
-            ..Site::default()
-        };
-        law.friction(&site, &[]).mu
-    }
+    use fretwork_law::testing::friction_at as at;
 
     #[test]
     fn falls_from_mu_0_to_a_mu_0() {

@@ -42,14 +42,7 @@ impl ContactLaw for StaticDynamic {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn at(law: &StaticDynamic, velocity: [f64; 3]) -> f64 {
-        let site = Site {
-            velocity,
-            ..Site::default()
-        };
-        law.friction(&site, &[]).mu
-    }
+    use fretwork_law::testing::friction_at as at;
 
     #[test]
     fn is_static_then_a_ramp_then_dynamic() {

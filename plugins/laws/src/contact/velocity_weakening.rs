@@ -33,14 +33,7 @@ impl ContactLaw for VelocityWeakening {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn at(law: &VelocityWeakening, velocity: [f64; 3]) -> f64 {
-        let site = Site {
-            velocity,
-            ..Site::default()
-        };
-        law.friction(&site, &[]).mu
-    }
+    use fretwork_law::testing::friction_at as at;
 
     #[test]
     fn falls_by_half_every_v_s_ln_2() {

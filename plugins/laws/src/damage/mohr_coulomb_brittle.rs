@@ -30,6 +30,7 @@ impl DamageLaw for MohrCoulombBrittle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     #[test]
     fn breaks_on_the_envelope() {
@@ -39,12 +40,7 @@ mod tests {
             friction: 0.5,
         };
         let at = |t: [f64; 3], p: f64| {
-            let site = Site {
-                impulse: [p, 0.0, 0.0],
-                area: 1.0,
-                h: 1.0,
-                ..Site::default()
-            };
+            let site = pressed(p);
             let intact = Intact {
                 traction: t,
                 ..Intact::default()

@@ -40,27 +40,22 @@ impl BatchelorObrien {
 
 impl TransportLaw for BatchelorObrien {
     fn conductance(&self, site: &Site, _state: &mut [f64]) -> Conductance {
-        let a = self.half_width(site);
-        Conductance {
-            thermal: site.constriction(site.conductivity, a),
-            electric: site.electric_constriction(a),
-        }
+        site.through_spot(self.half_width(site))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     fn site(force: f64, dimension: u32) -> Site {
         Site {
-            impulse: [force, 0.0, 0.0],
-            h: 1.0,
             radius: 0.5e-3,
             conductivity: 50.0,
             resistivity: 2e-7,
             dimension,
-            ..Site::default()
+            ..pressed(force)
         }
     }
 

@@ -31,6 +31,7 @@ impl TransportLaw for BondConductance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     #[test]
     fn fades_with_damage() {
@@ -44,9 +45,7 @@ mod tests {
             let site = Site {
                 damage,
                 area: 1e-6,
-                impulse: [force, 0.0, 0.0],
-                h: 1.0,
-                ..Site::default()
+                ..pressed(force)
             };
             law.conductance(&site, &mut [])
         };

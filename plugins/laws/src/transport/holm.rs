@@ -19,11 +19,7 @@ impl Law for Holm {
 
 impl TransportLaw for Holm {
     fn conductance(&self, site: &Site, _state: &mut [f64]) -> Conductance {
-        let a = site.plastic_spot(self.hardness);
-        Conductance {
-            thermal: site.constriction(site.conductivity, a),
-            electric: site.electric_constriction(a),
-        }
+        site.through_spot(site.plastic_spot(self.hardness))
     }
 }
 

@@ -70,6 +70,7 @@ impl TransportLaw for OxideFilm {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     #[test]
     fn slip_breaks_the_film_and_time_restores_it() {
@@ -98,13 +99,10 @@ mod tests {
             ..OxideFilm::default()
         };
         let site = Site {
-            impulse: [1.0, 0.0, 0.0],
-            h: 1.0,
             resistivity: 2e-7,
             conductivity: 50.0,
             temperature: 293.15,
-            dimension: 3,
-            ..Site::default()
+            ..pressed(1.0)
         };
         let at = |covered: f64| 1.0 / law.conductance(&site, &mut [covered]).electric;
         assert!((at(0.0) / 5.605e-3 - 1.0).abs() < 1e-3);

@@ -58,6 +58,7 @@ impl TransportLaw for RoughContact {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     /// At P/H = 1e-3 with m/sigma = 1e5 /m and k = 50 W/(m K): 1.25 50 1e5 1e-2.85 = 8828 W/(m^2
     /// K), and the gas 0.026/3.37e-6 = 7715.
@@ -65,12 +66,10 @@ mod tests {
     fn spots_and_gas_add() {
         let law = RoughContact::default();
         let mut site = Site {
-            impulse: [2.6e6 * 1e-6, 0.0, 0.0],
-            h: 1.0,
             area: 1e-6,
             conductivity: 50.0,
             resistivity: 2e-7,
-            ..Site::default()
+            ..pressed(2.6e6 * 1e-6)
         };
         let g = law.conductance(&site, &mut []);
         assert!(

@@ -41,14 +41,13 @@ impl WearLaw for Oxidation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     fn volume(law: &Oxidation, temperature: f64, slip: f64) -> f64 {
         let site = Site {
             temperature,
             slip,
-            impulse: [26.0, 0.0, 0.0],
-            h: 1.0,
-            ..Site::default()
+            ..pressed(26.0)
         };
         law.volume(&site, &mut [])
     }

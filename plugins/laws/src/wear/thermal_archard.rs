@@ -45,6 +45,7 @@ impl WearLaw for ThermalArchard {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_law::testing::pressed;
 
     #[test]
     fn wears_more_when_hot() {
@@ -56,10 +57,8 @@ mod tests {
         let at = |temperature: f64| {
             let site = Site {
                 temperature,
-                impulse: [20.0, 0.0, 0.0],
-                h: 1.0,
                 slip: 1e-3,
-                ..Site::default()
+                ..pressed(20.0)
             };
             law.volume(&site, &mut [])
         };

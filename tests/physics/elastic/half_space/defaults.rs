@@ -2,6 +2,7 @@
 //! of it.
 
 use super::*;
+use crate::scene;
 use fretwork::solve::local::solver::Method;
 
 /// E* of two bodies of `contact_steel` (Pa).
@@ -17,10 +18,7 @@ fn pressed(more: &str, mass: f64, dofs: &str) -> Simulation<Dim2> {
           half_spaces: [(name: \"flat\", {cells}, touches: Surface),
             (name: \"cylinder\", {cells}, side: Above, profile: Summit(x: 40e-3), mass: {mass}, dofs: ({dofs}), touches: Points)])"
     );
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let loaded = load_text("cylinder", &text, folder, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+    scene::text::<Dim2>(&text)
 }
 
 /// Largest difference of a cell's pressure from Hertz's ellipse about the centre of pressure within
@@ -117,10 +115,7 @@ fn a_sphere_has_it_at_defaults() {
           half_spaces: [(name: \"flat\", {cells}, touches: Surface),
             (name: \"sphere\", {cells}, side: Above, profile: Summit(x: 0.05, y: 0.05), mass: 0.01, dofs: (z: Force(-99.52)), touches: Points)])"
     );
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let loaded = load_text("sphere", &text, folder, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim3>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = scene::text::<Dim3>(&text);
     go(&mut s, 10);
     let found = tractions(&s, size * size);
     let p0 = 1.5 * 99.52 / (PI * a * a);

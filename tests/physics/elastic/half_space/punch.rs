@@ -1,6 +1,7 @@
 //! Blocks and disks on half-spaces, at rest and pressed.
 
 use super::*;
+use crate::scene;
 
 /// A block on 20 cells of a half-space (in space on some 10 x 10), pressed by a force, or a disk
 /// whose contact is 4 cells wide.
@@ -40,9 +41,7 @@ fn punch<S: Dimensional>(contact: &str, round: bool) -> Simulation<S> {
 )"#,
         S::D
     );
-    let loaded = load_text("punch.ron", &text, Path::new("."), &[]);
-    let built = loaded.and_then(|l| l.build_in::<S>(&search_path()));
-    built.unwrap_or_else(|e| panic!("{e}\n{text}")).simulation
+    scene::text::<S>(&text)
 }
 
 /// A flat side presses on all cells below it, and not on the highest in turn: K. L. Johnson,

@@ -27,9 +27,8 @@ fn lands(case: &Soft, nu: f64) {
     closes(&s, 1e-13);
 }
 
-#[test]
-fn disks_at_the_ends_of_their_numbers_land() {
-    let case = |young: f64, step: f64, elements: usize| Soft {
+fn case(young: f64, step: f64, elements: usize) -> Soft {
+    Soft {
         step,
         theta: 1.0,
         young,
@@ -40,7 +39,11 @@ fn disks_at_the_ends_of_their_numbers_land() {
         // It reaches the floor in the first steps, whatever their length.
         grains: disks("soft", &[ball_at(&[0.0, R + 1e-9], &[0.0, -0.01])]),
         ..Soft::default()
-    };
+    }
+}
+
+#[test]
+fn disks_at_the_ends_of_their_numbers_land() {
     for young in [1e3, 1e6, 1e9, 1e12, 1e15] {
         lands(&case(young, 1e-4, 4), NU);
     }
@@ -50,8 +53,14 @@ fn disks_at_the_ends_of_their_numbers_land() {
     for step in [1e-7, 1e-6, 1e-3, 1e-2] {
         lands(&case(1e7, step, 4), NU);
     }
-    for elements in [1, 2, 8, 12] {
+    for elements in [1, 2, 8] {
         // A disk of few elements has no vertex at its lowest place and falls farther.
         lands(&case(1e7, 1e-3, elements), NU);
     }
+}
+
+#[test]
+#[ignore = "nightly: half a minute; up to 8 are in disks_at_the_ends_of_their_numbers_land"]
+fn a_disk_of_the_most_elements_lands() {
+    lands(&case(1e7, 1e-3, 12), NU);
 }

@@ -55,13 +55,7 @@ fn lifted(table: &mut Table) {
         energy.expansion,
         1e-5,
     );
-    table.compare(
-        case,
-        "energy closes",
-        0.0,
-        energy.relative_residual(),
-        1e-10,
-    );
+    table.closes(case, "energy closes", energy.relative_residual(), 1e-10);
     let ledger = heat(&s).ledger;
     table.compare(
         case,
@@ -70,7 +64,7 @@ fn lifted(table: &mut Table) {
         ledger.expansion,
         1e-12,
     );
-    table.compare(case, "heat closes", 0.0, ledger.relative_residual(), 1e-10);
+    table.closes(case, "heat closes", ledger.relative_residual(), 1e-10);
     let stored = ledger.surroundings + ledger.dissipated - energy.expansion;
     table.compare(
         case,
@@ -117,13 +111,7 @@ fn several_steps(table: &mut Table) {
         let rate = ALPHA * RISE * HEIGHT / (7850.0 * 450.0 * 1e-3 / 2e4);
         assert!(fastest < 1.1 * rate, "{}: {fastest} of {rate}", sets[0]);
         let closes = s.energies().relative_residual();
-        table.compare(
-            case,
-            &format!("{}: energy closes", sets[0]),
-            0.0,
-            closes,
-            1e-10,
-        );
+        table.closes(case, &format!("{}: energy closes", sets[0]), closes, 1e-10);
     }
 }
 
@@ -187,9 +175,9 @@ fn solids(table: &mut Table) {
         let name = format!("{what}: work of the expansion (J)");
         table.compare(case, &name, 1e3 * rise, energy.expansion, 1e-5);
         let name = format!("{what}: energy closes");
-        table.compare(case, &name, 0.0, energy.relative_residual(), 1e-10);
+        table.closes(case, &name, energy.relative_residual(), 1e-10);
         let closes = heat(&s).ledger.relative_residual();
-        table.compare(case, &format!("{what}: heat closes"), 0.0, closes, 1e-10);
+        table.closes(case, &format!("{what}: heat closes"), closes, 1e-10);
     }
 }
 
@@ -222,13 +210,7 @@ fn held(table: &mut Table) {
         energy.expansion,
         1e-3,
     );
-    table.compare(
-        case,
-        "energy closes",
-        0.0,
-        energy.relative_residual(),
-        1e-10,
-    );
+    table.closes(case, "energy closes", energy.relative_residual(), 1e-10);
 }
 
 fn bonded(table: &mut Table) {
@@ -275,18 +257,16 @@ fn polygon(table: &mut Table) {
         table.compare(case, name, shear, force.x.abs(), 1e-2);
     }
     let energy = s.energies();
-    table.compare(
+    table.closes(
         case,
         "a square: energy closes",
-        0.0,
         energy.relative_residual(),
         1e-10,
     );
     let ledger = heat(&s).ledger;
-    table.compare(
+    table.closes(
         case,
         "a square: heat closes",
-        0.0,
         ledger.relative_residual(),
         1e-10,
     );
@@ -338,11 +318,11 @@ fn first_body(table: &mut Table) {
         let name = format!("on a first body of {} disks: work (J/m)", k + 1);
         table.compare(case, &name, 1e3 * rise, energy.expansion, 1e-5);
         let closes = energy.relative_residual();
-        table.compare(case, "a first body: energy closes", 0.0, closes, 1e-10);
+        table.closes(case, "a first body: energy closes", closes, 1e-10);
         // What sticks does not slide.
         assert!(energy.friction < 1e-4 * energy.expansion, "{energy:?}");
         let ledger = super::heat(&s).ledger;
         let closes = ledger.relative_residual();
-        table.compare(case, "a first body: heat closes", 0.0, closes, 1e-10);
+        table.closes(case, "a first body: heat closes", closes, 1e-10);
     }
 }

@@ -1,0 +1,70 @@
+//! Scenes of tests: cases of the repository, and cases in the text of a test.
+
+#![allow(dead_code, reason = "each test program uses a part of it")]
+
+use crate::temp::TempFolder;
+use fretwork::record::{Observed, RunOptions, Summary, run};
+use fretwork::scene::build::Dimensional;
+use fretwork::scene::{Built, Loaded, load, load_text};
+use fretwork::shipped::search_path;
+use fretwork::step::Simulation;
+use std::path::{Path, PathBuf};
+
+/// The file of a case, by its name below `cases`.
+pub(crate) fn file(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.ron"))
+}
+
+/// A case of the repository, by its name below `cases`, with changes as those of `--set`.
+pub(crate) fn loaded(name: &str, sets: &[impl AsRef<str>]) -> Loaded {
+    let sets: Vec<String> = sets.iter().map(|s| s.as_ref().to_owned()).collect();
+    load(&file(name), &sets).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A case in text.
+pub(crate) fn loaded_text(text: &str) -> Loaded {
+    let loaded = load_text("test.ron", text, Path::new("."), &[]);
+    loaded.unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+/// The scene of a case, with what its files declare.
+pub(crate) fn built<S: Dimensional>(loaded: &Loaded) -> Built<S> {
+    let built = loaded.build_in::<S>(&search_path());
+    built.unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The scene of a case of the repository, see [`loaded`].
+pub(crate) fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
+    built(&loaded(name, sets)).simulation
+}
+
+/// The scene of a case in text.
+pub(crate) fn text<S: Dimensional>(text: &str) -> Simulation<S> {
+    built(&loaded_text(text)).simulation
+}
+
+/// Runs a scene to its end in a folder of its own, which is left for `look` and then removed.
+pub(crate) fn finished<S: Dimensional + Observed>(
+    loaded: &Loaded,
+    built: Built<S>,
+    look: impl FnOnce(&Path),
+) -> Summary {
+    let out = TempFolder::new("finished");
+    let options = RunOptions {
+        out: out.to_owned(),
+        threads: 1,
+    };
+    let summary = run(loaded, built, &options, &mut |_| {}).unwrap_or_else(|e| panic!("{e}"));
+    look(&out);
+    summary
+}
+
+/// [`finished`] with a case of the repository, without repeated steps.
+pub(crate) fn ran<S: Dimensional + Observed>(
+    name: &str,
+    sets: &[&str],
+    look: impl FnOnce(&Path),
+) -> Summary {
+    let loaded = loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
+    finished(&loaded, built::<S>(&loaded), look)
+}
