@@ -145,7 +145,7 @@ fn a_table_gives_grains() {
 fn round_trip<S: Dimensional>(name: &str, grains: &str) {
     let folder = Folder::new(name);
     let first = case(S::D, "stone", grains, "");
-    let out = folder.record(&first);
+    folder.record(&first);
     // The same run in this process.
     let built = folder.build::<S>(&first);
     let mut first = built.unwrap_or_else(|e| panic!("{e}")).simulation;

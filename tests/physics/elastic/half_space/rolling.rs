@@ -117,8 +117,7 @@ fn full_slip_by_parts_of_a_cell() {
 /// 106.7 kN at mu 0.33, of which CONTACT's example has 0.2588, 0.6482, 0.8816 and 0.9832 (E. A. H.
 /// Vollebregt, "User guide for CONTACT"): here with 4 and 8 cells over each half-axis
 /// (`cases/verification/elastic/creep_curve.ron` has more).
-#[test]
-fn creep_curve() {
+fn creep_curve(creepage: f64, expected: f64) {
     let (load, mu, radius) = (106.7e3, 0.33, 0.625);
     // Johnson, equations 4.26 to 4.28, with the complete elliptic integrals K and E of k^2 = 1 -
     // a^2/b^2.
@@ -127,7 +126,7 @@ fn creep_curve() {
     let modulus = 0.5 * RAIL.plane_strain();
     let b = (3.0 * load * radius / (PI * modulus) * (4.0 * second - first) / 0.75).cbrt();
     let a = 0.5 * b;
-    let force = |n: usize, creepage: f64| {
+    let force = |n: usize| {
         let size = [a / n as f64, b / n as f64];
         let cells = grid(size, [a + size[0], b + size[1]]);
         let curvature = [radius, radius * ratio];
@@ -136,9 +135,18 @@ fn creep_curve() {
         closes(&s, 1e-9);
         mean(&tractions(&s, size[0] * size[1]), 0, |_| 1.0) / mu
     };
-    for (creepage, expected) in [(1.2e-3, 0.6482), (2.8e-3, 0.9832)] {
-        let [coarse, fine] = [4, 8].map(|n| force(n, creepage) / expected - 1.0);
-        println!("{creepage}: {coarse} {fine}");
-        assert!(fine.abs() < 0.6 * coarse.abs() && fine.abs() < 0.035);
-    }
+    let [coarse, fine] = [4, 8].map(|n| force(n) / expected - 1.0);
+    println!("{creepage}: {coarse} {fine}");
+    assert!(fine.abs() < 0.6 * coarse.abs() && fine.abs() < 0.035);
+}
+
+#[test]
+fn creep_curve_where_it_sticks_and_slips() {
+    creep_curve(1.2e-3, 0.6482);
+}
+
+#[test]
+#[ignore = "nightly: half a minute; another creepage is in creep_curve_where_it_sticks_and_slips"]
+fn creep_curve_near_full_slip() {
+    creep_curve(2.8e-3, 0.9832);
 }
