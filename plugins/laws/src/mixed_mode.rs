@@ -118,16 +118,16 @@ fn mixed_mode_of_cohesion_laws_is_that_of_their_references() {
         near("tvergaard-hutchinson, envelope", n.hypot(t), 1e6, 1e-3);
         near("tvergaard-hutchinson", plateau.work, 5.0, 1e-3);
     }
-    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma delta_n/delta_t at
-    // delta_t/sqrt(2).
+    // The strengths of Xu and Needleman in pure modes: sigma at delta_n, sqrt(2 e) sigma
+    // delta_n/delta_t at delta_t/sqrt(2).
     let pure = |angle| of_cohesion::<XuNeedleman>(&XU, angle, 2e-5).peak;
     near(0.0)("xu-needleman, strength", pure(0.0)[0], 2e6, 1e-6);
     let shear = SQRT_2 * E.sqrt() * 2e6 / 1.5;
     near(90.0)("xu-needleman, strength", pure(90.0)[1], shear, 1e-6);
 }
 
-/// Shear stiffness of half and of three times the normal one: the traction reaches the strength, and the area is
-/// the energy.
+/// Shear stiffness of half and of three times the normal one: the traction reaches the strength,
+/// and the area is the energy.
 #[test]
 fn mixed_mode_of_damage_laws_is_that_of_their_references() {
     const STRENGTH: f64 = 3e5;

@@ -352,7 +352,7 @@ fn row_of_three(e: f64, step: f64, places: [f64; 2], count: usize) -> Simulation
     });
     let before = momentum(&s);
     let energy = s.state.bodies.kinetic_energy();
-    for _ in 0..steps {
+    for _ in 0..count {
         steps(&mut s, 1);
         // None goes through another.
         for pair in [0, 1] {

@@ -3,11 +3,6 @@
 use crate::scene;
 use fretwork::geometry::space::Dim2;
 use fretwork::record::Summary;
-use std::path::PathBuf;
-
-fn folder(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("fretwork-wear-{}-{name}", std::process::id()))
-}
 
 fn summary(case: &str, sets: &[&str]) -> Summary {
     scene::ran::<Dim2>(case, sets, |_| {})
