@@ -23,8 +23,9 @@
     heading(host, "Any column of the statistics", "Choose what is drawn over what.");
     const names = [...new Set(runs.flatMap((run) => [...run.columns.keys()]))];
     const varies = (name) => runs.some((run) => run.columns.get(name)?.values.some((v, _, all) => v !== all[0] && Number.isFinite(v)));
+    const unit = (name) => runs.map((run) => run.columns.get(name)).find(Boolean).unit;
     const doc = element("p", { class: "meaning" });
-    let x = "time", first = names.find((n) => n !== "time" && n !== "step" && varies(n)) || names[0], second = "", chart = null;
+    let x = names[0], first = names.find((n) => unit(n) && unit(n) !== unit(x) && varies(n)) || x, second = "", chart = null;
     const draw = () => {
       chart?.remove();
       const chosen = [first, second].filter(Boolean);

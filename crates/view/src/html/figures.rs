@@ -186,6 +186,15 @@ fn field(field: &Field, numbers: &mut Arrays) -> Value {
     })
 }
 
+/// Double precision where rows are closer than single precision tells apart, as times of long runs.
+fn kind(values: &[f64]) -> Kind {
+    let merges = |pair: &[f64]| pair[0] != pair[1] && pair[0] as f32 == pair[1] as f32;
+    match values.windows(2).any(merges) {
+        true => Kind::F64,
+        false => Kind::F32,
+    }
+}
+
 /// The columns of the statistics of a run, of which any can be drawn over any other; their numbers
 /// are named after `prefix`.
 pub(crate) fn columns(
@@ -199,8 +208,7 @@ pub(crate) fn columns(
         .iter()
         .map(|c| {
             let id = format!("{prefix}{}", c.name);
-            let exact = matches!(c.name.as_str(), "time" | "step");
-            numbers.push_known(&id, if exact { Kind::F64 } else { Kind::F32 }, &c.values);
+            numbers.push_known(&id, kind(&c.values), &c.values);
             json!({"name": c.name, "unit": c.unit, "doc": c.doc, "values": id})
         })
         .collect();
