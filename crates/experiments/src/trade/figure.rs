@@ -99,7 +99,9 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         floor,
     };
     let each = found.rows.len() <= NAMED;
-    let series = panel.wanted(wanted).into_iter();
+    let (r, g, b) = RED;
+    let line = Series::level("wanted", factor * wanted).coloured(r, g, b);
+    let series = [line].into_iter();
     let series = series.chain([panel.frontier()]).chain(panel.settings(each));
     series
         .chain(panel.own_error())
@@ -110,18 +112,6 @@ impl Panel<'_> {
     /// An error on the axis.
     fn on_axis(&self, error: f64) -> f64 {
         self.factor * error.max(self.floor)
-    }
-
-    /// The wanted error, as a line over all costs.
-    fn wanted(&self, wanted: f64) -> Option<Series> {
-        let costs = self.good.iter().map(|(r, _)| r.seconds);
-        let (low, high) = costs.fold((f64::INFINITY, 0.0f64), |(a, b), c| (a.min(c), b.max(c)));
-        (low < high).then(|| {
-            let line = vec![(low, self.factor * wanted), (high, self.factor * wanted)];
-            let mut series = Series::new("wanted", line).style(Style::Dashed);
-            series.colour = Some(RED);
-            series
-        })
     }
 
     /// The frontier joins the error bounds as a staircase that falls with increasing cost: between two

@@ -223,6 +223,30 @@ impl Chart {
         )
     }
 
+    /// The chart as it is drawn: with the points of the lines across the other series; without others
+    /// there are no lines.
+    pub fn with_lines(&self) -> Self {
+        let line = |s: &&Series| matches!(s.source, Source::Level(_) | Source::Place(_));
+        let others = self.series.iter().filter(|s| !line(s));
+        let shown = others.flat_map(|s| &s.points).filter(|p| self.shows(p));
+        let around = shown.fold(None, |range: Option<[f64; 3]>, (x, y)| {
+            let [low, high, top] = range.unwrap_or([*x, *x, *y]);
+            Some([low.min(*x), high.max(*x), top.max(*y)])
+        });
+        let mut chart = self.clone();
+        if around.is_none() {
+            chart.series.retain(|s| !line(&s));
+        }
+        for series in &mut chart.series {
+            series.points = match (&series.source, around) {
+                (Source::Level(y), Some([low, high, _])) => vec![(low, *y), (high, *y)],
+                (Source::Place(x), Some([.., top])) => vec![(*x, 0.0), (*x, 1.05 * top)],
+                _ => continue,
+            };
+        }
+        chart
+    }
+
     /// Whether any point or cell can be shown.
     pub fn has_data(&self) -> bool {
         let points = |s: &Series| s.points.iter().any(|p| self.shows(p));

@@ -195,33 +195,12 @@ impl Chart {
             }
             shown
         });
-        chart.draw_lines();
         for text in stated {
             let subtitle = chart.subtitle.get_or_insert_default();
             *subtitle += if subtitle.is_empty() { "" } else { "; " };
             *subtitle += &text;
         }
         chart
-    }
-
-    /// Draws the lines across the other series; without others there are none.
-    fn draw_lines(&mut self) {
-        let points = self.series.iter().flat_map(|s| &s.points);
-        let shown = points.filter(|p| self.shows(p));
-        let around = shown.fold(None, |range: Option<[f64; 3]>, (x, y)| {
-            let [low, high, top] = range.unwrap_or([*x, *x, *y]);
-            Some([low.min(*x), high.max(*x), top.max(*y)])
-        });
-        for series in &mut self.series {
-            series.points = match (&series.source, around) {
-                (Source::Level(y), Some([low, high, _])) => vec![(low, *y), (high, *y)],
-                (Source::Place(x), Some([.., top])) => vec![(*x, 0.0), (*x, 1.05 * top)],
-                _ => continue,
-            };
-        }
-        let empty = |s: &Series| s.points.is_empty();
-        self.series
-            .retain(|s| !matches!(s.source, Source::Level(_) | Source::Place(_)) || !empty(s));
     }
 }
 
@@ -333,7 +312,7 @@ mod tests {
                 .with(Series::rows("a", "delta", "Q").part(Part::Since(0.25)))
                 .with(Series::rows("none", "delta", "P"))
         };
-        let drawn = resolved(chart(), &circle(0.01, 1.0)).unwrap();
+        let drawn = resolved(chart(), &circle(0.01, 1.0)).unwrap().with_lines();
         assert_eq!((drawn.x.unit.as_str(), drawn.y.unit.as_str()), ("m", "N"));
         let labels: Vec<_> = drawn
             .series

@@ -93,6 +93,7 @@ pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Ve
 
 /// A chart for the page.
 pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
+    let chart = &chart.with_lines();
     let points = || chart.series.iter().flat_map(|s| &s.points);
     let xs = points()
         .map(|p| p.0)

@@ -28,7 +28,8 @@ const GRID: Rgb = [226, 229, 233];
 /// # Errors
 /// The file cannot be written, or the range or size of a chart cannot be drawn.
 pub fn draw_panels(charts: &[Chart], columns: usize, path: &Path) -> Result<(), DrawError> {
-    let mut charts: Vec<Chart> = charts.iter().filter(|c| c.has_data()).cloned().collect();
+    let charts = charts.iter().filter(|c| c.has_data());
+    let mut charts: Vec<Chart> = charts.map(Chart::with_lines).collect();
     let said: Vec<String> = charts.iter().map(Chart::describe).collect();
     let said = said.join("\n");
     match charts.as_slice() {
