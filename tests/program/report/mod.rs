@@ -5,6 +5,11 @@ mod pages;
 mod refusals;
 
 use crate::temp::TempFolder;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use flate2::read::GzDecoder;
+use std::collections::BTreeMap;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -55,8 +60,38 @@ fn text(output: &Output) -> String {
 }
 
 /// The data that the scripts of a page read.
-fn data(page: &str) -> serde_json::Value {
+pub fn data(page: &str) -> serde_json::Value {
     let start = page.find("id=\"data\">").unwrap() + "id=\"data\">".len();
     let end = page[start..].find("</script>").unwrap();
     serde_json::from_str(&page[start..start + end]).unwrap()
+}
+
+/// The packed numbers of the charts of a page, by name, in single precision.
+pub fn chart_numbers(page: &str) -> BTreeMap<String, Vec<f32>> {
+    let start = page.find("id=\"numbers\">").unwrap() + "id=\"numbers\">".len();
+    let text = page[start..].split('<').next().unwrap();
+    let mut bytes = Vec::new();
+    let packed = STANDARD.decode(text).unwrap();
+    GzDecoder::new(&packed[..]).read_to_end(&mut bytes).unwrap();
+    let length = u32::from_le_bytes(*bytes.first_chunk().unwrap()) as usize;
+    let heads: Vec<serde_json::Value> = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    let array = |head: serde_json::Value| {
+        let of = |key: &str| head[key].as_u64().unwrap() as usize;
+        let values = bytes[4 + length + of("at")..].iter().copied();
+        let values: Vec<f32> = match head["kind"].as_str().unwrap() {
+            "f32" => {
+                let all: Vec<u8> = values.take(4 * of("count")).collect();
+                let all = all.as_chunks::<4>().0.iter();
+                all.map(|x| f32::from_le_bytes(*x)).collect()
+            }
+            "f64" => {
+                let all: Vec<u8> = values.take(8 * of("count")).collect();
+                let all = all.as_chunks::<8>().0.iter();
+                all.map(|x| f64::from_le_bytes(*x) as f32).collect()
+            }
+            kind => panic!("numbers of charts are not {kind}"),
+        };
+        (head["name"].as_str().unwrap().to_owned(), values)
+    };
+    heads.into_iter().map(array).collect()
 }

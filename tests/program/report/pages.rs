@@ -1,6 +1,6 @@
 //! Content, size and escaping of pages.
 
-use super::{Trial, data, text};
+use super::{Trial, chart_numbers, data, text};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -125,7 +125,8 @@ fn figures_and_fields_have_the_names_units_and_words_of_the_file() {
 fn a_figure_is_the_same_in_its_picture_and_on_the_page() {
     let trial = Trial::new("figures");
     trial.run("out", &["output.figures=true"]);
-    let data = data(&trial.page("out/report.html"));
+    let page = trial.page("out/report.html");
+    let (data, numbers) = (data(&page), chart_numbers(&page));
     let text = |v: &Value| v.as_str().unwrap().to_owned();
     let axis = |a: &Value| match a["unit"].as_str().unwrap() {
         "" => text(&a["name"]),
@@ -138,6 +139,10 @@ fn a_figure_is_the_same_in_its_picture_and_on_the_page() {
             continue;
         };
         let series = chart["series"].as_array().unwrap();
+        for one in series {
+            let [x, y] = ["x", "y"].map(|key| &numbers[one[key].as_str().unwrap()]);
+            assert!(x.len() == y.len() && y.iter().any(|v| *v != 0.0), "{one}");
+        }
         let labels: Vec<String> = series.iter().map(|s| text(&s["label"])).collect();
         let labels: Vec<String> = labels.into_iter().filter(|l| !l.is_empty()).collect();
         let of = if labels.is_empty() { "" } else { ": " };
@@ -180,7 +185,7 @@ fn description(path: &Path) -> String {
         let length = u32::from_be_bytes(*length) as usize;
         if after.starts_with(b"iTXtDescription") {
             // A flag and a method of compression, and two empty texts follow the keyword.
-            return String::from_utf8(after[24..4 + length].to_vec()).unwrap();
+            return String::from_utf8(after[20..4 + length].to_vec()).unwrap();
         }
         rest = &after[8 + length..];
     }

@@ -1,7 +1,9 @@
 //! Maps of regimes and comparisons of laws whose results are known beforehand.
 
 use super::{Folder, json, numbers, values};
+use crate::report::{chart_numbers, data};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// A block on a floor, with tangential springs of 0.8 MPa (N/m per metre of depth) at each of its
 /// two contacts, pressed by 100 N/m and moved to and fro.
@@ -74,24 +76,24 @@ fn a_map_of_regimes_has_coulombs_bound() {
         }
     }
     // The marks of the map on the page, by regime.
-    let figure = figure(&folder, "Regimes by fretting.regime");
+    let (figure, numbers) = figure(&folder, "Regimes by fretting.regime");
+    let (x, y) = (&figure["x"], &figure["y"]);
     assert_eq!(
-        (&figure["x"], &figure["x_unit"], &figure["y"]),
-        (&"drive".into(), &"N/m".into(), &vec!["friction"].into())
+        (&x["name"], &x["unit"], &y["name"]),
+        (&"drive".into(), &"N/m".into(), &"friction".into())
     );
-    assert_eq!(figure["curves"].as_array().unwrap().len(), 2);
-    for (curve, (name, places)) in figure["curves"]
+    assert_eq!(figure["series"].as_array().unwrap().len(), 2);
+    for (curve, (name, places)) in figure["series"]
         .as_array()
         .unwrap()
         .iter()
         .zip([("gross", &places[1]), ("partial", &places[0])])
     {
         assert_eq!(curve["label"], name);
-        let of = |axis: usize| places.iter().map(|p| p[axis]).collect::<Vec<_>>();
-        assert_eq!(
-            (&curve["x"], &curve["values"]),
-            (&of(0).into(), &of(1).into())
-        );
+        for (axis, key) in ["x", "y"].into_iter().enumerate() {
+            let wanted: Vec<f32> = places.iter().map(|p| p[axis] as f32).collect();
+            assert_eq!(numbers[curve[key].as_str().unwrap()], wanted);
+        }
     }
     // And by setting in the table.
     let mut reader = csv::Reader::from_path(folder.0.join("out/settings.csv")).unwrap();
@@ -210,14 +212,12 @@ fn joules(text: &str) -> f64 {
     factor * number.parse::<f64>().unwrap()
 }
 
-/// A figure of the page, by its title.
-fn figure(folder: &Folder, title: &str) -> Value {
+/// A figure of the page, by its title, and the numbers of the page.
+fn figure(folder: &Folder, title: &str) -> (Value, BTreeMap<String, Vec<f32>>) {
     let page = std::fs::read_to_string(folder.0.join("out/study.html")).unwrap();
-    let tag = "<script type=\"application/json\" id=\"data\">";
-    let start = page.find(tag).unwrap() + tag.len();
-    let mut data = serde_json::Deserializer::from_str(&page[start..]).into_iter::<Value>();
-    let data = data.next().unwrap().unwrap();
+    let data = data(&page);
     let figures = data["figures"].as_array().unwrap();
     let found = figures.iter().find(|f| f["title"] == title);
-    found.unwrap_or_else(|| panic!("no figure {title}")).clone()
+    let figure = found.unwrap_or_else(|| panic!("no figure {title}"));
+    (figure.clone(), chart_numbers(&page))
 }
