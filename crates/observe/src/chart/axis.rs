@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// An axis of a chart. Data are given in the unit itself; the chart picks the prefix (data in `m`
 /// of the order of 1e-5 are shown in µm).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Axis {
     /// Quantity, for example `displacement δ`.
     pub name: String,

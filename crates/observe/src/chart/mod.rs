@@ -41,6 +41,7 @@ pub enum Source {
 
 /// One curve.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Series {
     /// Entry in the legend; empty for none.
     pub label: String,
@@ -130,6 +131,7 @@ impl Series {
 
 /// A chart with its axes and curves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Chart {
     /// Heading; empty for none.
     pub title: String,
@@ -265,6 +267,7 @@ const MOST_CHARTS: usize = 12;
 
 /// Charts on one page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Figure {
     /// Name of the figure, and of its PNG file without `.png`.
     pub name: String,

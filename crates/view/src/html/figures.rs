@@ -98,6 +98,7 @@ pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
     let xs = points()
         .map(|p| p.0)
         .chain(chart.x_range.into_iter().flat_map(<[f64; 2]>::from));
+    let curves = chart.series.iter().enumerate();
     let intervals = chart.series.iter().flat_map(|s| &s.intervals);
     let ys = points()
         .map(|p| p.1)
@@ -110,7 +111,7 @@ pub(crate) fn chart(name: &str, chart: &Chart, numbers: &mut Arrays) -> Value {
         "x": axis(&chart.x, xs, chart.x_range),
         "y": axis(&chart.y, ys, chart.y_range),
         "gradient": chart.colour_by_order,
-        "series": chart.series.iter().map(|s| series(s, numbers)).collect::<Vec<_>>(),
+        "series": curves.map(|(k, s)| series(k, s, numbers)).collect::<Vec<_>>(),
         "field": chart.field.as_ref().map(|f| field(f, numbers)),
     })
 }
@@ -133,7 +134,7 @@ fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)
     })
 }
 
-fn series(series: &Curve, numbers: &mut Arrays) -> Value {
+fn series(index: usize, series: &Curve, numbers: &mut Arrays) -> Value {
     let mut array = |of: fn(&(f64, f64)) -> f64, list: &[(f64, f64)]| match list.is_empty() {
         true => Value::Null,
         false => json!(numbers.number(&list.iter().map(of).collect::<Vec<_>>())),
@@ -148,7 +149,7 @@ fn series(series: &Curve, numbers: &mut Arrays) -> Value {
         "dashed": series.style == Style::Dashed,
         "markers": matches!(series.style, Style::Markers | Style::LineMarkers),
         "colour": series.colour,
-        "place": series.place,
+        "place": series.place.max(index),
     })
 }
 

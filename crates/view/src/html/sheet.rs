@@ -162,7 +162,8 @@ mod tests {
         let figure = |title: &str| {
             let chart = Chart::new(title, Axis::new("a", "m"), Axis::new("b", "").log());
             let series = Series::new("curve", vec![(1.0, f64::NAN), (2e-3, 3.0)]);
-            Block::Figure(chart.with(series))
+            let other = Series::new("other", vec![(1.0, 2.0)]);
+            Block::Figure(chart.with(series).with(other))
         };
         let table = Block::Table(SheetTable {
             heads: vec!["a<b".into()],
@@ -194,6 +195,7 @@ mod tests {
             (&chart["y"]["log"], &chart["series"][0]["label"]),
             (&json!(true), &json!("curve"))
         );
+        assert_eq!(chart["series"][1]["place"], 1);
         // Both charts have the same numbers, which stand in the page once.
         assert_eq!(chart["series"], page.data["figures"][1]["series"]);
     }
