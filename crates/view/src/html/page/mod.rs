@@ -100,19 +100,6 @@ impl Page {
         out += &format!("<script>{script}</script>\n</body>\n</html>\n");
         out
     }
-
-    /// Bytes of a page without arrays.
-    pub fn bytes_of_frame(&self) -> usize {
-        Self {
-            blobs: Vec::new(),
-            title: self.title.clone(),
-            body: self.body.clone(),
-            data: self.data.clone(),
-            viewer: self.viewer,
-        }
-        .html()
-        .len()
-    }
 }
 
 /// A text for HTML, in elements and in attributes. Characters that change the direction of text are

@@ -43,7 +43,7 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
     };
     let after = rest(run, &files, options);
     page.body.clone_from(&after);
-    let taken = page.bytes_of_frame() + packed.len() + 20_000;
+    let taken = page.html().len() + packed.len() + 20_000;
     let room = options.bytes.map(|b| b.saturating_sub(taken).max(100_000));
     let scene = Scene::read(run, room, &mut gaps);
     page.viewer = scene.is_some();

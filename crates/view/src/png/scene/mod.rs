@@ -114,24 +114,6 @@ const STEEL: Rgb = [142, 150, 160];
 const STEEL_EDGE: Rgb = [70, 77, 86];
 const GRAIN_EDGE: Rgb = [118, 120, 122];
 
-/// Map from metres to pixels of the field.
-#[derive(Clone, Copy, Debug)]
-struct Map {
-    left: f64,
-    top: f64,
-    scale: f64,
-}
-
-impl Map {
-    fn point(&self, p: [f64; 2]) -> [f32; 2] {
-        let (x, y) = (
-            (p[0] - self.left) * self.scale,
-            (self.top - p[1]) * self.scale,
-        );
-        [x as f32, y as f32]
-    }
-}
-
 impl Frame {
     /// Draws the frame to a PNG file.
     pub fn draw(&self, path: &Path) -> Result<(), DrawError> {
@@ -151,7 +133,7 @@ impl Frame {
         // Limits on the aspect ratio of the field.
         let scale = (f64::from(field_width) / dx).min(1.4 * f64::from(field_width) / dy);
         let field_height = ((dy * scale) as f32).max(0.08 * field_width).round();
-        let map = Map {
+        let map = Place {
             left: (xmin + xmax) / 2.0 - f64::from(field_width) / scale / 2.0,
             top: (ymin + ymax) / 2.0 + f64::from(field_height) / scale / 2.0,
             scale,
@@ -174,11 +156,7 @@ impl Frame {
         let mut field = Canvas::new(field_width as u32, field_height as u32)?;
 
         if let Some(scene) = &self.scene {
-            let place = Place {
-                corner: [map.left, map.top],
-                scale,
-            };
-            scene.paint(&mut field, &place, u);
+            scene.paint(&mut field, &map, u);
         }
         self.draw_bodies(&mut field, &map, u);
         self.draw_disks(&mut field, &map, u);
@@ -216,7 +194,7 @@ impl Frame {
         page.save(path, "")
     }
 
-    fn draw_bodies(&self, field: &mut Canvas, map: &Map, u: f32) {
+    fn draw_bodies(&self, field: &mut Canvas, map: &Place, u: f32) {
         for body in &self.bodies {
             let polygon = visible(&body.points, field, map);
             let (fill, edge, width) = match body.shade {
@@ -234,7 +212,7 @@ impl Frame {
         }
     }
 
-    fn draw_disks(&self, field: &mut Canvas, map: &Map, u: f32) {
+    fn draw_disks(&self, field: &mut Canvas, map: &Place, u: f32) {
         let mut ticks = PathBuilder::new();
         let edge = GRAIN_EDGE.map(f32::from);
         for (disk, at, radius) in self.seen(field, map) {
@@ -260,7 +238,7 @@ impl Frame {
 
     /// Unit of line width: proportional to the grains, so that links neither cover small grains nor
     /// vanish between large ones.
-    fn line_unit(&self, field: &Canvas, map: &Map, u: f32) -> f32 {
+    fn line_unit(&self, field: &Canvas, map: &Place, u: f32) -> f32 {
         let (sum, count) = self
             .seen(field, map)
             .iter()
@@ -273,7 +251,7 @@ impl Frame {
     }
 
     /// Grains that overlap the field, with centre and radius in pixels.
-    fn seen(&self, field: &Canvas, map: &Map) -> Vec<(&Disk, [f32; 2], f32)> {
+    fn seen(&self, field: &Canvas, map: &Place) -> Vec<(&Disk, [f32; 2], f32)> {
         let disks = self.disks.iter();
         disks
             .filter_map(|disk| pixels(disk, field, map).map(|(at, r)| (disk, at, r)))
@@ -281,7 +259,7 @@ impl Frame {
     }
 
     /// Links of one colour are filled together, plain ones at the bottom.
-    fn draw_links(&self, field: &mut Canvas, map: &Map, u: f32) {
+    fn draw_links(&self, field: &mut Canvas, map: &Place, u: f32) {
         const LEVELS: usize = 8;
         let unit = self.line_unit(field, map, u);
         let mut paths: [_; LEVELS + 3] = std::array::from_fn(|_| PathBuilder::new());
@@ -317,7 +295,7 @@ impl Frame {
         }
     }
 
-    fn draw_labels(&self, field: &mut Canvas, map: &Map, u: f32) {
+    fn draw_labels(&self, field: &mut Canvas, map: &Place, u: f32) {
         let name = TextStyle::new(TEXT * u, INK)
             .anchored(Anchor::Middle)
             .bold();
@@ -330,7 +308,7 @@ impl Frame {
 }
 
 /// Centre and radius of a disk in pixels, if it overlaps the field.
-fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
+fn pixels(disk: &Disk, field: &Canvas, map: &Place) -> Option<([f32; 2], f32)> {
     let at = map.point(disk.centre);
     let r = (disk.radius * map.scale) as f32;
     let (width, height) = (field.pixmap.width() as f32, field.pixmap.height() as f32);
@@ -340,7 +318,7 @@ fn pixels(disk: &Disk, field: &Canvas, map: &Map) -> Option<([f32; 2], f32)> {
 
 /// A body clipped to the field and a margin, in pixels: a wheel of 0.5 m around a field of 0.1 mm
 /// exceeds single precision.
-fn visible(points: &[[f64; 2]], field: &Canvas, map: &Map) -> Vec<[f32; 2]> {
+fn visible(points: &[[f64; 2]], field: &Canvas, map: &Place) -> Vec<[f32; 2]> {
     let margin = 8.0 / map.scale;
     let (width, height) = (
         f64::from(field.pixmap.width()),

@@ -55,12 +55,21 @@ const WALL_EDGE: Rgb = [74, 84, 98];
 /// Tint of a transparent wall on the objects behind it.
 const VEIL: f32 = 0.07;
 
-/// Map from metres to pixels.
+/// Map from metres to pixels of a field.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
-    /// Metres at the left and top of the field.
-    pub corner: [f64; 2],
+    /// Metres at the left and at the top.
+    pub left: f64,
+    pub top: f64,
     /// Pixels per metre.
     pub scale: f64,
+}
+
+impl Place {
+    pub fn point(&self, [x, y]: [f64; 2]) -> [f32; 2] {
+        let (x, y) = ((x - self.left) * self.scale, (self.top - y) * self.scale);
+        [x as f32, y as f32]
+    }
 }
 
 /// Visible faces of one smooth part of an object.
@@ -103,8 +112,8 @@ impl Scene {
         let pixel = |p: [f64; 3]| -> Corner {
             let ([x, y], z) = self.view.project(p);
             [
-                (x - place.corner[0]) * scale,
-                (place.corner[1] - y) * scale,
+                (x - place.left) * scale,
+                (place.top - y) * scale,
                 (z - middle) * scale,
             ]
         };
@@ -359,7 +368,8 @@ mod tests {
     fn painted(scene: &Scene) -> Canvas {
         let mut field = Canvas::new(100, 100).unwrap();
         let place = Place {
-            corner: [-2.0, 2.0],
+            left: -2.0,
+            top: 2.0,
             scale: 25.0,
         };
         scene.paint(&mut field, &place, 0.5);
