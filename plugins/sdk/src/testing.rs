@@ -3,6 +3,7 @@
 //! They panic with the values that violate a requirement. `fretwork law certify` tests more, from
 //! outside.
 
+use crate::abi::{FLAG_MOMENT, FLAG_TENSION_ONLY};
 use crate::{CohesionLaw, ContactLaw, DamageLaw, Intact, Parameters, Site, WearLaw};
 use std::fmt::Debug;
 
@@ -219,6 +220,52 @@ pub fn cohesion_stays_finite<L: CohesionLaw + Default + Debug>() {
             let state = vec![1.0; L::VARIABLES.len()];
             let t = law.traction(&site, &state).tension_strength;
             assert!(t.is_finite() && t > 0.0, "{law:?} {t}");
+        }
+    }
+}
+
+/// Traction and moment of a bond are the slopes of its energy along opening and rotation; one that
+/// acts in tension only stores nothing in compression.
+///
+/// # Panics
+/// If this does not hold.
+pub fn traction_is_the_slope_of_the_energy<L: CohesionLaw + Debug>(law: &L) {
+    let at = |moved: [f64; 6], damage: f64| Site {
+        opening: [moved[0], moved[1], moved[2]],
+        rotation: [moved[3], moved[4], moved[5]],
+        damage,
+        area: 1e-10,
+        dimension: 3,
+        ..Site::default()
+    };
+    let tension_only = L::FLAGS & FLAG_TENSION_ONLY != 0;
+    let turns = if L::FLAGS & FLAG_MOMENT != 0 {
+        1e-2
+    } else {
+        0.0
+    };
+    for (normal, damage) in [(2e-7, 0.0), (5e-8, 0.3), (-2e-7, 0.3)] {
+        if normal < 0.0 && tension_only {
+            let energy = law.energy(&at([normal, 0.0, 0.0, 0.0, 0.0, 0.0], damage), &[]);
+            assert_eq!(energy, 0.0, "{law:?}");
+            continue;
+        }
+        let here = [normal, 3e-7, -1e-7, turns, 2.0 * turns, -turns];
+        let answer = law.traction(&at(here, damage), &[]);
+        let slopes = [answer.traction, answer.moment].concat();
+        for k in (0..6).filter(|k| here[*k] != 0.0) {
+            let step = 1e-4 * here[k].abs();
+            let [less, more] = [-step, step].map(|d| {
+                let mut moved = here;
+                moved[k] += d;
+                law.energy(&at(moved, damage), &[])
+            });
+            let slope = (more - less) / (2.0 * step);
+            let off = (slope - slopes[k]).abs();
+            assert!(
+                off <= 1e-5 * slopes[k].abs(),
+                "{law:?} {k}: {slope} {answer:?}"
+            );
         }
     }
 }

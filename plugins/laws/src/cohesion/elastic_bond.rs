@@ -40,26 +40,3 @@ impl CohesionLaw for ElasticBond {
         bounded(0.5 * (1.0 - site.damage) * (self.k_n * n * n + self.k_t * (t1 * t1 + t2 * t2)))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn traction_is_the_derivative_of_the_energy() {
-        let law = ElasticBond {
-            k_n: 2e9,
-            k_t: 1e9,
-            ..ElasticBond::default()
-        };
-        let site = |x: f64| Site {
-            opening: [x, 3e-6, -1e-6],
-            damage: 0.3,
-            ..Site::default()
-        };
-        let (x, e) = (2e-6, 1e-12);
-        let slope = (law.energy(&site(x + e), &[]) - law.energy(&site(x - e), &[])) / (2.0 * e);
-        let t = law.traction(&site(x), &[]).traction[0];
-        assert!((slope / t - 1.0).abs() < 1e-5);
-    }
-}

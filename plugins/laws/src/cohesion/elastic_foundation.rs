@@ -58,27 +58,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn traction_is_the_derivative_of_the_energy_both_ways() {
+    fn moment_is_the_slope_of_the_energy() {
         let law = ElasticFoundation {
-            k_n: 2e9,
-            k_t: 1e9,
             k_r: 3.0,
             ..ElasticFoundation::default()
         };
-        for n in [2e-6, -2e-6] {
-            let site = |dx: f64, turn: f64| Site {
-                opening: [n + dx, 3e-6, -1e-6],
-                rotation: [0.1, 1e-3 + turn, 2e-3],
-                damage: 0.3,
-                ..Site::default()
-            };
-            let at = law.traction(&site(0.0, 0.0), &[]);
-            let slope = |e: f64, turn: f64| {
-                let [low, high] = [-1.0, 1.0].map(|s| law.energy(&site(s * e, s * turn), &[]));
-                (high - low) / 2.0
-            };
-            assert!((slope(1e-12, 0.0) / 1e-12 / at.traction[0] - 1.0).abs() < 1e-5);
-            assert!((slope(0.0, 1e-8) / 1e-8 / at.moment[1] - 1.0).abs() < 1e-5);
-        }
+        fretwork_law::testing::traction_is_the_slope_of_the_energy(&law);
     }
 }

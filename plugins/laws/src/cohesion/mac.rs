@@ -83,24 +83,4 @@ mod tests {
         }
         assert_eq!(full.stiffness_n, half.stiffness_n);
     }
-
-    #[test]
-    fn traction_is_the_derivative_of_the_energy() {
-        let law = Mac {
-            c_n: 2e12,
-            c_t: 1e12,
-        };
-        let (x, e) = ([2e-6, 3e-6, -1e-6], 1e-11);
-        let t = law.traction(&at(x, 0.3), &[]).traction;
-        for k in 0..3 {
-            let (mut up, mut down) = (x, x);
-            up[k] += e;
-            down[k] -= e;
-            let slope =
-                (law.energy(&at(up, 0.3), &[]) - law.energy(&at(down, 0.3), &[])) / (2.0 * e);
-            assert!((slope / t[k] - 1.0).abs() < 1e-4, "{k}");
-        }
-        // No energy is stored in compression.
-        assert_eq!(law.energy(&at([-1e-6, 0.0, 0.0], 0.0), &[]), 0.0);
-    }
 }
