@@ -34,7 +34,7 @@ impl DamageLaw for ExponentialSoftening {
             } else {
                 0.0
             };
-            (share > self.left).then(|| self.strength * share)
+            (share > self.left).then_some(self.strength * share)
         })
     }
 }
