@@ -56,6 +56,7 @@ pub mod energy;
 pub mod geometry;
 pub mod heat;
 pub mod huge_pages;
+pub mod lanes;
 pub mod laws;
 pub mod momentum;
 pub mod out_of_memory;

@@ -8,6 +8,7 @@ pub mod drum;
 pub mod facets;
 pub mod grid;
 pub mod height_field;
+pub mod lane_space;
 pub mod mesh;
 pub mod mortar;
 pub mod overlap;

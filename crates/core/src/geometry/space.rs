@@ -4,12 +4,13 @@
 //! code without data of the other.
 
 pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
+use super::lane_space::LaneSpace;
 use nalgebra::{Matrix1, Matrix2, Matrix3, Vector1, Vector2, Vector3};
 use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 
 /// A dimension of space.
-pub trait Space: Copy + Clone + Debug + Default + Send + Sync + 'static {
+pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     /// Number of translations: 2 or 3.
     const D: usize;
     /// Positions, velocities, impulses.

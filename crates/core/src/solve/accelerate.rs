@@ -1,15 +1,18 @@
-//! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum, less of it where the residual does not fall
-//! from test to test, Anderson extrapolation where it still does not fall, and that alone where momentum does not help.
+//! Acceleration of the Gauss-Seidel iteration over bodies, where the first tests fail: momentum,
+//! less of it where the residual does not fall from test to test, Anderson extrapolation where it
+//! still does not fall, and that alone where momentum does not help.
 
 use super::body_anderson::{BodyAnderson, MEMORY};
 use super::form::Problem;
+use super::kinds::of_kind;
 use super::momentum::Momentum;
 use crate::geometry::space::Space;
 
 /// Iterations before Anderson extrapolation starts without momentum.
 const FIRST_ANDERSON: u32 = 20;
-/// Iterations in which the squared residual has to fall by half, or momentum is given up. With momentum an impulse crosses n contacts in a row in some n
-/// iterations; ten times that, and both bounds, are from trials (`docs/solvers.md`).
+/// Iterations in which the squared residual has to fall by half, or momentum is given up. With
+/// momentum an impulse crosses n contacts in a row in some n iterations; ten times that, and both
+/// bounds, are from trials (`docs/solvers.md`).
 fn patience(contacts: usize) -> u32 {
     (10 * contacts).clamp(50, 1000) as u32
 }
@@ -17,11 +20,13 @@ fn patience(contacts: usize) -> u32 {
 /// State of the acceleration in a solve.
 #[derive(Debug)]
 pub(super) struct Acceleration<S: Space> {
-    /// Whether momentum is used: where all contacts are between rigid bodies, in rows with a closed form without a bond, and Anderson extrapolation does
-    /// not span all unknowns. Over bonds momentum takes as many iterations.
+    /// Whether momentum is used: where all contacts are between rigid bodies, in rows with a closed
+    /// form without a bond, and Anderson extrapolation does not span all unknowns. Over bonds
+    /// momentum takes as many iterations.
     with_momentum: bool,
     parallel: bool,
-    /// Iterations before momentum starts, those to the second convergence test: most warm-started steps need no more.
+    /// Iterations before momentum starts, those to the second convergence test: most warm-started
+    /// steps need no more.
     first: u32,
     patience: u32,
     momentum: Option<Momentum<S>>,
@@ -30,17 +35,19 @@ pub(super) struct Acceleration<S: Space> {
     last: f64,
     /// Whether it had risen there.
     rose: bool,
-    /// Squared residual from which it has to fall by half, and the iterations after which it was reached.
+    /// Squared residual from which it has to fall by half, and the iterations after which it was
+    /// reached.
     least: f64,
     least_at: u32,
 }
 
 impl<S: Space> Acceleration<S> {
     pub fn new(problem: &Problem<S>, first: u32, parallel: bool) -> Self {
-        let others = problem.full.len() + problem.bonded_levers.len();
+        let mut rows = problem.rows.iter();
+        let bonds = rows.any(|rows| of_kind!(rows, rows => rows.may_have_bonds()));
         let unknowns = problem.contacts() * S::D;
         Self {
-            with_momentum: unknowns > MEMORY && others == 0 && problem.systems.is_empty(),
+            with_momentum: unknowns > MEMORY && !bonds && problem.systems.is_empty(),
             parallel,
             first,
             patience: patience(problem.contacts()),
@@ -78,7 +85,8 @@ impl<S: Space> Acceleration<S> {
         }
     }
 
-    /// Takes the squared residual of a failed test after `done` iterations, and may change the impulses.
+    /// Takes the squared residual of a failed test after `done` iterations, and may change the
+    /// impulses.
     pub fn on_failed_test(&mut self, problem: &mut Problem<S>, done: u32, residual: f64) {
         if self.momentum.is_some() && self.stalls(done, residual) {
             (self.with_momentum, self.momentum) = (false, None);

@@ -1,8 +1,9 @@
 //! Building a contact problem: bodies, then contacts, each as a row of the kind that it needs.
 
 use super::form::{ContactForm, Mobility, Place, Problem};
-use super::row::{FullRow, LeverRow, OnBlock, PlainRow, SolverBody};
-use crate::geometry::space::{Space, VectorLike};
+use super::kinds::{KINDS, RowsOfKind, of_kind};
+use super::row::{RigidBodies, SolverBody};
+use crate::geometry::space::Space;
 use crate::threads::{fill, for_chunks, map_chunks, pays};
 
 /// About what it takes to add a body (ns).
@@ -26,35 +27,9 @@ fn record<S: Space>(
     }
 }
 
-/// The kinds of rows of contacts between rigid bodies.
-#[derive(Clone, Copy)]
-enum Kind {
-    Plain,
-    Full,
-    Lever,
-    BondedLever,
-}
-
-/// The kind of row that a contact needs.
-fn kind<S: Space>(contact: &ContactForm<S>) -> Kind {
-    if !contact.central {
-        return match contact.elastic {
-            None => Kind::Lever,
-            Some(_) => Kind::BondedLever,
-        };
-    }
-    let plain = !contact.apart
-        && contact.elastic.is_none()
-        && contact.tension == 0.0
-        && contact.cohesion == 0.0
-        && contact.compliance == [0.0; 2]
-        && contact.shift_t == S::Tangent::zero();
-    if plain { Kind::Plain } else { Kind::Full }
-}
-
 impl<S: Space> Problem<S> {
-    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that scales
-    /// spins.
+    /// Adds a body with its free velocity, inverse masses, inverse inertia tensor, and length that
+    /// scales spins.
     pub fn push_body(
         &mut self,
         v: S::Vector,
@@ -73,7 +48,8 @@ impl<S: Space> Problem<S> {
         self.masses.push(mobility);
     }
 
-    /// Adds all bodies to a problem that has none, by their free velocities, mobilities and lengths.
+    /// Adds all bodies to a problem that has none, by their free velocities, mobilities and
+    /// lengths.
     pub fn push_bodies(
         &mut self,
         free: &[(S::Vector, S::Spin)],
@@ -93,32 +69,31 @@ impl<S: Space> Problem<S> {
 
     /// Adds a contact.
     pub fn push(&mut self, contact: &ContactForm<S>) {
-        let place = match kind(contact) {
-            Kind::Plain => Place::Plain(self.plain.push(self.plain_row(contact))),
-            Kind::Full => Place::Full(self.full.push(self.full_row(contact))),
-            Kind::Lever => Place::Lever(self.levers.push(self.lever_row(contact))),
-            Kind::BondedLever => {
-                Place::BondedLever(self.bonded_levers.push(self.lever_row(contact)))
-            }
+        let kind = RowsOfKind::kind(contact);
+        let bodies = RigidBodies {
+            solver_bodies: &self.solver_bodies,
+            masses: &self.masses,
+            lengths: &self.lengths,
         };
-        self.places.push(place);
+        let row = of_kind!(&mut self.rows[kind], rows => rows.push(contact, &bodies));
+        let kind = kind as u8;
+        self.places.push(Place::Row { kind, row });
         self.compliant |= contact.compliance != [0.0; 2];
     }
 
     /// Adds all contacts to a problem that has none, in the order of the iteration.
     pub fn push_all(&mut self, contacts: &[ContactForm<S>], parallel: bool) {
         debug_assert!(self.places.is_empty());
-        let mut of_kind = std::mem::take(&mut self.of_kind);
-        of_kind.iter_mut().for_each(Vec::clear);
+        self.of_kind.iter_mut().for_each(Vec::clear);
         let divide = pays(parallel, contacts.len(), SORT);
         let parts = map_chunks(divide, contacts, CHUNK, |first, contacts| {
-            let mut of_kind: [Vec<u32>; 4] = Default::default();
+            let mut of_kind: [Vec<u32>; KINDS] = Default::default();
             let mut places = Vec::with_capacity(contacts.len());
             let mut compliant = false;
             for (contact, k) in contacts.iter().zip(first..) {
                 compliant |= contact.compliance != [0.0; 2];
-                let kind = kind(contact);
-                let list = &mut of_kind[kind as usize];
+                let kind = RowsOfKind::kind(contact);
+                let list = &mut of_kind[kind];
                 places.push((kind, list.len() as u32));
                 list.push(k as u32);
             }
@@ -127,38 +102,25 @@ impl<S: Space> Problem<S> {
         self.places.reserve_exact(contacts.len());
         for (lists, places, compliant) in parts {
             self.compliant |= compliant;
-            let before = [0, 1, 2, 3].map(|k: usize| of_kind[k].len() as u32);
-            self.places.extend(places.iter().map(|(kind, k)| {
-                let k = before[*kind as usize] + k;
-                match kind {
-                    Kind::Plain => Place::Plain(k),
-                    Kind::Full => Place::Full(k),
-                    Kind::Lever => Place::Lever(k),
-                    Kind::BondedLever => Place::BondedLever(k),
-                }
-            }));
-            for (all, some) in of_kind.iter_mut().zip(lists) {
+            let before = self.of_kind.each_ref().map(|list| list.len() as u32);
+            self.places
+                .extend(places.iter().map(|(kind, k)| Place::Row {
+                    kind: *kind as u8,
+                    row: before[*kind] + k,
+                }));
+            for (all, some) in self.of_kind.iter_mut().zip(lists) {
                 all.extend(some);
             }
         }
         let movable = self.movable(parallel);
-        let [plain, full, levers, bonded_levers] = &of_kind;
-        // Taken out of the problem while its bodies are read.
-        let mut rows = std::mem::take(&mut self.plain);
-        rows.set(plain, contacts, &movable, parallel, |c| self.plain_row(c));
-        self.plain = rows;
-        let mut rows = std::mem::take(&mut self.full);
-        rows.set(full, contacts, &movable, parallel, |c| self.full_row(c));
-        self.full = rows;
-        let mut rows = std::mem::take(&mut self.levers);
-        rows.set(levers, contacts, &movable, parallel, |c| self.lever_row(c));
-        self.levers = rows;
-        let mut rows = std::mem::take(&mut self.bonded_levers);
-        rows.set(bonded_levers, contacts, &movable, parallel, |c| {
-            self.lever_row(c)
-        });
-        self.bonded_levers = rows;
-        self.of_kind = of_kind;
+        let bodies = RigidBodies {
+            solver_bodies: &self.solver_bodies,
+            masses: &self.masses,
+            lengths: &self.lengths,
+        };
+        for (rows, of) in self.rows.iter_mut().zip(&self.of_kind) {
+            of_kind!(rows, rows => rows.set(of, contacts, &movable, &bodies, parallel));
+        }
         self.place_in_order(parallel);
     }
 
@@ -174,68 +136,16 @@ impl<S: Space> Problem<S> {
 
     /// Takes the places of contacts from their order as pushed to that of the iteration.
     pub(super) fn place_in_order(&mut self, parallel: bool) {
-        let (plain, full) = (self.plain.places(), self.full.places());
-        let (levers, bonded_levers) = (self.levers.places(), self.bonded_levers.places());
+        let in_order = self.rows.each_ref();
+        let in_order = in_order.map(|rows| of_kind!(rows, rows => rows.places()));
         let divide = pays(parallel, self.places.len(), SORT);
         for_chunks(divide, &mut self.places, CHUNK, |_, places| {
             for place in places {
-                *place = match *place {
-                    Place::Plain(r) => Place::Plain(plain[r as usize]),
-                    Place::Full(r) => Place::Full(full[r as usize]),
-                    Place::Lever(r) => Place::Lever(levers[r as usize]),
-                    Place::BondedLever(r) => Place::BondedLever(bonded_levers[r as usize]),
-                    in_order => in_order,
-                };
+                if let Place::Row { kind, row } = place {
+                    *row = in_order[*kind as usize][*row as usize];
+                }
             }
         });
-    }
-
-    /// W along and across the normal of a contact of two balls (1/kg), at a reach of their lengths. The bodies are looked up, also in a
-    /// release build: sweeps then take it for granted that rows name two different bodies of the problem, see
-    /// [`SolverBodies`](super::row::SolverBodies).
-    fn of_balls(&self, contact: &ContactForm<S>, [i, j]: [f64; 2]) -> [f64; 2] {
-        assert_ne!(
-            contact.bodies[0], contact.bodies[1],
-            "a contact of a body with itself"
-        );
-        let [a, b] = contact.bodies.map(|b| &self.solver_bodies[b as usize]);
-        let w_n = a.im + b.im;
-        [w_n, w_n + a.is * (i * i) + b.is * (j * j)]
-    }
-
-    #[inline]
-    fn plain_row(&self, contact: &ContactForm<S>) -> PlainRow<S> {
-        let [w_n, w_t] = self.of_balls(contact, [1.0; 2]);
-        PlainRow::new(contact, w_n, w_t)
-    }
-
-    #[inline]
-    fn full_row(&self, contact: &ContactForm<S>) -> FullRow<S> {
-        let reach = self.reach(contact);
-        let [w_n, w_t] = self.of_balls(contact, reach);
-        FullRow::new(contact, w_n, w_t, reach)
-    }
-
-    /// Levers of a central contact over the lengths of its bodies.
-    fn reach(&self, contact: &ContactForm<S>) -> [f64; 2] {
-        if !contact.apart {
-            return [1.0; 2];
-        }
-        [(0, -1.0), (1, 1.0)].map(|(side, sign)| {
-            let body = contact.bodies[side] as usize;
-            let lever = sign * contact.normal.dot(&contact.arms[side]) / self.lengths[body];
-            // A surface that stays in place has no length that a spin would scale.
-            if lever.is_finite() { lever } else { 1.0 }
-        })
-    }
-
-    fn lever_row<C: OnBlock<S>>(&self, contact: &ContactForm<S>) -> LeverRow<S, C> {
-        // As in `of_balls`: masses and lengths are looked up.
-        assert_ne!(
-            contact.bodies[0], contact.bodies[1],
-            "a contact of a body with itself"
-        );
-        LeverRow::new(contact, |b| (self.masses[b], self.lengths[b]))
     }
 }
 
@@ -265,7 +175,8 @@ mod tests {
         }
     }
 
-    /// The work of a step has c |p|^2 of contacts that yield, however these are added, and is not asked for it where none does.
+    /// The work of a step has c |p|^2 of contacts that yield, however these are added, and is not
+    /// asked for it where none does.
     #[test]
     fn contacts_that_yield_are_known() {
         for compliance in [[0.0; 2], [3.0, 0.0], [0.0, 5.0]] {
@@ -298,7 +209,8 @@ mod tests {
         }
     }
 
-    /// A bond whose impulse is given takes its part of the impulse; what is left presses on the compliance.
+    /// A bond whose impulse is given takes its part of the impulse; what is left presses on the
+    /// compliance.
     #[test]
     fn a_bond_beside_a_compliance_takes_its_part() {
         let mut problem = Problem::<Dim2>::default();

@@ -1,12 +1,13 @@
-//! Order of the Gauss-Seidel iteration: groups of contacts that share no movable body, so that several can
-//! be solved at once without data dependency, and blocks that are distributed over threads.
+//! Order of the Gauss-Seidel iteration: groups of contacts that share no movable body, so that
+//! several can be solved at once without data dependency, and blocks that are distributed over
+//! threads.
 //!
-//! Contacts arrive sorted in space and are coloured greedily in that order, as in Box2D v3. A small problem
-//! is coloured as a whole, and its blocks are pieces of a colour. A large problem is cut into blocks of
-//! neighbouring contacts, which are coloured so that blocks of one colour share no movable body; a block is
-//! divided into parts whose velocities fit into the L1 cache, and the contacts of each part are coloured in
-//! turn. In both cases blocks of one colour can be solved in any order by any number of threads, with
-//! bitwise identical results.
+//! Contacts arrive sorted in space and are coloured greedily in that order, as in Box2D v3. A small
+//! problem is coloured as a whole, and its blocks are pieces of a colour. A large problem is cut
+//! into blocks of neighbouring contacts, which are coloured so that blocks of one colour share no
+//! movable body; a block is divided into parts whose velocities fit into the L1 cache, and the
+//! contacts of each part are coloured in turn. In both cases blocks of one colour can be solved in
+//! any order by any number of threads, with bitwise identical results.
 
 use super::schedule::Schedule;
 use crate::threads::{map_chunks_mut, map_with_memory, pays};
@@ -104,8 +105,8 @@ impl Order {
     }
 }
 
-/// Sorts contacts for the iteration. Returns the permutation (`order[k]` is the old index of the k-th) and
-/// the schedule of the new order.
+/// Sorts contacts for the iteration. Returns the permutation (`order[k]` is the old index of the
+/// k-th) and the schedule of the new order.
 fn order(bodies: &[[u32; 2]], movable: &[bool], parallel: bool) -> (Vec<u32>, Schedule) {
     let span = PART * (bodies.len().div_ceil(PART * BLOCKS)).clamp(1, PARTS);
     let mut sorting = Sorting {
@@ -219,7 +220,8 @@ impl Sorting<'_> {
         blocks
     }
 
-    /// Forms the groups of the blocks, colour by colour and part by part; blocks are divided among threads.
+    /// Forms the groups of the blocks, colour by colour and part by part; blocks are divided among
+    /// threads.
     fn group_blocks(&mut self, blocks: &[(u32, u32)], span: usize, hubs: &Hubs, parallel: bool) {
         let (bodies, movable) = (self.bodies, self.movable);
         let memory = || (vec![Seen::default(); movable.len()], 0);

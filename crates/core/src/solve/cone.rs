@@ -1,66 +1,77 @@
 //! The set of admissible impulses of one contact and the projection onto it.
 
-use crate::geometry::space::VectorLike;
-use std::hint::select_unpredictable;
+use crate::lanes::{Lane, LaneVector};
 
-/// Projects onto { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone (c = 0) or Tresca's cylinder (mu = 0),
-/// where P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
-#[inline]
-pub fn project<T: VectorLike>(normal: f64, tangent: T, mu: f64, c: f64) -> (f64, T) {
-    if T::N == 1 {
-        let (n, bound) = nearest(normal, tangent[0].abs(), mu, c);
-        let t = select_unpredictable(bound < 0.0, tangent[0], bound.copysign(tangent[0]));
-        return (n, T::from_slice(&[t]));
-    }
-    let length = tangent.dot(&tangent).sqrt();
-    let (n, bound) = nearest(normal, length, mu, c);
-    (n, tangent * share(bound, length))
+/// Projects onto { (P, t) : P >= 0, |t| <= mu P + c }: Coulomb's cone (c = 0) or Tresca's cylinder
+/// (mu = 0), where P = p_n + h c_n and c = h c_t. Returns the nearest point (Euclidean).
+#[inline(always)]
+pub fn project<L: Lane, T: LaneVector<L>>(normal: L, tangent: T, mu: L, c: L) -> (L, T) {
+    let length = tangent.norm();
+    let nearest = Nearest::new(normal, length, mu, c);
+    let t = if T::N == 1 {
+        let on = T::from_fn(|k| nearest.bound.with_sign_of(tangent[k]));
+        T::select(nearest.inside, tangent, on)
+    } else {
+        tangent * nearest.share(length)
+    };
+    (nearest.normal, t)
 }
 
 /// Projects (P, t...) given as an array; see [`project`].
 #[inline(always)]
 pub fn project_array<const D: usize>(z: &[f64; D], mu: f64, c: f64) -> [f64; D] {
     if D == 2 {
-        let (n, bound) = nearest(z[0], z[1].abs(), mu, c);
-        let t = select_unpredictable(bound < 0.0, z[1], bound.copysign(z[1]));
-        return std::array::from_fn(|k| if k == 0 { n } else { t });
+        let nearest = Nearest::new(z[0], z[1].abs(), mu, c);
+        let on = nearest.bound.copysign(z[1]);
+        let t = f64::select(nearest.inside, z[1], on);
+        return std::array::from_fn(|k| if k == 0 { nearest.normal } else { t });
     }
     let mut squared = 0.0;
     for x in &z[1..] {
         squared += x * x;
     }
     let length = squared.sqrt();
-    let (n, bound) = nearest(z[0], length, mu, c);
-    let scale = share(bound, length);
-    std::array::from_fn(|k| if k == 0 { n } else { z[k] * scale })
+    let nearest = Nearest::new(z[0], length, mu, c);
+    let share = nearest.share(length);
+    std::array::from_fn(|k| if k == 0 { nearest.normal } else { z[k] * share })
 }
 
-/// Returns P and |t| of the projection; |t| = -1 for a point inside. All cases are computed and one is
-/// selected, because branches would be mispredicted too often.
-#[inline(always)]
-fn nearest(normal: f64, length: f64, mu: f64, c: f64) -> (f64, f64) {
-    let inside = normal >= 0.0 && length <= mu * normal + c;
-    let closest_point = (normal + mu * (length - c)) / (1.0 + mu * mu);
-    let slides = length > c && closest_point > 0.0;
-    let closest_point = select_unpredictable(slides, closest_point, 0.0);
-    let bound = select_unpredictable(slides, mu * closest_point + c, length.min(c));
-    (
-        select_unpredictable(inside, normal, closest_point),
-        select_unpredictable(inside, -1.0, bound),
-    )
+/// A projected point: whether it was inside, its P, and |t| where it was not. All cases are
+/// computed and one is selected, because branches would be mispredicted too often.
+struct Nearest<L: Lane> {
+    inside: L::Mask,
+    normal: L,
+    bound: L,
 }
 
-/// Returns the factor that limits a tangent of a given length to `bound`; 1 where it is inside.
-#[inline(always)]
-fn share(bound: f64, length: f64) -> f64 {
-    let scale = select_unpredictable(length > 0.0, bound / length, 0.0);
-    select_unpredictable(bound < 0.0, 1.0, scale)
+impl<L: Lane> Nearest<L> {
+    #[inline(always)]
+    fn new(normal: L, length: L, mu: L, c: L) -> Self {
+        let (zero, one) = (L::all(0.0), L::all(1.0));
+        let inside = normal.at_least(zero) & length.at_most(mu * normal + c);
+        let closest_point = (normal + mu * (length - c)) / (one + mu * mu);
+        let slides = length.above(c) & closest_point.above(zero);
+        let closest_point = L::select(slides, closest_point, zero);
+        Self {
+            inside,
+            normal: L::select(inside, normal, closest_point),
+            bound: L::select(slides, mu * closest_point + c, length.least(c)),
+        }
+    }
+
+    /// The factor that limits a tangent of this length.
+    #[inline(always)]
+    fn share(&self, length: L) -> L {
+        let (zero, one) = (L::all(0.0), L::all(1.0));
+        let scale = L::select(length.above(zero), self.bound / length, zero);
+        L::select(self.inside, one, scale)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Vector1, Vector2};
+    use crate::lanes::Columns;
     use rand::{RngExt, SeedableRng};
 
     /// Brute-force projection over a fine sampling of the set.
@@ -80,7 +91,7 @@ mod tests {
         for _ in 0..200 {
             let (n, s) = (rng.random_range(-1.5..1.5), rng.random_range(-1.5..1.5));
             let (mu, c) = (rng.random_range(0.0..1.5), rng.random_range(0.0..0.5));
-            let (pn, pt) = project(n, Vector1::new(s), mu, c);
+            let (pn, pt) = project(n, Columns([s]), mu, c);
             assert!(pn >= 0.0 && pt.norm() <= mu * pn + c + 1e-15);
             let distance = (pn - n).hypot(pt[0] - s);
             assert!(distance <= nearest_by_sampling(n, s, mu, c) + 2e-6);
@@ -93,7 +104,7 @@ mod tests {
 
     #[test]
     fn is_the_identity_inside() {
-        let t = Vector2::new(0.1, 0.2);
+        let t = Columns([0.1, 0.2]);
         assert_eq!(project(1.0, t, 0.5, 0.0), (1.0, t));
     }
 }

@@ -1,9 +1,8 @@
-//! Sets of contacts that are connected through bodies that can move. Within a step nothing that happens in one of them acts on another: bodies
-//! whose motion is given pass no impulse on.
+//! Sets of contacts that are connected through bodies that can move. Within a step nothing that
+//! happens in one of them acts on another: bodies whose motion is given pass no impulse on.
 
 use super::form::{Mobility, Problem};
-use super::row::Row;
-use super::rows::Rows;
+use super::kinds::{KINDS, RowsOfKind, of_kind};
 use crate::geometry::space::{Space, VectorLike};
 
 /// No set.
@@ -12,8 +11,9 @@ const NONE: u32 = u32::MAX;
 /// See the module. It is that of the contacts of a problem until these change.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Connected {
-    /// The contacts that it is of: the numbers of the orders of their rows ([`Rows::changes`]).
-    of: Option<[u64; 4]>,
+    /// The contacts that it is of: the numbers of the orders of their rows
+    /// ([`Order::changes`](super::colour::Order::changes)).
+    of: Option<[u64; KINDS]>,
     /// The set of each body; none of those that do not move, or that nothing touches.
     of_body: Vec<u32>,
     /// The first body of each set.
@@ -22,7 +22,8 @@ pub(super) struct Connected {
     contacts: Vec<u32>,
     /// Whether contacts with dynamical systems are among them.
     with_systems: Vec<bool>,
-    /// The controlled bodies, and the contacts of such with others that have several, see [`Problem::of_several_controlled`].
+    /// The controlled bodies, and the contacts of such with others that have several, see
+    /// [`Problem::of_several_controlled`].
     controlled: Vec<u32>,
     pub of_several_controlled: Vec<usize>,
 }
@@ -114,14 +115,10 @@ fn root(parent: &mut [u32], mut body: u32) -> u32 {
     body
 }
 
-/// The bodies of rows, one after the other.
-fn each<S: Space, R: Row<S>>(rows: &Rows<R>, found: &mut dyn FnMut([u32; 2])) {
-    rows.all().iter().for_each(|row| found(row.bodies()));
-}
-
 impl<S: Space> Problem<S> {
-    /// Finds its connected sets, unless those that are known are of the same contacts: packings at rest keep theirs from step to step. Gives them
-    /// out of the problem, to which they are to be given back.
+    /// Finds its connected sets, unless those that are known are of the same contacts: packings at
+    /// rest keep theirs from step to step. Gives them out of the problem, to which they are to be
+    /// given back.
     pub(super) fn take_connected(&mut self) -> Connected {
         let of = self.contacts_of_rows();
         let known = std::mem::take(&mut self.connected);
@@ -130,10 +127,9 @@ impl<S: Space> Problem<S> {
         }
         let movable = self.movable(false);
         let mut sets = Connected::new(&movable, |found| {
-            each(&self.plain, found);
-            each(&self.full, found);
-            each(&self.levers, found);
-            each(&self.bonded_levers, found);
+            for rows in &self.rows {
+                of_kind!(rows, rows => rows.all().iter().for_each(|row| found(row.bodies())));
+            }
         });
         for row in &self.of_systems {
             for (body, _) in row.rigid_masses() {
@@ -148,20 +144,13 @@ impl<S: Space> Problem<S> {
         sets
     }
 
-    /// What tells the contacts of rigid bodies from others; nothing where they are not sorted, or systems act.
-    fn contacts_of_rows(&self) -> Option<[u64; 4]> {
-        let sorted = self.plain.sorted()
-            && self.full.sorted()
-            && self.levers.sorted()
-            && self.bonded_levers.sorted();
-        (sorted && self.systems.is_empty()).then(|| {
-            [
-                self.plain.changes(),
-                self.full.changes(),
-                self.levers.changes(),
-                self.bonded_levers.changes(),
-            ]
-        })
+    /// What tells the contacts of rigid bodies from others; nothing where they are not sorted, or
+    /// systems act.
+    fn contacts_of_rows(&self) -> Option<[u64; KINDS]> {
+        let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
+        let known = self.rows.iter().all(sorted) && self.systems.is_empty();
+        let rows = known.then(|| self.rows.each_ref())?;
+        Some(rows.map(|rows| of_kind!(rows, rows => rows.changes())))
     }
 
     /// Freedoms of the bodies of each connected set.
@@ -186,7 +175,8 @@ pub(super) fn freedoms_of<S: Space>(mobility: &Mobility<S>) -> usize {
 mod tests {
     use super::*;
 
-    /// Two chains over a floor that joins nothing, a body that touches the floor alone, one that touches nothing, and two fixed ones.
+    /// Two chains over a floor that joins nothing, a body that touches the floor alone, one that
+    /// touches nothing, and two fixed ones.
     #[test]
     fn what_does_not_move_connects_nothing() {
         let moves = [false, true, true, true, true, true, true, false];

@@ -1,58 +1,66 @@
 //! Error of a solution: the natural map of the De Saxce form, in a scale-free norm.
 //!
-//! The residual of a contact is a velocity,
-//! r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| e_n))) / rho_c,   rho_c = 1 / lambda_max(W_cc).
+//! The residual of a contact is a velocity, r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c|
+//! e_n))) / rho_c,   rho_c = 1 / lambda_max(W_cc).
 //!
 //! [`Norm::Velocity`]: error = |r| / max(|u|, |u_free|), Euclidean over all contacts. The strictest norm:
 //! velocities must be right, whatever the load.
 //!
 //! [`Norm::Balance`]: error = max( |r| / max(|u|, |u_free|, |p/rho|), f^2 ), f = |sum_c p_c . r_c| / |v -
-//! v_free|_M^2. The first part is the usual error measure of the literature (whose maximum also contains the
-//! impulses), made scale-free. As an average over contacts it can be small before the load has been
-//! transmitted through a packing. The second part detects this: f is the unbalanced fraction of the step's
-//! work, so that f^2 is the kinetic energy of the part that is not supported, relative to the part that is.
+//! v_free|_M^2. The first part is the usual error measure of the literature (whose maximum also
+//! contains the impulses), made scale-free. As an average over contacts it can be small before the
+//! load has been transmitted through a packing. The second part detects this: f is the unbalanced
+//! fraction of the step's work, so that f^2 is the kinetic energy of the part that is not
+//! supported, relative to the part that is.
 //!
-//! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in small sets only: where a heavy body rests on
-//! light ones, p/rho is far above all velocities, and powers of opposite sign, of a body that rocks, have no sum. It is the largest of all sets
-//! of contacts that are connected through bodies that move, each with its own N and work ([`super::rocking`]): a stack stands as well among others
-//! as alone.
+//! A third part, (sum_c |p_c . r_c| / (max(1, N/20) |v - v_free|_M^2))^2 of N contacts, matters in
+//! small sets only: where a heavy body rests on light ones, p/rho is far above all velocities, and
+//! powers of opposite sign, of a body that rocks, have no sum. It is the largest of all sets of
+//! contacts that are connected through bodies that move, each with its own N and work
+//! ([`super::rocking`]): a stack stands as well among others as alone.
 //!
 //! [`Norm::Power`]: error = sum_c |p_c . r_c| / sum_c |p_t,c . (u_t,c + s_t,c)|, the power of the residuals over that of slip, for
-//! contacts that are springs. `Balance` compares residuals with p/rho, which with scaled inertia is far above the velocities of a slow
-//! flow; this compares the heat that they make with the heat of friction. Where nothing slips, at rest and where
-//! sliding turns, the error of `Balance` times 5e5 takes its place.
+//! contacts that are springs. `Balance` compares residuals with p/rho, which with scaled inertia is
+//! far above the velocities of a slow flow; this compares the heat that they make with the heat of
+//! friction. Where nothing slips, at rest and where sliding turns, the error of `Balance` times 5e5
+//! takes its place.
 //!
-//! r_c is the residual of the natural map or [`lost`], whichever is larger. The work of the step is bounded
-//! below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an error. It contains the work on the
-//! compliance of contacts, sum_c c |p_c|^2, as W does in the matrix form: in a column of springs that holds itself |v - v_free|_M^2 vanishes.
+//! r_c is the residual of the natural map or [`lost`], whichever is larger. The work of the step is
+//! bounded below by sum_c rho_c |u_free,c|^2: where no load is transmitted, the work itself is an
+//! error. It contains the work on the compliance of contacts, sum_c c |p_c|^2, as W does in the
+//! matrix form: in a column of springs that holds itself |v - v_free|_M^2 vanishes.
 //!
-//! For bodies that move fast together, and for impulses that hold each other, the relative velocities are rounding errors; those below
-//! the rounding of the body velocities, or of the impulses where that exceeds all free velocities, count as zero. Impulses that leave nothing
-//! but rounding of the velocities are no solution, see [`Sums::drowned`].
+//! For bodies that move fast together, and for impulses that hold each other, the relative
+//! velocities are rounding errors; those below the rounding of the body velocities, or of the
+//! impulses where that exceeds all free velocities, count as zero. Impulses that leave nothing but
+//! rounding of the velocities are no solution, see [`Sums::drowned`].
 //!
-//! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least that of their single tractions, see
-//! [`super::traction`], times the default tolerance of the norm over 1e-3: at defaults they are right to 1e-3 of the largest.
+//! Where contacts act on dynamical systems (finite elements, half-spaces) the error is at least
+//! that of their single tractions, see [`super::traction`], times the default tolerance of the norm
+//! over 1e-3: at defaults they are right to 1e-3 of the largest.
 //!
 //! The error does not change when a scene is scaled in length, mass or time.
 //!
 //! [`Norm::Field`]: error = |r| / max(|u|, |u_free|, |p|) with rho = 1: the error measure of the literature
-//! (`fc3d_compute_error` of Siconos), for problems from files. It adds impulses and velocities and therefore
-//! depends on units. Solvers also enforce two conditions that it does not contain: [`lost`], and |r| /
-//! max(|u|, |u_free|) where that exceeds one half; without the latter a problem without a solution would be
-//! "solved" by unbounded impulses.
+//! (`fc3d_compute_error` of Siconos), for problems from files. It adds impulses and velocities and
+//! therefore depends on units. Solvers also enforce two conditions that it does not contain:
+//! [`lost`], and |r| / max(|u|, |u_free|) where that exceeds one half; without the latter a problem
+//! without a solution would be "solved" by unbounded impulses.
 
+use crate::lanes::{Lane, Mask};
 use serde::{Deserialize, Serialize};
 
 /// How the residual is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Norm {
-    /// Relative to the velocities and the impulses of the contacts, combined with the global balance of
-    /// work.
+    /// Relative to the velocities and the impulses of the contacts, combined with the global
+    /// balance of work.
     #[default]
     Balance,
     /// Relative to the current velocities.
     Velocity,
-    /// The power of the residuals over that of friction: what a step may get wrong of the heat of slip.
+    /// The power of the residuals over that of friction: what a step may get wrong of the heat of
+    /// slip.
     Power,
     /// The error measure of the literature, for problems from files.
     #[serde(skip)]
@@ -60,8 +68,9 @@ pub enum Norm {
 }
 
 impl Norm {
-    /// The bound on the error of a case that states none: 1e-4 of velocities or forces, half of the heat of slip. (Absolute values
-    /// of the residuals' power are summed; of the net error of friction it is a bound by far: `docs/accuracy.md`.)
+    /// The bound on the error of a case that states none: 1e-4 of velocities or forces, half of the
+    /// heat of slip. (Absolute values of the residuals' power are summed; of the net error of
+    /// friction it is a bound by far: `docs/accuracy.md`.)
     pub fn default_tolerance(self) -> f64 {
         match self {
             Self::Power => 0.5,
@@ -86,30 +95,32 @@ impl Norm {
     }
 }
 
-/// Returns the violation of Signorini's law that the natural map does not detect: it shrinks u_n < 0 by 1 +
-/// mu^2 where the contact slides, so that with a large mu even a zero impulse would pass for a solution.
-/// This is the missing part of min(p_n/rho, u_n), which is 0 in Signorini's law.
+/// Returns the violation of Signorini's law that the natural map does not detect: it shrinks u_n <
+/// 0 by 1 + mu^2 where the contact slides, so that with a large mu even a zero impulse would pass
+/// for a solution. This is the missing part of min(p_n/rho, u_n), which is 0 in Signorini's law.
 #[inline(always)]
-pub fn lost(p_n: f64, u_n: f64, mu: f64) -> f64 {
-    let squared = (mu * mu).min(f64::MAX);
-    p_n.min(u_n) * (squared / (1.0 + squared))
+pub fn lost<L: Lane>(p_n: L, u_n: L, mu: L) -> L {
+    let squared = (mu * mu).least(L::all(f64::MAX));
+    p_n.least(u_n) * (squared / (L::all(1.0) + squared))
 }
 
-/// Returns the squared residual of a contact: that of the natural map, or [`lost`] where that is larger.
+/// Returns the squared residual of a contact: that of the natural map, or [`lost`] where that is
+/// larger.
 #[inline(always)]
-pub fn residual(natural: f64, p_n: f64, u_n: f64, mu: f64) -> f64 {
-    let most = p_n.min(u_n);
-    // The result cannot exceed this bound, which is rarely above the natural residual; this saves the
-    // division.
-    if most * most <= natural {
+pub fn residual<L: Lane>(natural: L, p_n: L, u_n: L, mu: L) -> L {
+    let most = p_n.least(u_n);
+    // The result cannot exceed this bound, which is rarely above the natural residual; this saves
+    // the division.
+    let enough = (most * most).at_most(natural);
+    if enough.all() {
         return natural;
     }
     let lost = lost(p_n, u_n, mu);
-    natural.max(lost * lost)
+    L::select(enough, natural, natural.greatest(lost * lost))
 }
 
-/// Returns the residual relative to the velocities alone where that is of order one: it detects unbounded
-/// impulses of a problem without a solution.
+/// Returns the residual relative to the velocities alone where that is of order one: it detects
+/// unbounded impulses of a problem without a solution.
 pub fn unbounded(residual: f64) -> f64 {
     if residual > 0.5 { residual } else { 0.0 }
 }
@@ -121,8 +132,9 @@ const FINEST: f64 = 1e-6;
 /// Squared relative rounding error of a relative velocity.
 pub(super) const ROUNDINGS: f64 = 256.0 * f64::EPSILON * f64::EPSILON;
 
-/// Contacts of a set up to which powers of residuals of either sign may not exceed what their sum may. Beyond it they may in proportion to their
-/// number, which a packing in two or three dimensions does not reach.
+/// Contacts of a set up to which powers of residuals of either sign may not exceed what their sum
+/// may. Beyond it they may in proportion to their number, which a packing in two or three
+/// dimensions does not reach.
 const FEW: f64 = 20.0;
 
 /// Error of [`Norm::Power`] over that of [`Norm::Balance`] where nothing slips: 0.5 asks for 1e-6.
@@ -135,7 +147,8 @@ pub struct Scale {
     pub free: f64,
     /// Sum of rho |u_free|^2 (J).
     pub energy: f64,
-    /// Squared rounding error of all relative velocities (m^2/s^2): residuals below it count as zero.
+    /// Squared rounding error of all relative velocities (m^2/s^2): residuals below it count as
+    /// zero.
     pub noise: f64,
     /// |v - v_free|_M^2, and the work on the compliance of contacts (J).
     pub work: f64,
@@ -161,12 +174,30 @@ pub struct ErrorParts {
     pub force_balance: f64,
     /// Velocity: the residual velocities over those of the contacts, |r| / max(|u|, |u_free|).
     pub velocity: f64,
-    /// Contact law: the error of [`Norm::Power`], the energy that the residuals make over the heat of slip.
+    /// Contact law: the error of [`Norm::Power`], the energy that the residuals make over the heat
+    /// of slip.
     pub contact_law: f64,
     /// Heat of slip, sum |p_t.(u_t + s_t)| (J).
     pub slip_energy: f64,
     /// Energy that the residuals take, |sum p.r| (J).
     pub residual_energy: f64,
+}
+
+/// Contribution of a contact to the convergence test.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Residual<L = f64> {
+    /// |p - proj(p - rho (u + mu |u_t| n))|^2 / rho^2 (m^2/s^2).
+    pub squared: L,
+    /// |u|^2 (m^2/s^2).
+    pub velocity: L,
+    /// |p / rho|^2 (m^2/s^2).
+    pub impulse: L,
+    /// p . r, r the residual velocity (J).
+    pub power: L,
+    /// |p . r|, or rho |r|^2 where that is larger: a contact without the impulse that it should have (J).
+    pub unbalanced: L,
+    /// |p_t . (u_t + s_t)|, the work of slip (J).
+    pub slip: L,
 }
 
 /// Sums over contacts, added in a fixed order that does not depend on the number of threads.
@@ -188,14 +219,15 @@ pub struct Sums {
     pub worst: f64,
     /// Index of the contact with that residual, in the order of the iteration.
     pub worst_at: usize,
-    /// Error of single tractions on dynamical systems, see [`super::traction`], and the squared residual behind it (m^2/s^2).
+    /// Error of single tractions on dynamical systems, see [`super::traction`], and the squared
+    /// residual behind it (m^2/s^2).
     pub traction: [f64; 2],
 }
 
 impl Sums {
     /// Adds one contact.
     #[inline(always)]
-    pub fn add(&mut self, r: &super::row::Residual, at: usize) {
+    pub fn add(&mut self, r: &Residual, at: usize) {
         self.add_moment(r);
         if r.squared > self.worst {
             self.worst = r.squared;
@@ -205,7 +237,7 @@ impl Sums {
 
     /// Adds a residual that is excluded from the search for the worst contact.
     #[inline(always)]
-    pub fn add_moment(&mut self, r: &super::row::Residual) {
+    pub fn add_moment(&mut self, r: &Residual) {
         self.residual += r.squared;
         self.velocity += r.velocity;
         self.impulse += r.impulse;
@@ -231,8 +263,9 @@ impl Sums {
         }
     }
 
-    /// Squared rounding error of velocities that follow from the impulses, where it exceeds all velocities without impulses (`free` as in
-    /// [`Scale`]); 0 elsewhere, where bodies may be as unlike as they like.
+    /// Squared rounding error of velocities that follow from the impulses, where it exceeds all
+    /// velocities without impulses (`free` as in [`Scale`]); 0 elsewhere, where bodies may be as
+    /// unlike as they like.
     pub(super) fn rounding(&self, free: f64) -> f64 {
         /// By how much, squared.
         const EXCEEDS: f64 = 4.0;
@@ -244,9 +277,9 @@ impl Sums {
         }
     }
 
-    /// Whether the velocities are lost in the rounding of the impulses that should have made them: those of a problem without a
-    /// solution grow until then, where W p, of bodies that are squeezed, vanishes. Without convergence W p may be anything. `free` as in
-    /// [`Scale`].
+    /// Whether the velocities are lost in the rounding of the impulses that should have made them:
+    /// those of a problem without a solution grow until then, where W p, of bodies that are
+    /// squeezed, vanishes. Without convergence W p may be anything. `free` as in [`Scale`].
     pub fn drowned(&self, free: f64, converged: bool) -> bool {
         let rounding = self.rounding(free);
         let moves = self.velocity.max(free) > 0.0;
@@ -294,7 +327,8 @@ impl Sums {
         }
     }
 
-    /// Error of single tractions on dynamical systems, over the largest of each; 0 where it is finer than any answer needs.
+    /// Error of single tractions on dynamical systems, over the largest of each; 0 where it is
+    /// finer than any answer needs.
     fn traction_error(&self, scale: &Scale) -> f64 {
         let [error, residual] = self.traction;
         if residual <= scale.noise || error <= FINEST {
@@ -326,8 +360,8 @@ impl Sums {
         over(self.unbalanced, allowed * scale.work.max(scale.energy)).powi(2)
     }
 
-    /// The first two parts of the error in the norm Balance. Where no load is transmitted the work itself is an error, relative to the upper bound of the
-    /// contacts' work.
+    /// The first two parts of the error in the norm Balance. Where no load is transmitted the work
+    /// itself is an error, relative to the upper bound of the contacts' work.
     fn balance(&self, local: f64, scale: &Scale) -> f64 {
         local.max(over(self.power, scale.work.max(scale.energy)).powi(2))
     }
@@ -341,7 +375,8 @@ fn over(x: f64, scale: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The error of unbalanced work is its share of the work, squared, of which more contacts than [`FEW`] are allowed more in proportion.
+    /// The error of unbalanced work is its share of the work, squared, of which more contacts than
+    /// [`FEW`] are allowed more in proportion.
     #[test]
     fn more_contacts_may_rock_more() {
         let sums = Sums {
@@ -359,8 +394,8 @@ mod tests {
         }
     }
 
-    /// The power of residuals is compared with that of slip. Where nothing slips, a share of 1e-3 of the work, squared, counts as much as 0.5 of
-    /// that of slip.
+    /// The power of residuals is compared with that of slip. Where nothing slips, a share of 1e-3
+    /// of the work, squared, counts as much as 0.5 of that of slip.
     #[test]
     fn the_power_of_residuals_is_compared_with_slip() {
         let scale = Scale {
@@ -380,7 +415,8 @@ mod tests {
         }
     }
 
-    /// Velocities that are less than sixteen roundings of impulses which have grown to 1e20 m/s are lost; those of sound impulses are not.
+    /// Velocities that are less than sixteen roundings of impulses which have grown to 1e20 m/s are
+    /// lost; those of sound impulses are not.
     #[test]
     fn velocities_drown_in_the_rounding_of_their_impulses() {
         let sums = |impulse: f64| Sums {

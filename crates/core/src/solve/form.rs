@@ -1,13 +1,10 @@
 //! The input of a solver: bodies as velocity records, contacts in the standard form.
 
 use super::connected::Connected;
+use super::kinds::{KINDS, RowsOfKind, of_kind};
 use super::loaded::Loaded;
 use super::nodal::NodalSystem;
-use super::row::{
-    Bonded, FullRow, LeverRow, LocalImpulse, Loose, MomentForm, MomentRow, MomentSolution,
-    PlainRow, Row, SolverBody, SystemRow,
-};
-use super::rows::Rows;
+use super::row::{MomentForm, MomentRow, MomentSolution, Parts, SolverBody, SystemRow};
 use super::traction::Tractions;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 
@@ -22,8 +19,8 @@ pub struct ContactForm<S: Space> {
     pub arms: [S::Vector; 2],
     /// Both arms lie along the normal and both inverse masses are isotropic.
     pub central: bool,
-    /// Of a central contact, whether its arms are not the lengths of its bodies: it acts in the gap between two balls, or in their
-    /// overlap.
+    /// Of a central contact, whether its arms are not the lengths of its bodies: it acts in the gap
+    /// between two balls, or in their overlap.
     pub apart: bool,
     /// s_n: max(g, 0)/h or e_n u_n^- (m/s).
     pub shift_n: f64,
@@ -37,19 +34,18 @@ pub struct ContactForm<S: Space> {
     pub cohesion: f64,
     /// The single-valued (bond) part, if any.
     pub elastic: Option<Elastic<S>>,
-    /// Compliance c of the unilateral part over the step, normal and tangential (1/kg): its law is in u + s + c p; zero for
-    /// a rigid contact.
+    /// Compliance c of the unilateral part over the step, normal and tangential (1/kg): its law is
+    /// in u + s + c p; zero for a rigid contact.
     pub compliance: [f64; 2],
     /// Initial impulse, in world axes (N s).
     pub impulse: S::Vector,
 }
 
 impl<S: Space> ContactForm<S> {
-    /// Returns a contact between immovable bodies.
-    #[cfg(target_arch = "x86_64")]
+    /// Returns a contact on which nothing acts.
     pub(super) fn idle() -> Self {
         Self {
-            bodies: [0, 0],
+            bodies: [0, 1],
             normal: S::Vector::zero(),
             arms: [S::Vector::zero(); 2],
             central: true,
@@ -66,7 +62,8 @@ impl<S: Space> ContactForm<S> {
     }
 }
 
-/// Bond impulse p_el = -(a + B u); with `tension_only` the normal part vanishes where it would push.
+/// Bond impulse p_el = -(a + B u); with `tension_only` the normal part vanishes where it would
+/// push.
 #[derive(Clone, Copy, Debug)]
 pub struct Elastic<S: Space> {
     /// Normal impulse of the bond at u = 0, positive in tension (N s).
@@ -83,8 +80,8 @@ pub struct Elastic<S: Space> {
     pub damped: bool,
     /// Whether the law's traction is not linear in the opening, so that this is a tangent of it.
     pub curved: bool,
-    /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t |u_t,th|^2
-    /// (kg).
+    /// Normal dissipation of damping and time scheme over the step: loss_n u_n,th^2 + loss_t
+    /// |u_t,th|^2 (kg).
     pub loss_n: f64,
     /// Tangential dissipation; see `loss_n` (kg).
     pub loss_t: f64,
@@ -106,9 +103,11 @@ impl<S: Space> Elastic<S> {
         }
     }
 
-    /// Energy that damping and the time scheme take in a step (J), given the opening at its start (m) and the relative velocity, its average over
-    /// the step and at its end (m/s). `None` for a bond whose force is not linear over the step: its law is not, or it acts in tension only and
-    /// opens, closes, or would push by its damping. What is lost then follows from its stored energy.
+    /// Energy that damping and the time scheme take in a step (J), given the opening at its start
+    /// (m) and the relative velocity, its average over the step and at its end (m/s). `None` for a
+    /// bond whose force is not linear over the step: its law is not, or it acts in tension only and
+    /// opens, closes, or would push by its damping. What is lost then follows from its stored
+    /// energy.
     pub fn lost(
         &self,
         solution: &ContactSolution<S>,
@@ -182,15 +181,16 @@ impl<S: Space> Mobility<S> {
         self.turns() || (0..S::D).any(|k| self.mass[k] > 0.0)
     }
 
-    /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic inertia
-    /// (1/(kg m^2)).
+    /// Returns the largest inverse inertia about any axis, or an upper bound; exact for isotropic
+    /// inertia (1/(kg m^2)).
     pub fn quickest(&self) -> f64 {
         let n = S::Spin::N;
         let row = |i: usize| (0..n).map(|j| self.inertia.entry(i, j).abs()).sum::<f64>();
         (0..n).map(row).fold(0.0, f64::max)
     }
 
-    /// Returns twice the kinetic energy of a velocity change, without imposed degrees of freedom (J).
+    /// Returns twice the kinetic energy of a velocity change, without imposed degrees of freedom
+    /// (J).
     #[inline]
     pub fn energy(&self, dv: &S::Vector, dw: &S::Spin) -> f64 {
         let masses = (0..S::D).filter(|k| self.mass[*k] > 0.0);
@@ -216,18 +216,19 @@ impl<S: Space> Mobility<S> {
 /// Location of a contact's row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
-    Plain(u32),
-    Full(u32),
-    Lever(u32),
-    BondedLever(u32),
+    /// Of a kind of rows, see [`super::kinds`].
+    Row {
+        kind: u8,
+        row: u32,
+    },
     System(u32),
 }
 
 /// The contact problem of one step. Push the bodies, then the contacts.
 ///
 /// # Examples
-/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s downwards, and 0.001 m/s
-/// sideways, which is within what Coulomb friction with mu = 0.5 holds.
+/// A disk of 2 kg rests on an immovable plane; in a step of 1 ms gravity would give it 0.01 m/s
+/// downwards, and 0.001 m/s sideways, which is within what Coulomb friction with mu = 0.5 holds.
 /// ```
 /// use fretwork_core::geometry::space::{Dim2, Space, VectorLike};
 /// use fretwork_core::solve::{ContactForm, Options, Problem, nlgs};
@@ -268,14 +269,8 @@ pub struct Problem<S: Space> {
     pub free: Vec<(S::Vector, S::Spin)>,
     pub(super) lengths: Vec<f64>,
     pub(super) masses: Vec<Mobility<S>>,
-    /// Contacts of two balls (or a ball and an immovable body), without bond: the fast path.
-    pub(super) plain: Rows<PlainRow<S>>,
-    /// Contacts as in `plain`, but with springs, bonds, cohesion or tangential restitution.
-    pub(super) full: Rows<FullRow<S>>,
-    /// Contacts with lever arms, or of bodies that are free along some axes only, without bond.
-    pub(super) levers: Rows<LeverRow<S, Loose<S>>>,
-    /// The same with bonds.
-    pub(super) bonded_levers: Rows<LeverRow<S, Bonded<S>>>,
+    /// Contacts between rigid bodies, by kind.
+    pub(super) rows: [RowsOfKind<S>; KINDS],
     /// Contacts with dynamical systems; they run after those above, in order.
     pub(super) of_systems: Vec<SystemRow<S>>,
     pub(super) tractions: Tractions,
@@ -291,7 +286,7 @@ pub struct Problem<S: Space> {
     /// Whether a contact has a compliance.
     pub(super) compliant: bool,
     /// Contacts of each kind between rigid bodies, as they are added.
-    pub(super) of_kind: [Vec<u32>; 4],
+    pub(super) of_kind: [Vec<u32>; KINDS],
     /// Bodies whose motion is imposed or controlled, in order.
     pub(super) controlled: Vec<u32>,
 }
@@ -303,10 +298,7 @@ impl<S: Space> Default for Problem<S> {
             free: Vec::new(),
             lengths: Vec::new(),
             masses: Vec::new(),
-            plain: Rows::default(),
-            full: Rows::default(),
-            levers: Rows::default(),
-            bonded_levers: Rows::default(),
+            rows: RowsOfKind::none(),
             of_systems: Vec::new(),
             tractions: Tractions::default(),
             systems: Vec::new(),
@@ -328,15 +320,12 @@ impl<S: Space> Problem<S> {
         + size_of::<f64>()
         + size_of::<Mobility<S>>();
 
-    /// Bytes per row of a contact: of two balls, of two balls with a bond, with lever arms, with lever arms and a bond.
-    pub const BYTES_A_CONTACT: [usize; 4] = [
-        size_of::<PlainRow<S>>(),
-        size_of::<FullRow<S>>(),
-        size_of::<LeverRow<S, Loose<S>>>(),
-        size_of::<LeverRow<S, Bonded<S>>>(),
-    ];
+    /// Bytes per row of a contact: of two balls, of two balls with a bond, with lever arms, with
+    /// lever arms and a bond.
+    pub const BYTES_A_CONTACT: [usize; KINDS] = RowsOfKind::<S>::BYTES;
 
-    /// Bytes per contact for the order of the iteration: its index as pushed, bodies, sequence and places.
+    /// Bytes per contact for the order of the iteration: its index as pushed, bodies, sequence and
+    /// places.
     pub const BYTES_TO_SORT: usize =
         size_of::<Place>() + size_of::<[u32; 2]>() + 3 * size_of::<u32>();
 
@@ -346,10 +335,9 @@ impl<S: Space> Problem<S> {
         self.free.clear();
         self.lengths.clear();
         self.masses.clear();
-        self.plain.clear();
-        self.full.clear();
-        self.levers.clear();
-        self.bonded_levers.clear();
+        for rows in &mut self.rows {
+            of_kind!(rows, rows => rows.clear());
+        }
         self.of_systems.clear();
         self.tractions.clear();
         self.clear_systems();
@@ -391,16 +379,15 @@ impl<S: Space> Problem<S> {
 
     /// Returns the normal impulse of a contact (N s).
     pub(super) fn normal(&self, place: Place) -> f64 {
-        self.local_impulse(place).0
+        self.local_impulse(place).n
     }
 
     /// Returns the normal and the tangential impulse of a contact (N s).
-    pub(super) fn local_impulse(&self, place: Place) -> LocalImpulse<S> {
+    pub(super) fn local_impulse(&self, place: Place) -> Parts<S> {
         match place {
-            Place::Plain(r) => self.plain.row(r).local_impulse(),
-            Place::Full(r) => self.full.row(r).local_impulse(),
-            Place::Lever(r) => self.levers.row(r).local_impulse(),
-            Place::BondedLever(r) => self.bonded_levers.row(r).local_impulse(),
+            Place::Row { kind, row } => {
+                of_kind!(&self.rows[kind as usize], rows => rows.row(row).local_impulse())
+            }
             Place::System(r) => self.of_systems[r as usize].impulse(),
         }
     }
@@ -412,20 +399,15 @@ impl<S: Space> Problem<S> {
 
     /// Returns the solution of the `k`-th contact pushed.
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
+        let bodies = &self.solver_bodies;
         match self.places[k] {
-            Place::Plain(r) => self.solved(self.plain.row(r)),
-            Place::Full(r) => self.solved(self.full.row(r)),
-            Place::Lever(r) => self.solved(self.levers.row(r)),
-            Place::BondedLever(r) => self.solved(self.bonded_levers.row(r)),
-            Place::System(r) => {
-                self.of_systems[r as usize].solution(&self.solver_bodies, &self.systems)
-            }
+            Place::Row { kind, row } => of_kind!(&self.rows[kind as usize], rows => {
+                let row = rows.row(row);
+                let [i, j] = row.bodies().map(|b| &bodies[b as usize]);
+                row.solution(i, j)
+            }),
+            Place::System(r) => self.of_systems[r as usize].solution(bodies, &self.systems),
         }
-    }
-
-    fn solved(&self, row: &impl Row<S>) -> ContactSolution<S> {
-        let [i, j] = row.bodies().map(|b| &self.solver_bodies[b as usize]);
-        row.solution(i, j)
     }
 
     /// Returns velocity and angular velocity of a body after the solve.

@@ -2,6 +2,7 @@
 
 use super::error::{Norm, Scale, Sums};
 use super::form::Problem;
+use super::kinds::of_kind;
 use super::rocking;
 use super::row::SolverBodies;
 use crate::geometry::space::Space;
@@ -12,25 +13,17 @@ const CHUNK: usize = 2048;
 /// About what the work of a body takes (ns).
 const WORK: f64 = 5.0;
 
-/// Sums over the contacts; the worst contact is searched among the rows in the order of the iteration.
+/// Sums over the contacts; the worst contact is searched among the rows in the order of the
+/// iteration.
 pub(super) fn measure<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Sums {
-    let Problem {
-        plain,
-        full,
-        levers,
-        bonded_levers,
-        ..
-    } = problem;
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let (mut sums, mut first) = (Sums::default(), 0);
-    plain.measure(&solver_bodies, first, parallel, &mut sums);
-    first += plain.len();
-    full.measure(&solver_bodies, first, parallel, &mut sums);
-    first += full.len();
-    levers.measure(&solver_bodies, first, parallel, &mut sums);
-    first += levers.len();
-    bonded_levers.measure(&solver_bodies, first, parallel, &mut sums);
-    first += bonded_levers.len();
+    for rows in &mut problem.rows {
+        of_kind!(rows, rows => {
+            rows.measure(&solver_bodies, first, parallel, &mut sums);
+            first += rows.len();
+        });
+    }
     if !problem.of_systems.is_empty() {
         measure_systems(problem, first, &mut sums);
     }
@@ -81,7 +74,8 @@ pub(super) fn scale<S: Space>(
     if !problem.systems.is_empty() {
         work += problem.work_on_systems();
     }
-    // Contacts yield little beside the motion of bodies, except where these hold each other: only then this is worth a pass.
+    // Contacts yield little beside the motion of bodies, except where these hold each other: only
+    // then this is worth a pass.
     let few = problem.contacts() <= FEW;
     let unbalanced = if few {
         sums.unbalanced
@@ -89,7 +83,7 @@ pub(super) fn scale<S: Space>(
         sums.power.abs()
     };
     if problem.compliant && unbalanced > BALANCED * work.max(free.energy) {
-        work += yields(problem, parallel);
+        work += work_on_compliance(problem, parallel);
     }
     Scale {
         work,
@@ -99,7 +93,8 @@ pub(super) fn scale<S: Space>(
     }
 }
 
-/// The error in a norm; where the sums over all contacts are within the tolerance, of each connected set.
+/// The error in a norm; where the sums over all contacts are within the tolerance, of each
+/// connected set.
 pub(super) fn error<S: Space>(
     problem: &mut Problem<S>,
     (norm, tolerance): (Norm, f64),
@@ -114,26 +109,27 @@ pub(super) fn error<S: Space>(
 }
 
 /// The work on the compliance of contacts.
-fn yields<S: Space>(problem: &mut Problem<S>, parallel: bool) -> f64 {
-    let of_systems = problem.of_systems.iter();
-    let of_systems = of_systems.map(|row| row.yields(&problem.solver_bodies, &problem.systems));
-    let of_systems: f64 = of_systems.sum();
+fn work_on_compliance<S: Space>(problem: &mut Problem<S>, parallel: bool) -> f64 {
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    problem.full.yields(&solver_bodies, parallel)
-        + problem.levers.yields(&solver_bodies, parallel)
-        + problem.bonded_levers.yields(&solver_bodies, parallel)
-        + of_systems
+    let mut work = 0.0;
+    for rows in &problem.rows {
+        work += of_kind!(rows, rows => rows.work_on_compliance(&solver_bodies, parallel));
+    }
+    let of_systems = problem.of_systems.iter();
+    let of_systems =
+        of_systems.map(|row| row.work_on_compliance(&problem.solver_bodies, &problem.systems));
+    work + of_systems.sum::<f64>()
 }
 
-/// Computes the reference values that depend on the free velocities; leaves these in the body records.
+/// Computes the reference values that depend on the free velocities; leaves these in the body
+/// records.
 pub(super) fn free_velocity<S: Space>(problem: &mut Problem<S>, parallel: bool) -> Scale {
     problem.set_free(parallel);
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
     let mut out = Scale::default();
-    out.add(&problem.plain.free(&solver_bodies, parallel));
-    out.add(&problem.full.free(&solver_bodies, parallel));
-    out.add(&problem.levers.free(&solver_bodies, parallel));
-    out.add(&problem.bonded_levers.free(&solver_bodies, parallel));
+    for rows in &mut problem.rows {
+        out.add(&of_kind!(rows, rows => rows.free(&solver_bodies, parallel)));
+    }
     for row in &problem.of_systems {
         out.add(&row.scale(&problem.solver_bodies, &problem.systems));
     }

@@ -1,17 +1,21 @@
-//! Nesterov's momentum on the Gauss-Seidel iteration over bodies: an iteration starts from impulses that are moved on by a factor times
-//! what the previous iteration changed,
+//! Nesterov's momentum on the Gauss-Seidel iteration over bodies: an iteration starts from impulses
+//! that are moved on by a factor times what the previous iteration changed,
 //!
-//! y_k = p_k + beta_k (p_k - p_(k-1)),  beta_k = (t_k - 1) / t_(k+1),  t_(k+1) = (1 + sqrt(1 + 4 t_k^2)) / 2  (Nesterov 1983).
+//! y_k = p_k + beta_k (p_k - p_(k-1)),  beta_k = (t_k - 1) / t_(k+1),  t_(k+1) = (1 + sqrt(1 + 4
+//! t_k^2)) / 2  (Nesterov 1983).
 //!
-//! Velocities are moved on by the same factor, since they are linear in the impulses. Momentum starts anew (t = 1) where it points against
-//! what the iteration did, (y_k - p_(k+1)) . W (p_(k+1) - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015, measured by the kinetic energy of
+//! Velocities are moved on by the same factor, since they are linear in the impulses. Momentum
+//! starts anew (t = 1) where it points against what the iteration did, (y_k - p_(k+1)) . W (p_(k+1)
+//! - p_k) > 0 (the gradient test of O'Donoghue and Candes 2015, measured by the kinetic energy of
 //! the velocities that the impulses make).
 //!
-//! With friction the contact problem is no minimisation, and full momentum may circle. Where the residual does not fall from one convergence test to
-//! the next, t is limited to half of its largest value between them.
+//! With friction the contact problem is no minimisation, and full momentum may circle. Where the
+//! residual does not fall from one convergence test to the next, t is limited to half of its
+//! largest value between them.
 
 use super::form::Problem;
-use super::row::{LocalImpulse, SolverBody};
+use super::kinds::{KINDS, of_kind};
+use super::row::{Parts, SolverBody};
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{fill, map_chunks_of_two, pays};
 
@@ -32,7 +36,7 @@ struct BodyIncrement<S: Space> {
     inertia: f64,
 }
 
-/// See the module. There are only plain rows, rows with lever arms, and moments.
+/// See the module.
 #[derive(Debug)]
 pub(super) struct Momentum<S: Space> {
     /// t_k of the module.
@@ -44,16 +48,14 @@ pub(super) struct Momentum<S: Space> {
     /// Largest t_k since the last convergence test.
     peak_t: f64,
     bodies: Vec<BodyIncrement<S>>,
-    /// Impulses after the last iteration, of the plain rows and of those with lever arms.
-    pub plain: Vec<LocalImpulse<S>>,
-    pub levers: Vec<LocalImpulse<S>>,
+    /// Impulses after the last iteration, by kind of rows.
+    pub impulses: [Vec<Parts<S>>; KINDS],
     pub moments: Vec<S::Spin>,
 }
 
 impl<S: Space> Momentum<S> {
     /// Starts from the impulses and velocities of a problem.
     pub fn new(problem: &Problem<S>, parallel: bool) -> Self {
-        debug_assert!(problem.full.len() + problem.bonded_levers.len() == 0);
         let inverse = |x: f64| if x > 0.0 { 1.0 / x } else { 0.0 };
         let (mut bodies, count) = (Vec::new(), problem.solver_bodies.len());
         fill(pays(parallel, count, EACH), &mut bodies, count, |b| {
@@ -73,8 +75,10 @@ impl<S: Space> Momentum<S> {
             max_t: f64::INFINITY,
             peak_t: 1.0,
             bodies,
-            plain: problem.plain.local_impulses(parallel),
-            levers: problem.levers.local_impulses(parallel),
+            impulses: problem
+                .rows
+                .each_ref()
+                .map(|rows| of_kind!(rows, rows => rows.local_impulses(parallel))),
             moments: problem.moments.iter().map(|row| row.moment()).collect(),
         }
     }
@@ -94,7 +98,8 @@ impl<S: Space> Momentum<S> {
         self.peak_t = self.t;
     }
 
-    /// Allows half as much momentum again, where it was bounded, after a test at which the residual had fallen.
+    /// Allows half as much momentum again, where it was bounded, after a test at which the residual
+    /// had fallen.
     pub fn speed_up(&mut self) {
         if self.peak_t >= self.max_t {
             self.max_t *= 1.5;
@@ -102,7 +107,8 @@ impl<S: Space> Momentum<S> {
         self.peak_t = self.t;
     }
 
-    /// Extrapolates the velocities after an iteration; returns the factor by which the next one extrapolates the impulses.
+    /// Extrapolates the velocities after an iteration; returns the factor by which the next one
+    /// extrapolates the impulses.
     pub fn advance(&mut self, solver_bodies: &mut [SolverBody<S>], parallel: bool) -> f64 {
         let next = |t: f64| 0.5 * (1.0 + (1.0 + 4.0 * t * t).sqrt());
         let next_t = next(self.t);
@@ -127,7 +133,8 @@ impl<S: Space> Momentum<S> {
             along += part[1];
         }
         if self.factor * along > squared {
-            // Momentum points against the iteration: t = 1, and the extrapolation is taken back. This is rare.
+            // Momentum points against the iteration: t = 1, and the extrapolation is taken back.
+            // This is rare.
             let lists = (&mut self.bodies[..], solver_bodies);
             map_chunks_of_two(divide, CHUNK, lists, |_, increments, bodies| {
                 for (last, b) in increments.iter().zip(bodies) {
@@ -180,8 +187,9 @@ mod tests {
         problem
     }
 
-    /// A contact carries what is above it. A sweep passes a force on to the next contact, so that without momentum the number of sweeps grows
-    /// with the square of the height; with momentum in proportion to it.
+    /// A contact carries what is above it. A sweep passes a force on to the next contact, so that
+    /// without momentum the number of sweeps grows with the square of the height; with momentum in
+    /// proportion to it.
     #[test]
     fn a_column_is_solved_in_sweeps_that_grow_with_its_height() {
         for friction in [0.0, 0.3] {
@@ -205,7 +213,8 @@ mod tests {
         }
     }
 
-    /// With sliding contacts, and bodies that move fast together, the solution is that of plain sweeps.
+    /// With sliding contacts, and bodies that move fast together, the solution is that of plain
+    /// sweeps.
     #[test]
     fn it_solves_the_same_problem() {
         for drift in [0.0, 1e3] {

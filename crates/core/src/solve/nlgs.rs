@@ -1,14 +1,16 @@
-//! Non-linear Gauss-Seidel (NLGS): contact by contact, with velocities updated in place and warm start.
+//! Non-linear Gauss-Seidel (NLGS): contact by contact, with velocities updated in place and warm
+//! start.
 
 use super::accelerate::Acceleration;
 use super::chosen::SolvePath;
 use super::error::{ErrorParts, Norm};
 use super::form::{Place, Problem};
+use super::kinds::{RowsOfKind, of_kind};
 use super::local::solver::Method;
 use super::measure::{error, free_velocity, measure, scale};
 use super::momentum::Momentum;
 use super::nodal::NodalSystem;
-use super::row::{self, Row, SolverBodies, SolverBody};
+use super::row::{self, SolverBodies};
 use crate::geometry::space::Space;
 
 /// Solver options.
@@ -28,7 +30,8 @@ pub struct Options {
     pub accelerated: bool,
     /// Solution method.
     pub method: Method,
-    /// Whether the colours of an iteration, and the pairs of detection, are distributed over threads; the results are the same.
+    /// Whether the colours of an iteration, and the pairs of detection, are distributed over
+    /// threads; the results are the same.
     pub parallel: bool,
 }
 
@@ -58,13 +61,14 @@ pub struct Report {
     pub parts: ErrorParts,
     /// Whether the error is within the tolerance.
     pub converged: bool,
-    /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]: the problem has no solution.
+    /// Whether the impulses grew until they left nothing of the velocities, see [`Sums::drowned`]:
+    /// the problem has no solution.
     pub unbounded: bool,
-    /// Whether another solution was found, of more energy, in which a loaded contact slides that sticks in the one taken, or the reverse: the
-    /// step has several.
+    /// Whether another solution was found, of more energy, in which a loaded contact slides that
+    /// sticks in the one taken, or the reverse: the step has several.
     pub several: bool,
-    /// Whether a loaded contact began to slide in a set of contacts that was too large to seek another solution, see
-    /// [`Problem::is_not_searched`].
+    /// Whether a loaded contact began to slide in a set of contacts that was too large to seek
+    /// another solution, see [`Problem::is_not_searched`].
     pub not_searched: bool,
     /// Whether it was one of a body that bodies with imposed or controlled motion squeeze.
     pub pinched: bool,
@@ -132,17 +136,18 @@ pub fn solve<S: Space>(problem: &mut Problem<S>, options: &Options) -> Report {
         while report.iterations < last {
             let momentum = acceleration.as_mut();
             let momentum = momentum.and_then(|a| a.momentum(problem, report.iterations));
-            // The iteration before a test is not relaxed, so that its impulses are admissible; nor is one with momentum, which takes
-            // the place of relaxation.
+            // The iteration before a test is not relaxed, so that its impulses are admissible; nor
+            // is one with momentum, which takes the place of relaxation.
             let plain = report.iterations + 1 == last || momentum.is_some();
             let relaxation = if plain { 1.0 } else { relaxation };
             sweep(problem, relaxation, options.parallel, momentum);
             report.iterations += 1;
         }
         let ended = report.iterations >= options.max_iterations;
-        // The velocities have accumulated rounding errors: convergence is decided with velocities recomputed
-        // from the impulses. The first tests, which often succeed, recompute them at once; so do all with large systems, where finding
-        // the velocities of all nodes costs the same in either way, and the pass over the other contacts little beside it.
+        // The velocities have accumulated rounding errors: convergence is decided with velocities
+        // recomputed from the impulses. The first tests, which often succeed, recompute them at
+        // once; so do all with large systems, where finding the velocities of all nodes costs the
+        // same in either way, and the pass over the other contacts little beside it.
         let fresh = report.iterations <= every || large;
         if fresh {
             problem.reload(options.parallel);
@@ -200,7 +205,8 @@ pub fn prepare<S: Space>(problem: &mut Problem<S>) {
     problem.reload(false);
 }
 
-/// Runs iterations without convergence tests, for benchmarks. The problem must have been [`prepare`]d.
+/// Runs iterations without convergence tests, for benchmarks. The problem must have been
+/// [`prepare`]d.
 pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, parallel: bool) {
     for _ in 0..count {
         sweep(problem, relaxation, parallel, None);
@@ -209,8 +215,8 @@ pub fn sweeps<S: Space>(problem: &mut Problem<S>, count: u32, relaxation: f64, p
 }
 
 impl Report {
-    /// Adds another solve of the same step: iterations are summed, what was found of several solutions is kept, the rest is taken from the last
-    /// solve.
+    /// Adds another solve of the same step: iterations are summed, what was found of several
+    /// solutions is kept, the rest is taken from the last solve.
     pub fn add(&mut self, other: &Self) {
         *self = Self {
             iterations: self.iterations + other.iterations,
@@ -223,8 +229,8 @@ impl Report {
     }
 }
 
-/// Controls the relaxation. Over-relaxation has no convergence proof with friction; where the residual grows
-/// or cycles, it is reduced.
+/// Controls the relaxation. Over-relaxation has no convergence proof with friction; where the
+/// residual grows or cycles, it is reduced.
 struct Caution {
     least: f64,
     tests: u32,
@@ -242,7 +248,8 @@ impl Default for Caution {
 impl Caution {
     /// Growth of the squared residual that triggers a reduction.
     const GROWTH: f64 = 4.0;
-    /// Number of tests without a reduction of the squared residual by a hundredth that triggers a reduction.
+    /// Number of tests without a reduction of the squared residual by a hundredth that triggers a
+    /// reduction.
     const PATIENCE: u32 = 20;
 
     /// Returns the relaxation to continue with, given the squared residual at a test.
@@ -261,74 +268,37 @@ impl Caution {
     }
 }
 
-/// Sets the impulse of a row, or solves the contact where none is given.
-fn take<S: Space, R: Row<S>>(
-    row: &mut R,
-    impulse: &Option<S::Vector>,
-    solver_bodies: &mut [SolverBody<S>],
-) {
-    match impulse {
-        Some(impulse) => row.set(impulse),
-        None => {
-            let [i, j] = row.bodies().map(|b| b as usize);
-            let (mut a, mut b) = (solver_bodies[i], solver_bodies[j]);
-            row.update(&mut a, &mut b, 1.0);
-        }
-    }
-}
-
-/// Solves a contact that moves nothing.
-fn solve_if_held<S: Space, R: Row<S>>(row: &mut R, solver_bodies: &mut [SolverBody<S>]) {
-    if row.rho() == 0.0 {
-        take(row, &None, solver_bodies);
-    }
-}
-
 impl<S: Space> Problem<S> {
     /// Stores the components of all impulses and moments, in the order of the iteration.
     pub(super) fn store(&self, out: &mut Vec<f64>) {
         out.clear();
-        self.plain.store(out);
-        self.full.store(out);
-        self.levers.store(out);
-        self.bonded_levers.store(out);
+        for rows in &self.rows {
+            of_kind!(rows, rows => rows.store(out));
+        }
         let of_systems = self.of_systems.iter();
-        of_systems.for_each(|row| row::store::<S>(row.impulse(), out));
+        of_systems.for_each(|row| row::store(row.impulse(), out));
         self.moments.iter().for_each(|row| row.store(out));
     }
 
     /// Restores them, and recomputes the velocities.
     pub(super) fn restore(&mut self, mut from: &[f64]) {
         let from = &mut from;
-        self.plain.restore(from);
-        self.full.restore(from);
-        self.levers.restore(from);
-        self.bonded_levers.restore(from);
+        for rows in &mut self.rows {
+            of_kind!(rows, rows => rows.restore(from));
+        }
         let of_systems = self.of_systems.iter_mut();
-        of_systems.for_each(|row| row.set_impulse(row::restore::<S>(from)));
+        of_systems.for_each(|row| row.set_impulse(row::restore(from)));
         self.moments.iter_mut().for_each(|row| row.restore(from));
         self.reload(false);
     }
 
-    /// Takes impulses and moments in the order pushed, and recomputes the velocities. A contact without one
-    /// (`None`, where both bodies are immovable) is solved for the current velocities.
+    /// Takes impulses and moments in the order pushed, and recomputes the velocities. A contact
+    /// without one (`None`, where both bodies are immovable) is solved for the current velocities.
     pub(super) fn adopt(&mut self, impulses: &[Option<S::Vector>], moments: &[Option<S::Spin>]) {
         for (k, impulse) in impulses.iter().enumerate() {
-            let solver_bodies = &mut self.solver_bodies;
-            match self.places[k] {
-                Place::Plain(r) => take(self.plain.row_mut(r), impulse, solver_bodies),
-                Place::Full(r) => take(self.full.row_mut(r), impulse, solver_bodies),
-                Place::Lever(r) => take(self.levers.row_mut(r), impulse, solver_bodies),
-                Place::BondedLever(r) => {
-                    take(self.bonded_levers.row_mut(r), impulse, solver_bodies);
-                }
-                Place::System(r) => {
-                    let row = &mut self.of_systems[r as usize];
-                    match impulse {
-                        Some(impulse) => row.set(impulse),
-                        None => row.update(solver_bodies, &mut self.systems, 1.0),
-                    }
-                }
+            match impulse {
+                Some(impulse) => self.set(self.places[k], impulse),
+                None => self.solve_at_rest(self.places[k]),
             }
         }
         for (k, moment) in moments.iter().enumerate() {
@@ -343,13 +313,7 @@ impl<S: Space> Problem<S> {
     /// Takes the impulses and moments of some contacts, and recomputes the velocities.
     pub(super) fn adopt_some(&mut self, impulses: &[(u32, S::Vector)], moments: &[(u32, S::Spin)]) {
         for (k, impulse) in impulses {
-            match self.places[*k as usize] {
-                Place::Plain(r) => self.plain.row_mut(r).set(impulse),
-                Place::Full(r) => self.full.row_mut(r).set(impulse),
-                Place::Lever(r) => self.levers.row_mut(r).set(impulse),
-                Place::BondedLever(r) => self.bonded_levers.row_mut(r).set(impulse),
-                Place::System(r) => self.of_systems[r as usize].set(impulse),
-            }
+            self.set(self.places[*k as usize], impulse);
         }
         for (k, moment) in moments {
             self.moments[*k as usize].set(moment);
@@ -357,24 +321,47 @@ impl<S: Space> Problem<S> {
         self.reload(false);
     }
 
-    /// Solves the contacts and moments that move nothing: their impulses follow from velocities that are given, and methods that judge
-    /// first would leave them as they start.
+    /// Sets the impulse of a contact; the caller updates the velocities.
+    fn set(&mut self, place: Place, impulse: &S::Vector) {
+        match place {
+            Place::Row { kind, row } => {
+                of_kind!(&mut self.rows[kind as usize], rows => rows.row_mut(row).set(impulse));
+            }
+            Place::System(r) => self.of_systems[r as usize].set(impulse),
+        }
+    }
+
+    /// Solves a contact that moves nothing for the current velocities.
+    fn solve_at_rest(&mut self, place: Place) {
+        let bodies = &mut self.solver_bodies;
+        match place {
+            Place::Row { kind, row } => of_kind!(&mut self.rows[kind as usize], rows => {
+                let row = rows.row_mut(row);
+                let [i, j] = row.bodies().map(|b| &bodies[b as usize]);
+                row.solve_at(i, j);
+            }),
+            Place::System(r) => {
+                self.of_systems[r as usize].update(bodies, &mut self.systems, 1.0);
+            }
+        }
+    }
+
+    /// rho of the natural map; 0 for a contact that moves nothing.
+    fn rho(&self, place: Place) -> f64 {
+        match place {
+            Place::Row { kind, row } => {
+                of_kind!(&self.rows[kind as usize], rows => rows.row(row).rho())
+            }
+            Place::System(r) => self.of_systems[r as usize].rho(),
+        }
+    }
+
+    /// Solves the contacts and moments that move nothing: their impulses follow from velocities
+    /// that are given, and methods that judge first would leave them as they start.
     fn solve_held(&mut self) {
-        let solver_bodies = &mut self.solver_bodies;
-        for place in &self.places {
-            match *place {
-                Place::Plain(r) => solve_if_held(self.plain.row_mut(r), solver_bodies),
-                Place::Full(r) => solve_if_held(self.full.row_mut(r), solver_bodies),
-                Place::Lever(r) => solve_if_held(self.levers.row_mut(r), solver_bodies),
-                Place::BondedLever(r) => {
-                    solve_if_held(self.bonded_levers.row_mut(r), solver_bodies);
-                }
-                Place::System(r) => {
-                    let row = &mut self.of_systems[r as usize];
-                    if row.rho() == 0.0 {
-                        row.update(solver_bodies, &mut self.systems, 1.0);
-                    }
-                }
+        for k in 0..self.places.len() {
+            if self.rho(self.places[k]) == 0.0 {
+                self.solve_at_rest(self.places[k]);
             }
         }
         for k in 0..self.moments.len() {
@@ -397,10 +384,9 @@ impl<S: Space> Problem<S> {
     pub(super) fn reload(&mut self, parallel: bool) {
         self.set_free(parallel);
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
-        self.plain.load(&solver_bodies, parallel);
-        self.full.load(&solver_bodies, parallel);
-        self.levers.load(&solver_bodies, parallel);
-        self.bonded_levers.load(&solver_bodies, parallel);
+        for rows in &mut self.rows {
+            of_kind!(rows, rows => rows.load(&solver_bodies, parallel));
+        }
         for row in &self.of_systems {
             row.load(&mut self.solver_bodies, &mut self.systems);
         }
@@ -414,41 +400,28 @@ impl<S: Space> Problem<S> {
 
     /// Returns the index, as pushed, of the contact at a position in the iteration.
     fn pushed(&self, at: usize) -> Option<usize> {
-        let counts = [
-            self.plain.len(),
-            self.full.len(),
-            self.levers.len(),
-            self.bonded_levers.len(),
-        ];
-        let (mut at, mut kind) = (at, 0);
-        while kind < counts.len() && at >= counts[kind] {
-            at -= counts[kind];
-            kind += 1;
+        let (mut place, mut first) = (None, 0);
+        for (kind, rows) in self.rows.iter().enumerate() {
+            let count = of_kind!(rows, rows => rows.len());
+            if place.is_none() && at < first + count {
+                let (kind, row) = (kind as u8, (at - first) as u32);
+                place = Some(Place::Row { kind, row });
+            }
+            first += count;
         }
-        let of_kind = [
-            Place::Plain,
-            Place::Full,
-            Place::Lever,
-            Place::BondedLever,
-            Place::System,
-        ];
-        let place = of_kind[kind](at as u32);
+        let place = place.unwrap_or_else(|| Place::System((at - first) as u32));
         self.places.iter().position(|p| *p == place)
     }
 }
 
 /// Sorts the rows of each kind by colour, where they were not pushed in that order.
 fn sort<S: Space>(problem: &mut Problem<S>) {
-    let sorted = problem.plain.sorted()
-        && problem.full.sorted()
-        && problem.levers.sorted()
-        && problem.bonded_levers.sorted();
-    if !sorted {
+    let sorted = |rows: &RowsOfKind<S>| of_kind!(rows, rows => rows.sorted());
+    if !problem.rows.iter().all(sorted) {
         let movable = problem.movable(false);
-        problem.plain.sort(&movable);
-        problem.full.sort(&movable);
-        problem.levers.sort(&movable);
-        problem.bonded_levers.sort(&movable);
+        for rows in &mut problem.rows {
+            of_kind!(rows, rows => rows.sort(&movable));
+        }
         problem.place_in_order(false);
     }
     for row in &mut problem.moments {
@@ -464,8 +437,13 @@ fn sweep<S: Space>(
     momentum: Option<&mut Momentum<S>>,
 ) {
     match momentum {
-        None => sweep_rows(problem, relaxation, parallel),
-        Some(momentum) => sweep_rows_extrapolated(problem, relaxation, parallel, momentum),
+        None => {
+            let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
+            for rows in &mut problem.rows {
+                of_kind!(rows, rows => rows.sweep(&solver_bodies, relaxation, parallel));
+            }
+        }
+        Some(momentum) => sweep_extrapolated(problem, relaxation, parallel, momentum),
     }
     for row in &mut problem.of_systems {
         row.update(&mut problem.solver_bodies, &mut problem.systems, relaxation);
@@ -478,17 +456,7 @@ fn sweep<S: Space>(
     }
 }
 
-fn sweep_rows<S: Space>(problem: &mut Problem<S>, relaxation: f64, parallel: bool) {
-    let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    problem.plain.sweep(&solver_bodies, relaxation, parallel);
-    problem.full.sweep(&solver_bodies, relaxation, parallel);
-    problem.levers.sweep(&solver_bodies, relaxation, parallel);
-    problem
-        .bonded_levers
-        .sweep(&solver_bodies, relaxation, parallel);
-}
-
-fn sweep_rows_extrapolated<S: Space>(
+fn sweep_extrapolated<S: Space>(
     problem: &mut Problem<S>,
     relaxation: f64,
     parallel: bool,
@@ -501,12 +469,10 @@ fn sweep_rows_extrapolated<S: Space>(
         *before = now;
     }
     let solver_bodies = SolverBodies::new(&mut problem.solver_bodies);
-    let plain = (&mut momentum.plain[..], factor);
-    let rows = &mut problem.plain;
-    rows.sweep_extrapolated(&solver_bodies, relaxation, parallel, plain);
-    let levers = (&mut momentum.levers[..], factor);
-    let rows = &mut problem.levers;
-    rows.sweep_extrapolated(&solver_bodies, relaxation, parallel, levers);
+    for (rows, before) in problem.rows.iter_mut().zip(&mut momentum.impulses) {
+        let from = (&mut before[..], factor);
+        of_kind!(rows, rows => rows.sweep_extrapolated(&solver_bodies, relaxation, parallel, from));
+    }
 }
 
 #[cfg(test)]
@@ -516,8 +482,8 @@ mod tests {
     use crate::solve::form::ContactForm;
     use nalgebra::{Matrix1, Vector1, Vector2};
 
-    /// Over-relaxation is halved where the residual grows to more than four times the least, or does not fall by a hundredth in twenty tests, and
-    /// given up below 0.05.
+    /// Over-relaxation is halved where the residual grows to more than four times the least, or
+    /// does not fall by a hundredth in twenty tests, and given up below 0.05.
     #[test]
     fn caution_reduces_the_relaxation() {
         let mut caution = Caution::default();
@@ -570,7 +536,8 @@ mod tests {
         };
         problem.push(&bonded);
         problem.push(&plain);
-        assert_eq!((problem.plain.len(), problem.full.len()), (1, 1));
+        let counts = problem.rows.each_ref().map(|r| of_kind!(r, r => r.len()));
+        assert_eq!(counts, [1, 1, 0, 0]);
         assert_eq!((problem.pushed(0), problem.pushed(1)), (Some(1), Some(0)));
     }
 }

@@ -1,8 +1,8 @@
-//! Bodies that controlled bodies squeeze, as debris between first bodies: where friction lets them go, another solution may hold them.
+//! Bodies that controlled bodies squeeze, as debris between first bodies: where friction lets them
+//! go, another solution may hold them.
 
 use super::form::{ContactForm, Problem};
-use super::row::Row;
-use super::rows::Rows;
+use super::kinds::of_kind;
 use crate::geometry::space::{Space, VectorLike};
 use std::collections::BTreeMap;
 
@@ -18,8 +18,8 @@ impl<S: Space> Problem<S> {
         self.controlled.binary_search(body).is_ok()
     }
 
-    /// Contacts of controlled bodies with others that have two or more such, in order; none where systems act. Rows are looked through, which take
-    /// less memory than forms.
+    /// Contacts of controlled bodies with others that have two or more such, in order; none where
+    /// systems act. Rows are looked through, which take less memory than forms.
     pub(super) fn of_several_controlled(&self) -> Vec<usize> {
         if self.controlled.is_empty() || !self.systems.is_empty() {
             return Vec::new();
@@ -44,25 +44,17 @@ impl<S: Space> Problem<S> {
 
     /// Gives the bodies of each contact between rigid bodies, and its index as pushed.
     fn each_body_pair(&self, give: &mut impl FnMut([u32; 2], u32)) {
-        fn of<S: Space, R: Row<S>>(
-            rows: &Rows<R>,
-            pushed: &[u32],
-            give: &mut impl FnMut([u32; 2], u32),
-        ) {
-            for (row, k) in rows.all().iter().zip(rows.sequence()) {
+        for (rows, pushed) in self.rows.iter().zip(&self.of_kind) {
+            of_kind!(rows, rows => for (row, k) in rows.all().iter().zip(rows.sequence()) {
                 give(row.bodies(), pushed[*k as usize]);
-            }
+            });
         }
-        let [plain, full, levers, bonded_levers] = &self.of_kind;
-        of(&self.plain, plain, give);
-        of(&self.full, full, give);
-        of(&self.levers, levers, give);
-        of(&self.bonded_levers, bonded_levers, give);
     }
 
-    /// Of these contacts those of a body, not a controlled one, which controlled bodies squeeze: by two loaded ones of `of_several`
-    /// ([`Self::of_several_controlled`]) whose friction cones lie in each other, so that no other load need press them (Nguyen, "Constructing
-    /// force-closure grasps", Int. J. Robotics Research 7, 1988).
+    /// Of these contacts those of a body, not a controlled one, which controlled bodies squeeze: by
+    /// two loaded ones of `of_several` ([`Self::of_several_controlled`]) whose friction cones lie
+    /// in each other, so that no other load need press them (Nguyen, "Constructing force-closure
+    /// grasps", Int. J. Robotics Research 7, 1988).
     pub(super) fn of_pinched(
         &self,
         forms: &[ContactForm<S>],
@@ -111,7 +103,8 @@ mod tests {
     use crate::geometry::space::{Dim2, Space};
     use nalgebra::{Matrix1, Vector1, Vector2};
 
-    /// A grain between two bodies that push it along these directions (degrees), with this friction; the loads are of 1 N s.
+    /// A grain between two bodies that push it along these directions (degrees), with this
+    /// friction; the loads are of 1 N s.
     fn between(directions: [f64; 2], friction: f64, controlled: &[u32]) -> Vec<usize> {
         let mut problem = Problem::<Dim2>::default();
         for _ in 0..3 {
@@ -156,8 +149,8 @@ mod tests {
         problem.of_pinched(&forms, &several, 0..2)
     }
 
-    /// Two that push against each other squeeze, in a corner only where the friction angles bridge what the directions lack; not where one of them
-    /// is free, nor where all three are controlled.
+    /// Two that push against each other squeeze, in a corner only where the friction angles bridge
+    /// what the directions lack; not where one of them is free, nor where all three are controlled.
     #[test]
     fn what_is_in_both_friction_cones_is_squeezed() {
         assert_eq!(between([0.0, 180.0], 0.1, &[2, 1]), [0, 1]);

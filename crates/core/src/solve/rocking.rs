@@ -1,17 +1,21 @@
-//! The third part of the norm [`Norm::Balance`](super::error::Norm::Balance) by connected sets: what one of them gets wrong is not made up for by
-//! others, which it does not touch. Asked for where the sums over all contacts say that a step is solved.
+//! The third part of the norm [`Norm::Balance`](super::error::Norm::Balance) by connected sets:
+//! what one of them gets wrong is not made up for by others, which it does not touch. Asked for
+//! where the sums over all contacts say that a step is solved.
 
 use super::connected::Connected;
 use super::error::{Scale, Sums};
 use super::form::Problem;
-use super::row::{Row, SolverBody, noise};
+use super::kinds::of_kind;
+use super::row::{Kind, Moving, Row, SolverBody, noise};
 use super::rows::Rows;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::Space;
+use crate::lanes::{Batch, LaneVector};
 
-/// Share of the sums over all contacts from which their difference from those of the other sets is more than rounding.
+/// Share of the sums over all contacts from which their difference from those of the other sets is
+/// more than rounding.
 const KNOWN: f64 = 1e-6;
-/// Share of the work of all contacts that the work of a set is taken to be at least: a grain that sticks to a wall carries nothing, and what is left
-/// of its residuals is no error.
+/// Share of the work of all contacts that the work of a set is taken to be at least: a grain that
+/// sticks to a wall carries nothing, and what is left of its residuals is no error.
 const LEAST: f64 = 1e-4;
 
 /// The error of the worst set, given the sums over all; 0 where all contacts are of one.
@@ -32,7 +36,8 @@ fn of_sets<S: Space>(
     sums: &Sums,
     scale: &Scale,
 ) -> f64 {
-    // Nearly all contacts of a packing are of one set, whose sums are what others leave of those over all.
+    // Nearly all contacts of a packing are of one set, whose sums are what others leave of those
+    // over all.
     let largest = (0..sets.len()).max_by_key(|k| sets.contacts(*k));
     let most = largest
         .filter(|k| problem.systems.is_empty() && 2 * sets.contacts(*k) > problem.contacts());
@@ -94,10 +99,9 @@ fn apart<S: Space>(
     let free = |bodies: [u32; 2]| bodies.map(|b| read(b as usize));
     let now = |bodies: [u32; 2]| bodies.map(|b| problem.solver_bodies[b as usize]);
     let of = |bodies: [u32; 2]| sets.of(bodies).filter(|set| Some(*set) != without);
-    add(&problem.plain, of, now, free, &mut out);
-    add(&problem.full, of, now, free, &mut out);
-    add(&problem.levers, of, now, free, &mut out);
-    add(&problem.bonded_levers, of, now, free, &mut out);
+    for rows in &problem.rows {
+        of_kind!(rows, rows => add(rows, of, now, free, &mut out));
+    }
     for row in &problem.moments {
         if let Some(set) = of(row.bodies) {
             let [a, b] = now(row.bodies);
@@ -118,8 +122,8 @@ fn apart<S: Space>(
 }
 
 /// Adds the contacts of rows to the sums of their sets.
-fn add<S: Space, R: Row<S>>(
-    rows: &Rows<R>,
+fn add<S: Space, K: Kind<S>>(
+    rows: &Rows<S, K>,
     of: impl Fn([u32; 2]) -> Option<usize>,
     now: impl Fn([u32; 2]) -> [SolverBody<S>; 2],
     free: impl Fn([u32; 2]) -> [SolverBody<S>; 2],
@@ -131,14 +135,16 @@ fn add<S: Space, R: Row<S>>(
         };
         let (sums, scale) = &mut out[set];
         let [a, b] = now(row.bodies());
-        sums.add_moment(&row.residual(&a, &b));
-        scale.work += row.yields(&a, &b);
+        let [i, j] = [&a, &b].map(Moving::of);
+        sums.add_moment(&Row::residual(Batch::one(row), &i, &j));
+        scale.work += row.work_on_compliance(&a, &b);
         let [a, b] = free(row.bodies());
-        let speed = row.speed(&a, &b);
+        let [a, b] = [&a, &b].map(Moving::of);
+        let [speed, rho, mu] = Row::speed(Batch::one(row), &a, &b);
         let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
         scale.free += speed;
-        scale.energy += row.rho() * speed;
-        scale.noise += noise(own, row.friction());
+        scale.energy += rho * speed;
+        scale.noise += noise(own, mu);
         scale.contacts += 1;
     }
 }

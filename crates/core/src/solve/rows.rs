@@ -4,7 +4,7 @@ use super::colour::Order;
 use super::error::{Scale, Sums};
 use super::form::ContactForm;
 use super::row::{
-    self, Free, Load, LocalImpulse, Measure, Row, SolverBodies, Update, Visit, visit,
+    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, Update, Visit, visit,
 };
 use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, pays};
@@ -21,14 +21,14 @@ const ORDERED: f64 = 14.0;
 
 /// See the module. Rows are added in any order and sorted once.
 #[derive(Debug)]
-pub(super) struct Rows<R> {
-    rows: Vec<R>,
+pub(in crate::solve) struct Rows<S: Space, K: Kind<S>> {
+    rows: Vec<Row<S, K>>,
     order: Order,
     /// Whether the rows are in that order.
     sorted: bool,
 }
 
-impl<R> Default for Rows<R> {
+impl<S: Space, K: Kind<S>> Default for Rows<S, K> {
     fn default() -> Self {
         Self {
             rows: Vec::new(),
@@ -38,7 +38,7 @@ impl<R> Default for Rows<R> {
     }
 }
 
-impl<R> Rows<R> {
+impl<S: Space, K: Kind<S>> Rows<S, K> {
     /// Removes all, and keeps the memory and the last order.
     pub fn clear(&mut self) {
         self.rows.clear();
@@ -49,9 +49,14 @@ impl<R> Rows<R> {
         self.rows.len()
     }
 
+    /// Whether bonds may act on them.
+    pub fn may_have_bonds(&self) -> bool {
+        K::BONDS && !self.rows.is_empty()
+    }
+
     /// Adds a row; gives its place until rows are sorted.
-    pub fn push(&mut self, row: R) -> u32 {
-        self.rows.push(row);
+    pub fn push(&mut self, contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> u32 {
+        self.rows.push(Row::new(contact, bodies));
         self.sorted = false;
         self.rows.len() as u32 - 1
     }
@@ -62,15 +67,15 @@ impl<R> Rows<R> {
     }
 
     /// All of them, in the order of the iteration.
-    pub fn all(&self) -> &[R] {
+    pub fn all(&self) -> &[Row<S, K>] {
         &self.rows
     }
 
-    pub fn row(&self, place: u32) -> &R {
+    pub fn row(&self, place: u32) -> &Row<S, K> {
         &self.rows[place as usize]
     }
 
-    pub fn row_mut(&mut self, place: u32) -> &mut R {
+    pub fn row_mut(&mut self, place: u32) -> &mut Row<S, K> {
         &mut self.rows[place as usize]
     }
 
@@ -90,10 +95,7 @@ impl<R> Rows<R> {
     }
 
     /// Sorts the rows by colour.
-    pub fn sort<S: Space>(&mut self, movable: &[bool])
-    where
-        R: Row<S>,
-    {
+    pub fn sort(&mut self, movable: &[bool]) {
         let Self { rows, order, .. } = self;
         order.update(rows.len(), |k| rows[k].bodies(), movable, false);
         let sorted = order.sequence().iter();
@@ -102,84 +104,69 @@ impl<R> Rows<R> {
     }
 
     /// Makes the rows of the contacts with these indices, in the order of the iteration.
-    pub fn set<S: Space>(
+    pub fn set(
         &mut self,
         of: &[u32],
         contacts: &[ContactForm<S>],
         movable: &[bool],
+        bodies: &RigidBodies<S>,
         parallel: bool,
-        row: impl Fn(&ContactForm<S>) -> R + Sync + Send,
-    ) where
-        R: Row<S>,
-    {
-        let bodies = |k: usize| contacts[of[k] as usize].bodies;
-        self.order.update(of.len(), bodies, movable, parallel);
+    ) {
+        let pair = |k: usize| contacts[of[k] as usize].bodies;
+        self.order.update(of.len(), pair, movable, parallel);
         let places = self.order.places();
         assert_eq!(places.len(), of.len(), "one place for each contact");
         let divide = pays(parallel, places.len(), MAKE);
         // SAFETY: the places of an order are a permutation.
         unsafe {
             fill_places(divide, &mut self.rows, places, |k| {
-                row(&contacts[of[k] as usize])
+                Row::new(&contacts[of[k] as usize], bodies)
             });
         }
         self.sorted = true;
     }
 
     /// Solves the contacts one after the other, see [`Update`].
-    pub fn sweep<S: Space>(
-        &mut self,
-        solver_bodies: &SolverBodies<S>,
-        relaxation: f64,
-        parallel: bool,
-    ) where
-        R: Row<S>,
-    {
+    pub fn sweep(&mut self, solver_bodies: &SolverBodies<S>, relaxation: f64, parallel: bool) {
         self.pass(solver_bodies, parallel, |_, _| Update(relaxation));
     }
 
-    /// As [`Self::sweep`], from impulses extrapolated by `factor` times their change since `before`, which then holds them as they
-    /// were.
-    pub fn sweep_extrapolated<S: Space>(
+    /// As [`Self::sweep`], from impulses extrapolated by `factor` times their change since
+    /// `before`, which then holds them as they were.
+    pub fn sweep_extrapolated(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         relaxation: f64,
         parallel: bool,
-        (before, factor): (&mut [LocalImpulse<S>], f64),
-    ) where
-        R: Row<S>,
-    {
+        (before, factor): (&mut [Parts<S>], f64),
+    ) {
         assert_eq!(before.len(), self.rows.len());
         let before = Shared(before.as_mut_ptr());
         self.pass(solver_bodies, parallel, |rows, range| {
             // SAFETY: as many as there are rows; blocks are disjoint, and each is run once.
             let before = unsafe { before.slice(range) };
             for (row, before) in rows.iter_mut().zip(before) {
-                let (n, t) = row.local_impulse();
-                row.set_local_impulse((n + (n - before.0) * factor, t + (t - before.1) * factor));
-                *before = (n, t);
+                let now = row.local_impulse();
+                row.set_local_impulse(now + (now - *before) * factor);
+                *before = now;
             }
             Update(relaxation)
         });
     }
 
     /// Applies the stored impulses to the velocities.
-    pub fn load<S: Space>(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool)
-    where
-        R: Row<S>,
-    {
+    pub fn load(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool) {
         self.pass(solver_bodies, parallel, |_, _| Load);
     }
 
-    /// Applies a visitor to all rows, block by block; `what` gives it for each, after it has seen the rows and their range.
-    fn pass<S: Space, V: Visit>(
+    /// Applies a visitor to all rows, block by block; `what` gives it for each, after it has seen
+    /// the rows and their range.
+    fn pass<V: Visit>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         parallel: bool,
-        what: impl Fn(&mut [R], Range<usize>) -> V + Sync,
-    ) where
-        R: Row<S>,
-    {
+        what: impl Fn(&mut [Row<S, K>], Range<usize>) -> V + Sync,
+    ) {
         let (schedule, count) = (self.order.schedule(), self.rows.len());
         assert!(
             schedule.contacts() == count,
@@ -195,28 +182,19 @@ impl<R> Rows<R> {
     }
 
     /// Appends the components of the impulses.
-    pub fn store<S: Space>(&self, out: &mut Vec<f64>)
-    where
-        R: Row<S>,
-    {
+    pub fn store(&self, out: &mut Vec<f64>) {
         let rows = self.rows.iter();
-        rows.for_each(|r| row::store::<S>(r.local_impulse(), out));
+        rows.for_each(|r| row::store(r.local_impulse(), out));
     }
 
     /// Takes them from the front of `from`.
-    pub fn restore<S: Space>(&mut self, from: &mut &[f64])
-    where
-        R: Row<S>,
-    {
+    pub fn restore(&mut self, from: &mut &[f64]) {
         let rows = self.rows.iter_mut();
-        rows.for_each(|r| r.set_local_impulse(row::restore::<S>(from)));
+        rows.for_each(|r| r.set_local_impulse(row::restore(from)));
     }
 
     /// The impulses.
-    pub fn local_impulses<S: Space>(&self, parallel: bool) -> Vec<LocalImpulse<S>>
-    where
-        R: Row<S>,
-    {
+    pub fn local_impulses(&self, parallel: bool) -> Vec<Parts<S>> {
         let (mut parts, count) = (Vec::new(), self.rows.len());
         fill(pays(parallel, count, VISIT), &mut parts, count, |k| {
             self.rows[k].local_impulse()
@@ -225,29 +203,24 @@ impl<R> Rows<R> {
     }
 
     /// Adds the contributions to the convergence test; rows are counted from `first`.
-    pub fn measure<S: Space>(
+    pub fn measure(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         first: usize,
         parallel: bool,
         sums: &mut Sums,
-    ) where
-        R: Row<S>,
-    {
+    ) {
         let parts = self.read(solver_bodies, parallel, Measure::default, |m, at| {
             m.sums(first + at)
         });
         parts.iter().for_each(|part| sums.merge(part));
     }
 
-    /// The work on the compliance of the contacts, see [`Row::yields`].
-    pub fn yields<S: Space>(&self, solver_bodies: &SolverBodies<S>, parallel: bool) -> f64
-    where
-        R: Row<S>,
-    {
-        let of = |row: &R| {
+    /// The work on the compliance of the contacts, see [`Row::work_on_compliance`].
+    pub fn work_on_compliance(&self, solver_bodies: &SolverBodies<S>, parallel: bool) -> f64 {
+        let of = |row: &Row<S, K>| {
             let (a, b) = solver_bodies.read(row.bodies());
-            row.yields(&a, &b)
+            row.work_on_compliance(&a, &b)
         };
         let count = self.rows.len();
         let parts = map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
@@ -257,10 +230,7 @@ impl<R> Rows<R> {
     }
 
     /// The scales of the error from the free velocities, which are the current ones.
-    pub fn free<S: Space>(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool) -> Scale
-    where
-        R: Row<S>,
-    {
+    pub fn free(&mut self, solver_bodies: &SolverBodies<S>, parallel: bool) -> Scale {
         let parts = self.read(solver_bodies, parallel, Free::default, |f, _| f.scale());
         let mut out = Scale::default();
         parts.iter().for_each(|part| out.add(part));
@@ -268,16 +238,13 @@ impl<R> Rows<R> {
     }
 
     /// Applies a visitor that only reads to each chunk of rows; what it found, in their order.
-    fn read<S: Space, V: Visit, T: Send>(
+    fn read<V: Visit, T: Send>(
         &mut self,
         solver_bodies: &SolverBodies<S>,
         parallel: bool,
         what: impl Fn() -> V + Sync,
         found: impl Fn(&V, usize) -> T + Sync,
-    ) -> Vec<T>
-    where
-        R: Row<S>,
-    {
+    ) -> Vec<T> {
         let count = self.rows.len();
         let rows = Shared(self.rows.as_mut_ptr());
         map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {

@@ -1,9 +1,10 @@
-//! Parallel schedule of an iteration over contacts: groups in blocks, blocks in colours. The blocks of a colour can
-//! run at the same time; the results do not depend on the number of threads.
+//! Parallel schedule of an iteration over contacts: groups in blocks, blocks in colours. The blocks
+//! of a colour can run at the same time; the results do not depend on the number of threads.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Groups, blocks of groups, and colours of blocks; each list holds the start indices and the final end.
+/// Groups, blocks of groups, and colours of blocks; each list holds the start indices and the final
+/// end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
     groups: Vec<u32>,
@@ -45,8 +46,9 @@ impl Schedule {
 
     /// Runs every block once, colour by colour, on the current thread pool if `parallel`.
     ///
-    /// Threads take blocks from a shared counter, in the order of the iteration, and wait only for the
-    /// blocks of earlier colours that were taken; nobody waits for a thread that has not started.
+    /// Threads take blocks from a shared counter, in the order of the iteration, and wait only for
+    /// the blocks of earlier colours that were taken; nobody waits for a thread that has not
+    /// started.
     pub fn run(&self, parallel: bool, block: impl Fn(usize) + Sync) {
         let blocks = self.blocks.len() - 1;
         let threads = rayon::current_num_threads().min(blocks);

@@ -24,6 +24,7 @@ use super::nlgs::{self, Options, Report};
 use super::row::MomentForm;
 use super::search::Search;
 use crate::geometry::space::{Space, VectorLike};
+use crate::lanes::LaneVector;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
@@ -132,14 +133,14 @@ fn parts<S: Space>(problem: &Problem<S>, form: &ContactForm<S>) -> [f64; 2] {
 
 /// Whether friction is at its bound; where nothing is carried, too: the others may have been given all of the load.
 fn at_bound<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>) -> bool {
-    let (n, t) = problem.local_impulse(problem.places[k as usize]);
-    form.friction > 0.0 && t.norm() >= AT_BOUND * bound(form, n)
+    let p = problem.local_impulse(problem.places[k as usize]);
+    form.friction > 0.0 && p.t.norm() >= AT_BOUND * bound(form, p.n)
 }
 
 /// What a contact does where relative velocities below `least` are errors.
 fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f64) -> Does {
     let [opens, slip] = parts(problem, form);
-    let loaded = problem.local_impulse(problem.places[k as usize]).0 > 0.0;
+    let loaded = problem.normal(problem.places[k as usize]) > 0.0;
     if opens > least || form.friction == 0.0 {
         return Does::Nothing;
     }
@@ -225,11 +226,9 @@ impl<S: Space> Problem<S> {
                     && !search.was_searched(sets.first(set))
             })
             .collect();
-        if self.full.len() + self.levers.len() + self.bonded_levers.len() > 0 {
-            for form in forms.iter().filter(|form| !simple(form)) {
-                if let Some(set) = sets.of(form.bodies) {
-                    large[set] = false;
-                }
+        for form in forms.iter().filter(|form| !simple(form)) {
+            if let Some(set) = sets.of(form.bodies) {
+                large[set] = false;
             }
         }
         let is_of_large = |k: &usize| sets.of(forms[*k].bodies).is_some_and(|set| large[set]);

@@ -1,28 +1,36 @@
 //! Error of single tractions on dynamical systems.
 //!
-//! The norms of [`super::error`] compare residuals with all velocities of a step. Where a load moves a holder of little mass, u_free = h P/m
-//! is far above the velocities of the surface, and residuals that are small beside it leave pressures that are wrong from cell to cell.
-//! A residual r_c is worth a traction r_c/w_c, with w_c the compliance of the contact against its neighbours, without the motion
-//! that all of them share. The error is the largest of these over the largest impulse on the same system,
+//! The norms of [`super::error`] compare residuals with all velocities of a step. Where a load
+//! moves a holder of little mass, u_free = h P/m is far above the velocities of the surface, and
+//! residuals that are small beside it leave pressures that are wrong from cell to cell. A residual
+//! r_c is worth a traction r_c/w_c, with w_c the compliance of the contact against its neighbours,
+//! without the motion that all of them share. The error is the largest of these over the largest
+//! impulse on the same system,
 //!
 //! ```text
 //! max_c |r_c|/w_c / max |p|      w_c = sum_a weight_a^2 (C_aa - C_ab)
 //! ```
 //!
-//! where b is the touched node before or after a in the list of the system whose motion is most like that of a. Systems number the nodes of their
-//! surfaces along it: the cells of a half-space row by row, the points of a mesh as its file has them. A node that is next in number but far away
-//! shares less of the motion than one of the same facet, so that w_c comes out larger and the error smaller, at most by the ratio of a node's own
-//! compliance to that against a neighbour; the solver does not know the facets, and a search for the nearest of all touched nodes would need the
-//! blocks of all pairs. It is the error of systems that touch at many points; one that touches at few, as a grain, takes part as a rigid body does.
+//! where b is the touched node before or after a in the list of the system whose motion is most
+//! like that of a. Systems number the nodes of their surfaces along it: the cells of a half-space
+//! row by row, the points of a mesh as its file has them. A node that is next in number but far
+//! away shares less of the motion than one of the same facet, so that w_c comes out larger and the
+//! error smaller, at most by the ratio of a node's own compliance to that against a neighbour; the
+//! solver does not know the facets, and a search for the nearest of all touched nodes would need
+//! the blocks of all pairs. It is the error of systems that touch at many points; one that touches
+//! at few, as a grain, takes part as a rigid body does.
 
+use super::error::Residual;
 use super::form::Problem;
 use super::nodal::NodalSystem;
-use super::row::{Residual, SystemRow};
-use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use super::row::SystemRow;
+use crate::geometry::space::{MatrixLike, Space};
 
-/// Contacts from which on a body or a system is a surface that touches, with a motion that its contacts share. The rigid motion of a body has six
-/// freedoms, so that in up to six contacts it is all that they answer with, and their tractions are those that its balance demands, which the norms
-/// measure; beyond that tractions vary from point to point by the deformation. Corners of blocks on a surface are four to eight contacts.
+/// Contacts from which on a body or a system is a surface that touches, with a motion that its
+/// contacts share. The rigid motion of a body has six freedoms, so that in up to six contacts it is
+/// all that they answer with, and their tractions are those that its balance demands, which the
+/// norms measure; beyond that tractions vary from point to point by the deformation. Corners of
+/// blocks on a surface are four to eight contacts.
 const MANY: u32 = 8;
 /// Least compliance of a node against its neighbours, over its own: of nodes that move as one.
 const LEAST: f64 = 1e-3;
@@ -58,8 +66,8 @@ impl Tractions {
 
     /// Adds the next contact.
     pub fn add<S: Space>(&mut self, row: &SystemRow<S>, residual: &Residual) {
-        let (n, t) = row.impulse();
-        let impulse = n * n + t.dot(&t);
+        let impulse = row.impulse();
+        let impulse = impulse.dot(&impulse);
         for system in row.systems() {
             let largest = &mut self.largest[system as usize];
             *largest = largest.max(impulse);
@@ -69,7 +77,8 @@ impl Tractions {
         self.errors.push([error, residual.squared]);
     }
 
-    /// The largest error, and the squared residual of that contact (m^2/s^2); none where nothing is loaded.
+    /// The largest error, and the squared residual of that contact (m^2/s^2); none where nothing is
+    /// loaded.
     pub fn worst<S: Space>(&self, rows: &[SystemRow<S>]) -> [f64; 2] {
         let mut worst = [0.0; 2];
         for (row, [error, residual]) in rows.iter().zip(&self.errors) {
@@ -129,8 +138,8 @@ fn stiffness<S: Space>(problem: &Problem<S>) -> (Vec<f64>, Vec<bool>) {
     (rows.iter().map(of_row).collect(), many)
 }
 
-/// Compliance of nodes of a system along the axis where it is least (1/kg), where they are `many` without the motion that they share
-/// with a neighbour in their list.
+/// Compliance of nodes of a system along the axis where it is least (1/kg), where they are `many`
+/// without the motion that they share with a neighbour in their list.
 fn against_neighbours<S: Space>(system: &NodalSystem<S>, nodes: &[u32], many: bool) -> Vec<f64> {
     let of_node = |at: usize| {
         let own = system.block(nodes[at], nodes[at]);

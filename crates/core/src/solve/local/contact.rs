@@ -1,13 +1,12 @@
 //! Exact solution of one contact with its own block of W: p with u = W_cc p + f under Coulomb's law.
 //!
-//! In 2D the law has four branches, each a linear equation. In 3D slip requires u_n = 0 and u_t = -lambda
-//! p_t with lambda >= 0. Eliminating p_n leaves p_t(lambda) = -(A + lambda I)^-1 b and the scalar equation
-//! mu p_n(lambda) = |p_t(lambda)|, which is nearly linear after division by |p_t| (as in trust-region
-//! methods, Moré and Sorensen 1983); Newton's method solves it in two or three steps from the last lambda.
+//! In 2D the law has four branches, each a linear equation. In 3D slip is the root of a scalar equation, see
+//! [`crate::solve::slide`].
 
 use super::block::{Block, times};
 use super::form::largest;
 use super::law::Law;
+use crate::solve::slide::{schur, slide};
 use std::hint::select_unpredictable;
 
 /// Precomputed data for the exact solution of a contact.
@@ -19,35 +18,6 @@ pub struct Local<const D: usize> {
     /// In 2D: 1 / (W_nn - s mu W_nt) for s = 1 and -1, the compliance in slip.
     slides: [f64; 2],
     lambda: f64,
-}
-
-/// Returns A = W_tt - W_tn W_nt / W_nn (a scalar in 2D) and its determinant.
-#[inline(always)]
-fn schur<const D: usize>(w: &Block<D>) -> ([[f64; 2]; 2], f64) {
-    /// Regularisation of a singular A, as a fraction of W, which defines impulses in its null space up to
-    /// the friction bound.
-    const MIN_RATIO: f64 = 1e-12;
-    let iwnn = if w[0][0] > 0.0 { 1.0 / w[0][0] } else { 0.0 };
-    let mut a = [[0.0; 2]; 2];
-    for i in 1..D {
-        for j in 1..D {
-            a[i - 1][j - 1] = w[i][j] - w[i][0] * w[0][j] * iwnn;
-        }
-    }
-    let determinant = |a: &[[f64; 2]; 2]| {
-        if D == 2 {
-            a[0][0]
-        } else {
-            a[0][0] * a[1][1] - a[0][1] * a[1][0]
-        }
-    };
-    let size = (1..D).fold(w[0][0].abs(), |m, k| m.max(w[k][k].abs()));
-    let least = MIN_RATIO * size;
-    if determinant(&a) <= if D == 2 { least } else { least * size } {
-        a[0][0] += least;
-        a[1][1] += least;
-    }
-    (a, determinant(&a))
 }
 
 impl<const D: usize> Local<D> {
@@ -92,25 +62,9 @@ impl<const D: usize> Local<D> {
         }
     }
 
-    /// From data computed before: W_cc, its inverse, the friction coefficient, and the multiplier of the last slip.
-    pub fn known(w: Block<D>, inverse: Block<D>, mu: f64, lambda: f64) -> Self {
-        Self {
-            w,
-            inverse,
-            mu,
-            slides: [0.0; 2],
-            lambda,
-        }
-    }
-
     /// W_cc^-1, zero if it is singular: what holds a contact that sticks.
     pub fn held(&self) -> Block<D> {
         self.inverse
-    }
-
-    /// The multiplier of the last slip.
-    pub fn lambda(&self) -> f64 {
-        self.lambda
     }
 
     /// Returns the impulse for the free velocity `f` of this contact.
@@ -161,7 +115,10 @@ impl<const D: usize> Local<D> {
                 return stick.map(|x| -x);
             }
         }
-        self.slide_space(f)
+        let (found, lambda) = slide(&self.w, f, mu, self.lambda, true);
+        self.lambda = lambda;
+        p.copy_from_slice(&found[..D]);
+        p
     }
 
     /// Solves the other laws by projected iterations with the block's own step length; none of them couples
@@ -219,78 +176,6 @@ impl<const D: usize> Local<D> {
             p[2] = (w[2][1] * f[1] - w[1][1] * f[2]) / d;
         }
         p.iter().all(|x| x.is_finite()).then_some(p)
-    }
-
-    fn slide_space(&mut self, f: &[f64; D]) -> [f64; D] {
-        const STEPS: usize = 30;
-        /// Relative tolerance of |p_t|: after one more nearly linear step, only rounding is left.
-        const CLOSE: f64 = 1e-8;
-        let (w, mu) = (&self.w, self.mu);
-        let (a, _) = schur(w);
-        let iwnn = 1.0 / w[0][0];
-        let b = [f[1] - w[1][0] * f[0] * iwnn, f[2] - w[2][0] * f[0] * iwnn];
-        let mut p = [0.0; D];
-        let (mut low, mut high) = (0.0, f64::INFINITY);
-        let mut lambda = self.lambda;
-        for _ in 0..STEPS {
-            let (d0, d1) = (a[0][0] + lambda, a[1][1] + lambda);
-            let determinant = d0 * d1 - a[0][1] * a[1][0];
-            let over = if determinant > 0.0 {
-                1.0 / determinant
-            } else {
-                0.0
-            };
-            let t = [
-                -(d1 * b[0] - a[0][1] * b[1]) * over,
-                -(d0 * b[1] - a[1][0] * b[0]) * over,
-            ];
-            let n = -(f[0] + w[0][1] * t[0] + w[0][2] * t[1]) * iwnn;
-            let squared = t[0] * t[0] + t[1] * t[1];
-            let length = squared.sqrt();
-            (p[0], p[1], p[2]) = (n, t[0], t[1]);
-            let ratio = mu * n - length;
-            if ratio.abs() <= 1e-15 * length || determinant <= 0.0 && lambda > 0.0 {
-                break;
-            }
-            if ratio < 0.0 {
-                low = lambda;
-            } else {
-                high = lambda;
-            }
-            // d p_t / d lambda = -(A + lambda)^-1 p_t.
-            let dt = [
-                -(d1 * t[0] - a[0][1] * t[1]) * over,
-                -(d0 * t[1] - a[1][0] * t[0]) * over,
-            ];
-            let dn = -(w[0][1] * dt[0] + w[0][2] * dt[1]) * iwnn;
-            // Newton's method on mu n / |t| - 1, multiplied by |t|^2 to save divisions.
-            let slope = mu * (dn * squared - n * (t[0] * dt[0] + t[1] * dt[1]));
-            let mut next = lambda - ratio * squared / slope;
-            if !(next > low && next < high) {
-                next = if high.is_finite() {
-                    0.5 * (low + high)
-                } else {
-                    2.0 * lambda + a[0][0].abs().max(a[1][1].abs())
-                };
-            }
-            let step = next - lambda;
-            lambda = next;
-            if ratio.abs() <= CLOSE * length || step.abs() <= 1e-15 * next {
-                (p[0], p[1], p[2]) = (n + dn * step, t[0] + dt[0] * step, t[1] + dt[1] * step);
-                break;
-            }
-        }
-        self.lambda = lambda;
-        // Put the result exactly on the cone.
-        let n = p[0].max(0.0);
-        let length = (p[1] * p[1] + p[2] * p[2]).sqrt();
-        if length > 0.0 {
-            let scale = mu * n / length;
-            p[1] *= scale;
-            p[2] *= scale;
-        }
-        p[0] = n;
-        p
     }
 }
 

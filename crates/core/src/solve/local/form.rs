@@ -5,9 +5,8 @@ use super::block::{Block, BlockMatrix};
 use super::factored;
 use super::judge;
 use super::law::{self, Law};
-use crate::solve::error::{Norm, Scale, Sums, residual};
+use crate::solve::error::{Norm, Residual, Scale, Sums, residual};
 use crate::solve::extrapolation;
-use crate::solve::row::Residual;
 
 /// The Delassus operator, independent of its representation.
 pub trait Delassus<const D: usize> {

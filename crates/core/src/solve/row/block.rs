@@ -1,321 +1,282 @@
-//! A contact on a full block of W, and its impulse: without a bond, and with one. What the impulse does to the bodies is the row's part.
+//! The law of a contact on a full block of W: without a bond, and with one.
 
-use super::cone::{Cone, Limits, across, compliant, framed, in_frame, times};
-use super::{LocalImpulse, Residual, natural_map};
-use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::solve::form::{ContactForm, ContactSolution, Elastic};
+use super::cone::{Axes, Cone, compliant, in_frame};
+use super::law::{Law, Limits};
+use super::motion::Levers;
+use super::state::{Parts, State};
+use super::{Kind, RigidBodies};
+use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
+use crate::geometry::space::{MatrixLike, Space};
+use crate::lanes::{Batch, BatchMut, Lane, LaneMatrix, LaneVector, Mask, part, part_mut, record};
+use crate::solve::form::{ContactForm, Elastic};
 
-/// A contact on a full block.
-pub(in crate::solve) trait OnBlock<S: Space>:
-    Clone + Send + Sync + 'static
-{
-    /// From its form and W_cc in world axes.
-    fn new(contact: &ContactForm<S>, block: &S::Matrix) -> Self;
-    /// Normal and impulse.
-    fn state(&self) -> &State<S>;
-    fn state_mut(&mut self) -> &mut State<S>;
-    fn limits(&self) -> &Limits<S>;
-    /// Solves the contact at a relative velocity, given by its normal and its tangential part, and goes `relaxation` times as far; gives
-    /// the change of its impulse.
-    fn update(&mut self, un: f64, ut: &S::Tangent, relaxation: f64) -> (f64, S::Tangent);
-    /// The impulse of the bond at a relative velocity.
-    fn bond(&self, un: f64, ut: &S::Tangent) -> (f64, S::Tangent);
-
-    /// See [`super::Row::residual`], at a relative velocity.
-    #[inline(always)]
-    fn residual(&self, un: f64, ut: &S::Tangent) -> Residual {
-        let (state, limits) = (self.state(), self.limits());
-        if limits.rho <= 0.0 {
-            return Residual::default();
-        }
-        let (en, et) = self.bond(un, ut);
-        let (sn, st) = (state.pn - en, state.pt - et);
-        let [c_n, c_t] = limits.compliance;
-        natural_map(
-            (sn + limits.tension, st),
-            (un, *ut),
-            (limits.shift_n + sn * c_n, limits.shift_t + st * c_t),
-            limits.rho,
-            limits.mu,
-            limits.cohesion,
-        )
-    }
-
-    /// See [`super::Row::yields`], at a relative velocity.
-    fn yields(&self, un: f64, ut: &S::Tangent) -> f64 {
-        let (state, [c_n, c_t]) = (self.state(), self.limits().compliance);
-        let (en, et) = self.bond(un, ut);
-        let (sn, st) = (state.pn - en, state.pt - et);
-        c_n * sn * sn + c_t * st.dot(&st)
-    }
-
-    /// See [`super::Row::solution`], at a relative velocity.
-    fn solution(&self, un: f64, ut: &S::Tangent) -> ContactSolution<S> {
-        let state = self.state();
-        let (en, et) = self.bond(un, ut);
-        ContactSolution {
-            impulse: state.impulse(),
-            unilateral_n: state.pn - en,
-            unilateral_t: state.pt - et,
-        }
-    }
+/// Goes `relaxation` times as far as to the impulse `p`; gives the change.
+#[inline(always)]
+fn go_to<S: Space, L: Lane>(state: &mut State<S, L>, p: Parts<S, L>, relaxation: L) -> Parts<S, L> {
+    let change = (p - state.p) * relaxation;
+    state.p = state.p + change;
+    change
 }
 
-/// Normal and impulse of a contact. `lanes` reads its fields in their order.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(in crate::solve) struct State<S: Space> {
-    pub n: S::Vector,
-    pub pn: f64,
-    pub pt: S::Tangent,
-}
-
-impl<S: Space> State<S> {
-    fn new(contact: &ContactForm<S>) -> Self {
-        let mut state = Self {
-            n: contact.normal,
-            pn: 0.0,
-            pt: S::Tangent::zero(),
-        };
-        state.set(&contact.impulse);
-        state
-    }
-
-    /// The impulse in world axes (N s).
-    pub fn impulse(&self) -> S::Vector {
-        self.n * self.pn + S::tangent_vector(&self.n, &self.pt)
-    }
-
-    /// See [`super::Row::set`].
-    pub fn set(&mut self, impulse: &S::Vector) {
-        self.pn = self.n.dot(impulse);
-        self.pt = S::tangential(&self.n, impulse);
-    }
-
-    /// See [`super::Row::local_impulse`].
-    #[inline(always)]
-    pub fn local_impulse(&self) -> LocalImpulse<S> {
-        (self.pn, self.pt)
-    }
-
-    /// See [`super::Row::set_local_impulse`].
-    #[inline(always)]
-    pub fn set_local_impulse(&mut self, parts: LocalImpulse<S>) {
-        (self.pn, self.pt) = parts;
-    }
-
-    /// Goes `relaxation` times as far as to the impulse `p`, given in the frame; gives the change.
-    #[inline(always)]
-    fn go_to(&mut self, p: &S::Vector, relaxation: f64) -> (f64, S::Tangent) {
-        let dn = (p[0] - self.pn) * relaxation;
-        let dt = (across::<S>(&self.n, p) - self.pt) * relaxation;
-        self.pn += dn;
-        self.pt += dt;
-        (dn, dt)
-    }
-
-    #[inline(always)]
-    fn framed(&self) -> S::Vector {
-        framed::<S>(&self.n, self.pn, &self.pt)
-    }
-}
-
-/// A contact without a bond. `lanes` reads its fields in their order.
+/// A contact without a bond.
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub(in crate::solve) struct Loose<S: Space> {
-    state: State<S>,
-    cone: Cone<S>,
+pub(in crate::solve) struct Unbonded<S: Space> {
     limits: Limits<S>,
+    cone: Cone<S>,
 }
 
-impl<S: Space> OnBlock<S> for Loose<S> {
-    fn new(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
+impl<S: Space> Unbonded<S> {
+    /// From W_cc in world axes.
+    fn of(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
         let w = in_frame::<S>(&contact.normal, block);
         Self {
-            state: State::new(contact),
             cone: Cone::new(w, contact),
-            limits: Limits::new(contact, &compliant::<S>(&w, contact.compliance)),
+            limits: Limits::on_block(contact, &compliant::<S>(&w, contact.compliance)),
         }
     }
+}
 
+impl<S: Space> Law<S> for Unbonded<S> {
     #[inline(always)]
-    fn state(&self) -> &State<S> {
-        &self.state
-    }
-
-    fn state_mut(&mut self) -> &mut State<S> {
-        &mut self.state
-    }
-
-    #[inline(always)]
-    fn limits(&self) -> &Limits<S> {
-        &self.limits
-    }
-
-    #[inline(always)]
-    fn update(&mut self, un: f64, ut: &S::Tangent, relaxation: f64) -> (f64, S::Tangent) {
-        let (u, p) = (framed::<S>(&self.state.n, un, ut), self.state.framed());
-        let f = u - times::<S>(&self.cone.w, &p);
-        let p = self.cone.solve(&f, &self.limits, || p);
-        self.state.go_to(&p, relaxation)
+    fn solve<L: Lane>(
+        mut law: BatchMut<Self, L>,
+        state: &mut State<S, L>,
+        u: Parts<S, L>,
+        relaxation: L,
+    ) -> Parts<S, L> {
+        let (cone, limits) = (part!(law, cone).read(), part!(law, limits).read());
+        let axes = Axes::new(&state.n);
+        let p = axes.vector(&state.p);
+        let f = axes.vector(&u) - cone.w.times(&p);
+        let every = L::all(0.0).at_most(L::all(0.0));
+        let stored = part_mut!(law, cone);
+        let p = Cone::solve(&cone, stored, &f, &limits, every, &p);
+        go_to(state, axes.parts(&p), relaxation)
     }
 
     #[inline(always)]
-    fn bond(&self, _: f64, _: &S::Tangent) -> (f64, S::Tangent) {
-        (0.0, S::Tangent::zero())
+    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+        part!(law, limits).read()
     }
 }
 
-/// The unilateral part beside a bond p_el = -(a + B u): by elimination of u, its free velocity is m f - k, with m = (1 + W B)^-1 and
-/// k = m W a, and its block m W.
+impl<S: Space> Kind<S> for Unbonded<S> {
+    type Motion = Levers<S>;
+    const BONDS: bool = false;
+
+    fn serves(contact: &ContactForm<S>) -> bool {
+        contact.elastic.is_none()
+    }
+
+    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Levers<S>) {
+        let (levers, block) = bodies.levers(contact);
+        (Self::of(contact, &block), levers)
+    }
+}
+
+/// The unilateral part beside a bond p_el = -(a + B u): by elimination of u, its free velocity is m
+/// f - k, with m = (1 + W B)^-1 and k = m W a, and its block m W.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct Beside<S: Space> {
-    m: S::Matrix,
-    k: S::Vector,
-    cone: Cone<S>,
+struct Adjacent<S: Space, L: Lane = f64> {
+    m: S::M<L>,
+    k: S::V<L>,
+    cone: Cone<S, L>,
 }
+record!(Adjacent);
 
-impl<S: Space> Beside<S> {
-    fn new(w: &S::Matrix, a: &S::Vector, [b_n, b_t]: [f64; 2], contact: &ContactForm<S>) -> Self {
+impl<S: Space> Adjacent<S> {
+    /// Gives the block m W, too.
+    fn new(
+        w: &S::Matrix,
+        a: &S::V<f64>,
+        [b_n, b_t]: [f64; 2],
+        contact: &ContactForm<S>,
+    ) -> (Self, S::Matrix) {
         let one = S::Matrix::uniform(1.0);
         let b = compliant::<S>(&S::Matrix::uniform(0.0), [b_n, b_t]);
         let m = (one + w.times(&b)).inverse().unwrap_or(one);
         let rigid = m.times(w);
-        Self {
-            m,
-            k: rigid.apply(a),
+        let adjacent = Self {
+            m: matrix_lanes_of(&m),
+            k: matrix_lanes_of::<f64, S::M<f64>>(&rigid).times(a),
             cone: Cone::new(rigid, contact),
-        }
+        };
+        (adjacent, rigid)
     }
 
     fn none() -> Self {
         Self {
-            m: S::Matrix::uniform(0.0),
-            k: S::Vector::zero(),
+            m: <S::M<f64>>::zero(),
+            k: <S::V<f64>>::zero(),
             cone: Cone::none(),
         }
     }
 
-    /// The unilateral impulse for a free velocity of both, and the velocity with both.
+    /// The unilateral impulses for free velocities of both, and the velocities with both, of the
+    /// contacts in `active`.
     #[inline(always)]
-    fn solve(
-        &mut self,
-        f: &S::Vector,
-        limits: &Limits<S>,
-        start: impl Fn() -> S::Vector,
-    ) -> [S::Vector; 2] {
-        let f = times::<S>(&self.m, f) - self.k;
-        let s = self.cone.solve(&f, limits, start);
-        [s, times::<S>(&self.cone.w, &s) + f]
+    fn solve<L: Lane>(
+        mut stored: BatchMut<Self, L>,
+        f: &S::V<L>,
+        limits: &Limits<S, L>,
+        active: L::Mask,
+        start: &S::V<L>,
+    ) -> [S::V<L>; 2] {
+        let adjacent = stored.read();
+        let f = adjacent.m.times(f) - adjacent.k;
+        let stored = part_mut!(stored, cone);
+        let s = Cone::solve(&adjacent.cone, stored, &f, limits, active, start);
+        [s, adjacent.cone.w.times(&s) + f]
     }
 }
 
-/// A contact with a bond. `lanes` reads its fields in their order.
+/// W_cc, and the impulse of a bond, in the frame.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Bond<S: Space, L: Lane = f64> {
+    w: S::M<L>,
+    /// At u = 0 (N s).
+    a: S::V<L>,
+    /// What it adds to that by velocity (kg).
+    b: [L; 2],
+    /// Above it the bond's normal part does not act: 0 for a tension-only bond, otherwise infinity.
+    limit: L,
+}
+record!(Bond);
+
+impl<S: Space, L: Lane> Bond<S, L> {
+    /// Its impulse, pulling or not.
+    #[inline(always)]
+    fn pull(&self, u: &S::V<L>) -> S::V<L> {
+        <S::V<L>>::from_fn(|k| -(self.a[k] + self.b[usize::from(k > 0)] * u[k]))
+    }
+}
+
+/// A contact with a bond.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(in crate::solve) struct Bonded<S: Space> {
-    state: State<S>,
-    w: S::Matrix,
-    pulled: Beside<S>,
-    /// The bond's impulse at u = 0, in the frame (N s), and what it adds to that by velocity (kg).
-    a: S::Vector,
-    b: [f64; 2],
-    /// Above it the bond's normal part does not act: 0 for a tension-only bond, otherwise infinity.
-    limit: f64,
     limits: Limits<S>,
+    pulled: Adjacent<S>,
     /// Where the bond's normal part does not act.
-    slack: Beside<S>,
+    slack: Adjacent<S>,
+    bond: Bond<S>,
 }
 
 impl<S: Space> Bonded<S> {
-    /// Whether a bond acts on it, which is a second block of unknowns in W.
-    pub fn is_bonded(&self) -> bool {
-        self.b[0] > 0.0 || self.b[1] > 0.0 || self.a != S::Vector::zero()
-    }
-
-    /// The bond's impulse in the frame, pulling or not.
-    #[inline(always)]
-    fn pull(&self, u: &S::Vector) -> S::Vector {
-        let mut out = S::Vector::zero();
-        for k in 0..S::D {
-            out[k] = -(self.a[k] + self.b[usize::from(k > 0)] * u[k]);
-        }
-        out
-    }
-}
-
-impl<S: Space> OnBlock<S> for Bonded<S> {
-    fn new(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
+    /// From W_cc in world axes.
+    pub fn of(contact: &ContactForm<S>, block: &S::Matrix) -> Self {
         let w = in_frame::<S>(&contact.normal, block);
         let e = contact.elastic.unwrap_or_else(Elastic::none);
-        let a = framed::<S>(&contact.normal, e.a_n, &e.a_t);
-        let pulled = Beside::new(&w, &a, [e.b_n, e.b_t], contact);
+        let axes = Axes::<S, f64>::new(&lanes_of(&contact.normal));
+        let pull = |n| {
+            let t = lanes_of(&e.a_t);
+            axes.vector(&Parts { n, t })
+        };
+        let a = pull(e.a_n);
+        let (pulled, rigid) = Adjacent::new(&w, &a, [e.b_n, e.b_t], contact);
         let slack = if e.tension_only {
-            let aside = framed::<S>(&contact.normal, 0.0, &e.a_t);
-            Beside::new(&w, &aside, [0.0, e.b_t], contact)
+            Adjacent::new(&w, &pull(0.0), [0.0, e.b_t], contact).0
         } else {
-            Beside::none()
+            Adjacent::none()
         };
         Self {
-            state: State::new(contact),
-            w,
-            limits: Limits::new(contact, &compliant::<S>(&pulled.cone.w, contact.compliance)),
+            limits: Limits::on_block(contact, &compliant::<S>(&rigid, contact.compliance)),
             pulled,
-            a,
-            b: [e.b_n, e.b_t],
-            limit: if e.tension_only { 0.0 } else { f64::INFINITY },
+            bond: Bond {
+                w: matrix_lanes_of(&w),
+                a,
+                b: [e.b_n, e.b_t],
+                limit: if e.tension_only { 0.0 } else { f64::INFINITY },
+            },
             slack,
         }
     }
 
-    #[inline(always)]
-    fn state(&self) -> &State<S> {
-        &self.state
+    /// Whether a bond acts on it, which is a second block of unknowns in W.
+    pub fn is_bonded(&self) -> bool {
+        let Bond { a, b, .. } = &self.bond;
+        b[0] > 0.0 || b[1] > 0.0 || (0..S::D).any(|k| a[k] != 0.0)
     }
+}
 
-    fn state_mut(&mut self) -> &mut State<S> {
-        &mut self.state
-    }
-
+impl<S: Space> Law<S> for Bonded<S> {
     #[inline(always)]
-    fn limits(&self) -> &Limits<S> {
-        &self.limits
-    }
-
-    #[inline(always)]
-    fn update(&mut self, un: f64, ut: &S::Tangent, relaxation: f64) -> (f64, S::Tangent) {
-        let (u, p) = (framed::<S>(&self.state.n, un, ut), self.state.framed());
-        let f = u - times::<S>(&self.w, &p);
-        let (limits, bond) = (self.limits, self.pull(&u));
-        let start = || p - bond;
-        let [mut s, mut u] = self.pulled.solve(&f, &limits, start);
-        let mut e = self.pull(&u);
-        if e[0] > self.limit {
-            [s, u] = self.slack.solve(&f, &limits, start);
-            e = self.pull(&u);
-            e[0] = 0.0;
+    fn solve<L: Lane>(
+        mut law: BatchMut<Self, L>,
+        state: &mut State<S, L>,
+        u: Parts<S, L>,
+        relaxation: L,
+    ) -> Parts<S, L> {
+        let axes = Axes::new(&state.n);
+        let (u, p) = (axes.vector(&u), axes.vector(&state.p));
+        let (limits, bond) = (part!(law, limits).read(), part!(law, bond).read());
+        let f = u - bond.w.times(&p);
+        let start = p - bond.pull(&u);
+        let zero = L::all(0.0);
+        let every = zero.at_most(zero);
+        let pulled = part_mut!(law, pulled);
+        let [mut s, with] = Adjacent::solve(pulled, &f, &limits, every, &start);
+        let mut e = bond.pull(&with);
+        let slack = e[0].above(bond.limit);
+        if slack.any() {
+            let [without, with] = {
+                let stored = part_mut!(law, slack);
+                Adjacent::solve(stored, &f, &limits, slack, &start)
+            };
+            let mut aside = bond.pull(&with);
+            aside[0] = zero;
+            s = <S::V<L>>::select(slack, without, s);
+            e = <S::V<L>>::select(slack, aside, e);
         }
-        self.state.go_to(&(s + e), relaxation)
+        go_to(state, axes.parts(&(s + e)), relaxation)
     }
 
     #[inline(always)]
-    fn bond(&self, un: f64, ut: &S::Tangent) -> (f64, S::Tangent) {
-        let en = -(self.a[0] + self.b[0] * un);
-        let en = if en > self.limit { 0.0 } else { en };
-        (en, -(across::<S>(&self.state.n, &self.a) + *ut * self.b[1]))
+    fn limits<L: Lane>(law: Batch<Self, L>) -> Limits<S, L> {
+        part!(law, limits).read()
+    }
+
+    #[inline(always)]
+    fn bond<L: Lane>(law: Batch<Self, L>, n: &S::V<L>, u: &Parts<S, L>) -> Parts<S, L> {
+        let bond = part!(law, bond).read();
+        let en = -(bond.a[0] + bond.b[0] * u.n);
+        let a = Axes::<S, L>::new(n).parts(&bond.a);
+        Parts {
+            n: L::select(en.above(bond.limit), L::all(0.0), en),
+            t: -(a.t + u.t * bond.b[1]),
+        }
+    }
+}
+
+impl<S: Space> Kind<S> for Bonded<S> {
+    type Motion = Levers<S>;
+    const BONDS: bool = true;
+
+    fn serves(_: &ContactForm<S>) -> bool {
+        true
+    }
+
+    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Levers<S>) {
+        let (levers, block) = bodies.levers(contact);
+        (Self::of(contact, &block), levers)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::space::{Dim2, Dim3};
+    use crate::geometry::lane_space::vector_of;
+    use crate::geometry::space::{Dim2, Dim3, VectorLike};
     use rand::{RngExt, SeedableRng};
 
-    /// Restitution lets an open contact close freely: nothing acts on it, along whatever axis its normal is.
-    fn open_contact_is_free<S: Space, C: OnBlock<S>>() {
+    type Made<S, C> = fn(&ContactForm<S>, &<S as Space>::Matrix) -> C;
+
+    /// Restitution lets an open contact close freely: nothing acts on it, along whatever axis its
+    /// normal is.
+    fn open_contact_is_free<S: Space, C: Law<S>>(of: Made<S, C>) {
         for axis in 0..S::D {
             let (mut normal, mut u) = (S::Vector::zero(), S::Vector::zero());
             (normal[axis], u[axis], u[0]) = (1.0, -2.0, -1.0);
@@ -325,11 +286,12 @@ mod tests {
                 friction: 0.3,
                 ..form()
             };
-            let mut contact = C::new(&form, &S::Matrix::uniform(1.0));
-            let (un, ut) = (normal.dot(&u), S::tangential(&normal, &u));
-            let (dn, dt) = contact.update(un, &ut, 1.0);
-            assert!(dn == 0.0 && dt == S::Tangent::zero());
-            assert_eq!(contact.residual(un, &ut).squared, 0.0);
+            let mut law = of(&form, &S::Matrix::uniform(1.0));
+            let mut state = State::new(&normal, &form.impulse);
+            let u = Parts::of(&state.n, &lanes_of(&u));
+            let change = C::solve(BatchMut::one(&mut law), &mut state, u, 1.0);
+            assert!(change.dot(&change) == 0.0);
+            assert_eq!(C::residual(Batch::one(&law), &state, &u).squared, 0.0);
         }
     }
 
@@ -355,15 +317,16 @@ mod tests {
 
     #[test]
     fn an_open_contact_with_restitution_is_free() {
-        open_contact_is_free::<Dim2, Loose<Dim2>>();
-        open_contact_is_free::<Dim3, Loose<Dim3>>();
-        open_contact_is_free::<Dim2, Bonded<Dim2>>();
-        open_contact_is_free::<Dim3, Bonded<Dim3>>();
+        open_contact_is_free::<Dim2, _>(Unbonded::of);
+        open_contact_is_free::<Dim3, _>(Unbonded::of);
+        open_contact_is_free::<Dim2, _>(Bonded::of);
+        open_contact_is_free::<Dim3, _>(Bonded::of);
     }
 
-    /// The impulse of one update solves the law of the natural map, with and without a bond, tension, cohesion, compliance and shifts:
-    /// in the plane at once, in space with cohesion after some.
-    fn solves<S: Space, C: OnBlock<S>>(bonded: bool) {
+    /// The impulse of one update solves the law of the natural map, with and without a bond,
+    /// tension, cohesion, compliance and shifts: in the plane at once, in space with cohesion after
+    /// some.
+    fn solves<S: Space, C: Law<S>>(of: Made<S, C>, bonded: bool) {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(7);
         let mut worst = 0.0f64;
         let mut kinds = [0; 3];
@@ -411,20 +374,20 @@ mod tests {
                 ..form()
             };
             let free = u - w.apply(&form.impulse);
-            let mut contact = C::new(&form, &w);
+            let mut law = of(&form, &w);
+            let mut state = State::new(&normal, &form.impulse);
+            let n = state.n;
+            let relative = |p: &S::Vector| Parts::of(&n, &lanes_of(&(free + w.apply(p))));
             let mut p = form.impulse;
             let rounds = if S::D == 3 && cohesive { 2000 } else { 1 };
             for _ in 0..rounds {
-                let u = free + w.apply(&p);
-                let (un, ut) = (normal.dot(&u), S::tangential(&normal, &u));
-                let (dn, dt) = contact.update(un, &ut, 1.0);
-                p += normal * dn + S::tangent_vector(&normal, &dt);
+                let change = C::solve(BatchMut::one(&mut law), &mut state, relative(&p), 1.0);
+                p += vector_of(&change.joined(&state.n));
             }
-            let u = free + w.apply(&p);
-            let (un, ut) = (normal.dot(&u), S::tangential(&normal, &u));
-            let squared = contact.residual(un, &ut).squared;
+            let u = relative(&p);
+            let squared = C::residual(Batch::one(&law), &state, &u).squared;
             worst = worst.max(squared.sqrt());
-            let solution = contact.solution(un, &ut);
+            let solution = law.solution(&state, &u);
             let pn = solution.unilateral_n + form.tension;
             let bound = form.friction * pn + form.cohesion;
             let kind = if pn <= 1e-12 {
@@ -442,9 +405,9 @@ mod tests {
 
     #[test]
     fn one_contact_is_solved_exactly() {
-        solves::<Dim2, Loose<Dim2>>(false);
-        solves::<Dim3, Loose<Dim3>>(false);
-        solves::<Dim2, Bonded<Dim2>>(true);
-        solves::<Dim3, Bonded<Dim3>>(true);
+        solves::<Dim2, _>(Unbonded::of, false);
+        solves::<Dim3, _>(Unbonded::of, false);
+        solves::<Dim2, _>(Bonded::of, true);
+        solves::<Dim3, _>(Bonded::of, true);
     }
 }

@@ -1,32 +1,21 @@
-//! The unilateral law of a contact on a full block of W, in the frame (n, t1, t2) of the contact: Coulomb's friction with tensile
-//! strength and shear cohesion. In the plane it is solved in closed form, in space by Newton's method where it slides.
+//! The unilateral law of a contact on a full block of W, in the frame (n, t1, t2) of the contact:
+//! Coulomb's friction with tensile strength and shear cohesion. In the plane it is solved in closed
+//! form, in space by Newton's method where it slides.
 
+use super::law::Limits;
+use super::state::Parts;
 use super::{answer_to_slip, inverse, inverse_along, shift_along};
-use crate::geometry::space::{MatrixLike, Space, VectorLike, greatest, least};
+use crate::geometry::lane_space::{lanes_of, matrix_lanes_of};
+use crate::geometry::space::{MatrixLike, Space, VectorLike, least};
+use crate::lanes::{BatchMut, Lane, LaneMatrix, LaneVector, Mask, part_mut, record};
 use crate::solve::form::ContactForm;
 use crate::solve::local::contact::Local;
-use std::hint::select_unpredictable;
-
-/// Strengths and friction of a contact, and the data of the convergence test. `lanes` reads the fields in their order.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub(in crate::solve) struct Limits<S: Space> {
-    pub mu: f64,
-    /// Tensile strength (N s): the law holds for P = p_n + tension.
-    pub tension: f64,
-    /// Shear cohesion (N s).
-    pub cohesion: f64,
-    /// rho of the natural map: the smaller of 1/W' along n and across; 0 where nothing moves.
-    pub rho: f64,
-    pub shift_n: f64,
-    /// Compliance of the unilateral part (1/kg), normal and tangential.
-    pub compliance: [f64; 2],
-    pub shift_t: S::Tangent,
-}
+use crate::solve::slide::slide;
 
 impl<S: Space> Limits<S> {
-    /// Of a form whose block, with a bond that acts and the compliance, is `compliant` in the frame of the contact.
-    pub fn new(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
+    /// Of a form whose block, with a bond that acts and the compliance, is `compliant` in the frame
+    /// of the contact.
+    pub(super) fn on_block(contact: &ContactForm<S>, compliant: &S::Matrix) -> Self {
         let (w_n, w_t) = (compliant.entry(0, 0), quickest::<S>(compliant));
         let rho = if w_n > 0.0 {
             least(inverse(w_n), inverse_along(w_t, w_n))
@@ -40,24 +29,33 @@ impl<S: Space> Limits<S> {
             tension: contact.tension,
             cohesion: contact.cohesion,
             rho: if held { 0.0 } else { rho },
-            shift_n: shift_along(contact, w_n),
+            shift: Parts {
+                n: shift_along(contact, w_n),
+                t: lanes_of(&contact.shift_t),
+            },
             compliance: contact.compliance,
-            shift_t: contact.shift_t,
         }
     }
 }
 
 /// The largest response across the normal.
 fn quickest<S: Space>(w: &S::Matrix) -> f64 {
-    if S::D == 2 {
+    largest_across(matrix_lanes_of::<f64, S::M<f64>>(w))
+}
+
+/// The largest response across the normal, of blocks.
+#[inline(always)]
+fn largest_across<L: Lane, M: LaneMatrix<L>>(w: M) -> L {
+    if <M::V as LaneVector<L>>::N == 2 {
         return w.entry(1, 1);
     }
     let (a, c, cross) = (w.entry(1, 1), w.entry(2, 2), w.entry(1, 2));
-    0.5 * (a + c) + (0.25 * (a - c) * (a - c) + cross * cross).sqrt()
+    let (half, quarter) = (L::all(0.5), L::all(0.25));
+    half * (a + c) + (quarter * (a - c) * (a - c) + cross * cross).sqrt()
 }
 
-/// Response along the normal, as a share of that across, up to which it is rounding: bodies that turn about a place on the normal are held
-/// along it.
+/// Response along the normal, as a share of that across, up to which it is rounding: bodies that
+/// turn about a place on the normal are held along it.
 pub(in crate::solve) const HELD: f64 = 1e-14;
 
 /// The components of a matrix, given in world axes, in the frame of a contact.
@@ -71,81 +69,77 @@ pub(super) fn in_frame<S: Space>(n: &S::Vector, w: &S::Matrix) -> S::Matrix {
     S::Matrix::from_entries(|i, j| if i == 0 || j == 0 { 0.0 } else { w.entry(i, j) })
 }
 
-/// A vector of the frame, from its normal component and its tangential part.
-#[inline(always)]
-pub(super) fn framed<S: Space>(n: &S::Vector, along: f64, across: &S::Tangent) -> S::Vector {
-    let [c1, c2] = S::components(n, across);
-    let mut out = S::Vector::zero();
-    (out[0], out[1]) = (along, c1);
-    if S::D == 3 {
-        out[2] = c2;
+/// The frame of contacts: vectors are given by their components along n, t1 and t2.
+#[derive(Clone, Copy)]
+pub(super) struct Axes<S: Space, L: Lane>([S::V<L>; 2]);
+
+impl<S: Space, L: Lane> Axes<S, L> {
+    #[inline(always)]
+    pub fn new(n: &S::V<L>) -> Self {
+        Self(S::frame(n))
     }
-    out
-}
 
-/// The tangential part of a vector of the frame.
-#[inline(always)]
-pub(super) fn across<S: Space>(n: &S::Vector, x: &S::Vector) -> S::Tangent {
-    let second = if S::D == 3 { x[2] } else { 0.0 };
-    S::from_components(n, x[1], second)
-}
+    #[inline(always)]
+    pub fn vector(&self, parts: &Parts<S, L>) -> S::V<L> {
+        let [c1, c2] = S::frame_components(&self.0, &parts.t);
+        let components = [parts.n, c1, c2];
+        <S::V<L>>::from_fn(|k| components[k])
+    }
 
-/// A x, summed row by row, as `lanes` does.
-#[inline(always)]
-pub(super) fn times<S: Space>(a: &S::Matrix, x: &S::Vector) -> S::Vector {
-    let mut out = S::Vector::zero();
-    for i in 0..S::D {
-        let mut sum = a.entry(i, 0) * x[0];
-        for j in 1..S::D {
-            sum += a.entry(i, j) * x[j];
+    #[inline(always)]
+    pub fn parts(&self, x: &S::V<L>) -> Parts<S, L> {
+        Parts {
+            n: x[0],
+            t: S::from_frame(&self.0, [x[1], x[S::D - 1]]),
         }
-        out[i] = sum;
     }
-    out
 }
 
-/// The block W' of a contact and what solving its law needs. `lanes` reads the fields in their order.
+/// The block W' of a contact and what solving its law needs.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(super) struct Cone<S: Space> {
+pub(super) struct Cone<S: Space, L: Lane = f64> {
     /// W', without compliance.
-    pub w: S::Matrix,
+    pub w: S::M<L>,
     /// (W' + C)^-1; zero where nothing moves along n.
-    inverse: S::Matrix,
+    inverse: S::M<L>,
     /// Added to a free velocity: the shift less (W' + C) n tension.
-    offset: S::Vector,
-    /// In the plane: impulse for a velocity of -1 in slip towards -t1 and t1, and across an open contact. In space the first is the
-    /// last multiplier of slip.
-    answers: [f64; 3],
+    offset: S::V<L>,
+    /// In the plane: impulse for a velocity of -1 in slip towards -t1 and t1, and across an open
+    /// contact. In space the first is the last multiplier of slip.
+    answers: [L; 3],
 }
+record!(Cone);
 
 impl<S: Space> Cone<S> {
     /// From W' in the frame of the contact.
     pub fn new(w: S::Matrix, contact: &ContactForm<S>) -> Self {
         let compliant = compliant::<S>(&w, contact.compliance);
         let (w_nn, w_nt) = (compliant.entry(0, 0), compliant.entry(0, 1));
-        let shift_n = shift_along(contact, w_nn);
-        let mut offset = framed::<S>(&contact.normal, shift_n, &contact.shift_t);
+        let shift = Parts {
+            n: shift_along(contact, w_nn),
+            t: lanes_of(&contact.shift_t),
+        };
+        let mut offset = Axes::<S, f64>::new(&lanes_of(&contact.normal)).vector(&shift);
         for k in 0..S::D {
             offset[k] -= compliant.entry(k, 0) * contact.tension;
         }
-        let nothing = S::Matrix::uniform(0.0);
         let (inverse, answers) = if S::D == 2 {
-            let block = std::array::from_fn(|i| std::array::from_fn(|j| compliant.entry(i, j)));
-            let held = Local::<2>::new(&block, contact.friction).held();
             let slides = [contact.friction, -contact.friction].map(|mu| 1.0 / (w_nn - mu * w_nt));
             let open = answer_to_slip(compliant.entry(1, 1), w_nn, contact.cohesion);
             let [forth, back] = if w_nn > 0.0 { slides } else { [0.0; 2] };
-            let inverse = S::Matrix::from_entries(|i, j| held[i][j]);
+            let inverse = held::<S, 2>(&compliant, contact.friction);
             (inverse, [forth, back, open])
         } else {
-            let block = std::array::from_fn(|i| std::array::from_fn(|j| compliant.entry(i, j)));
-            let held = Local::<3>::new(&block, contact.friction).held();
-            (S::Matrix::from_entries(|i, j| held[i][j]), [0.0; 3])
+            (held::<S, 3>(&compliant, contact.friction), [0.0; 3])
         };
         Self {
-            w,
-            inverse: if w_nn > 0.0 { inverse } else { nothing },
+            w: matrix_lanes_of(&w),
+            inverse: if w_nn > 0.0 {
+                inverse
+            } else {
+                <S::M<f64>>::zero()
+            },
             offset,
             answers,
         }
@@ -153,108 +147,163 @@ impl<S: Space> Cone<S> {
 
     /// Of a law that never acts.
     pub fn none() -> Self {
-        let zero = S::Matrix::uniform(0.0);
         Self {
-            w: zero,
-            inverse: zero,
-            offset: S::Vector::zero(),
+            w: <S::M<f64>>::zero(),
+            inverse: <S::M<f64>>::zero(),
+            offset: <S::V<f64>>::zero(),
             answers: [0.0; 3],
         }
     }
 
-    /// The impulse of the unilateral part that answers a free velocity `f`, both in the frame; `start` is a guess.
+    /// The impulses of the unilateral part that answer free velocities `f`, both in the frame, for
+    /// the contacts in `active`; `start` is a guess. The block was read from `stored`, which
+    /// remembers how the contacts slide.
     #[inline(always)]
-    pub fn solve(
-        &mut self,
-        f: &S::Vector,
-        limits: &Limits<S>,
-        start: impl Fn() -> S::Vector,
-    ) -> S::Vector {
-        let f = *f + self.offset;
+    pub fn solve<L: Lane>(
+        block: &Cone<S, L>,
+        stored: BatchMut<Self, L>,
+        f: &S::V<L>,
+        limits: &Limits<S, L>,
+        active: L::Mask,
+        start: &S::V<L>,
+    ) -> S::V<L> {
+        let f = *f + block.offset;
         let mut p = if S::D == 2 {
-            self.solve_plane(&f, limits)
-        } else if limits.cohesion > 0.0 {
-            self.alternate(&f, limits, &start())
+            block.solve_plane(&f, limits)
         } else {
-            self.solve_space(&f, limits)
+            let cohesive = limits.cohesion.above(L::all(0.0));
+            let mut p = block.solve_space(stored, &f, limits, active & !cohesive);
+            if cohesive.any() {
+                p = <S::V<L>>::select(cohesive, block.alternate(&f, limits, start), p);
+            }
+            p
         };
-        p[0] -= limits.tension;
+        p[0] = p[0] - limits.tension;
         p
     }
+}
 
-    /// All branches are computed and one is selected, because branch prediction would fail: stick, slip with p_t = -s (mu P + c),
-    /// where s is the sign of the slip that sticking would have to prevent, and an open contact, which holds |p_t| <= c.
+/// The inverse of a block, zero if it is singular.
+fn held<S: Space, const D: usize>(w: &S::Matrix, friction: f64) -> S::M<f64> {
+    let block = std::array::from_fn(|i| std::array::from_fn(|j| w.entry(i, j)));
+    let held = Local::<D>::new(&block, friction).held();
+    <S::M<f64>>::from_fn(|i, j| held[i][j])
+}
+
+impl<S: Space, L: Lane> Cone<S, L> {
+    /// All branches are computed and one is selected, because branch prediction would fail: stick,
+    /// slip with p_t = -s (mu P + c), where s is the sign of the slip that sticking would have to
+    /// prevent, and an open contact, which holds |p_t| <= c.
     #[inline(always)]
-    fn solve_plane(&self, f: &S::Vector, limits: &Limits<S>) -> S::Vector {
+    fn solve_plane(&self, f: &S::V<L>, limits: &Limits<S, L>) -> S::V<L> {
         let (mu, c, w_nt) = (limits.mu, limits.cohesion, self.w.entry(0, 1));
-        let [forth, back, open] = self.answers;
-        let stick = times::<S>(&self.inverse, f);
-        let negative = stick[1] < 0.0;
-        let answer = select_unpredictable(negative, back, forth);
-        let signed_c = select_unpredictable(negative, -c, c);
-        let signed_mu = select_unpredictable(negative, -mu, mu);
+        let ([forth, back, open], zero) = (self.answers, L::all(0.0));
+        let stick = self.inverse.times(f);
+        let negative = stick[1].below(zero);
+        let answer = L::select(negative, back, forth);
+        let signed_c = L::select(negative, -c, c);
+        let signed_mu = L::select(negative, -mu, mu);
         let n = (signed_c * w_nt - f[0]) * answer;
         let t = -(signed_mu * n + signed_c);
-        let sticks = stick[0] < 0.0 && stick[1].abs() <= c - mu * stick[0];
-        let n = select_unpredictable(sticks, -stick[0], n);
-        let t = select_unpredictable(sticks, -stick[1], t);
-        let free = least(greatest(-f[1] * open, -c), c);
-        let closes = f[0] + w_nt * free < 0.0 && n > 0.0;
-        let mut p = S::Vector::zero();
-        p[0] = select_unpredictable(closes, n, 0.0);
-        p[1] = select_unpredictable(closes, t, free);
+        let sticks = stick[0].below(zero) & stick[1].abs().at_most(c - mu * stick[0]);
+        let n = L::select(sticks, -stick[0], n);
+        let t = L::select(sticks, -stick[1], t);
+        let free = ((-f[1]) * open).greatest(-c).least(c);
+        let closes = (f[0] + w_nt * free).below(zero) & n.above(zero);
+        let p = [L::select(closes, n, zero), L::select(closes, t, free)];
+        <S::V<L>>::from_fn(|k| p[k.min(1)])
+    }
+
+    /// Without cohesion. Each branch is computed where it is that of some contact.
+    #[inline(always)]
+    fn solve_space(
+        &self,
+        mut stored: BatchMut<Cone<S>, L>,
+        f: &S::V<L>,
+        limits: &Limits<S, L>,
+        active: L::Mask,
+    ) -> S::V<L> {
+        let (mu, zero) = (limits.mu, L::all(0.0));
+        let w_nn = self.w.entry(0, 0) + limits.compliance[0];
+        let closes = active & !(f[0].at_least(zero) | w_nn.at_most(zero));
+        if !closes.any() {
+            return <S::V<L>>::zero();
+        }
+        let smooth = mu.at_least(zero) & mu.at_most(zero);
+        let mut p = <S::V<L>>::zero();
+        p[0] = L::select(closes & smooth, -f[0] / w_nn, zero);
+        let rough = closes & !smooth;
+        let stick = self.inverse.times(f);
+        let squared = stick[1] * stick[1] + stick[S::D - 1] * stick[S::D - 1];
+        let within = squared.at_most(mu * mu * stick[0] * stick[0]);
+        let sticks = rough & stick[0].below(zero) & within;
+        p = <S::V<L>>::select(sticks, -stick, p);
+        let slides = rough & !sticks;
+        if slides.any() {
+            let w = self.compliant(limits.compliance);
+            let w = [0, 1, 2].map(|i| [0, 1, 2].map(|j| w.entry(i.min(S::D - 1), j.min(S::D - 1))));
+            let f = [f[0], f[1], f[S::D - 1]];
+            let (slid, lambda) = slide(&w, &f, mu, self.answers[0], slides);
+            p = <S::V<L>>::select(slides, <S::V<L>>::from_fn(|k| slid[k]), p);
+            part_mut!(stored, answers[0]).write_where(slides, &lambda);
+        }
         p
     }
 
+    /// The normal and the tangential part in turns, in space with cohesion. Two rounds: the sweeps
+    /// that follow do the rest, since each begins where the last one ended.
     #[inline(always)]
-    fn solve_space(&mut self, f: &S::Vector, limits: &Limits<S>) -> S::Vector {
-        let compliant = compliant::<S>(&self.w, limits.compliance);
-        let array = |m: &S::Matrix| std::array::from_fn(|i| std::array::from_fn(|j| m.entry(i, j)));
-        let f = [f[0], f[1], f[S::D - 1]];
-        let (w, inverse) = (array(&compliant), array(&self.inverse));
-        let mut local = Local::<3>::known(w, inverse, limits.mu, self.answers[0]);
-        let p = local.solve(&f);
-        self.answers[0] = local.lambda();
-        S::Vector::from_slice(&p)
-    }
-
-    /// The normal and the tangential part in turns, in space with cohesion. Two rounds: the sweeps that follow do the rest, since
-    /// each begins where the last one ended.
-    fn alternate(&self, f: &S::Vector, limits: &Limits<S>, start: &S::Vector) -> S::Vector {
+    fn alternate(&self, f: &S::V<L>, limits: &Limits<S, L>, start: &S::V<L>) -> S::V<L> {
         const ALTERNATIONS: usize = 2;
-        let w = compliant::<S>(&self.w, limits.compliance);
-        let w_nn = w.entry(0, 0);
-        let iwn = inverse(w_nn);
-        let iwt = answer_to_slip(quickest::<S>(&w), w_nn, limits.cohesion);
+        /// Change, relative to an impulse, below which it is found.
+        const EXACT: f64 = 1e-14;
+        let w = self.compliant(limits.compliance);
+        let (zero, one, w_nn) = (L::all(0.0), L::all(1.0), w.entry(0, 0));
+        let iwn = L::select(w_nn.above(zero), one / w_nn, zero);
+        let iwt = answer_to_slip(largest_across(w), w_nn, limits.cohesion);
         let mut p = *start;
-        p[0] += limits.tension;
+        p[0] = p[0] + limits.tension;
+        let mut ended = zero.above(zero);
         for _ in 0..ALTERNATIONS {
             let old = p;
-            let u = times::<S>(&w, &p) + *f;
-            p[0] = (p[0] - u[0] * iwn).max(0.0);
-            let u = times::<S>(&w, &p) + *f;
-            let mut squared = 0.0;
+            let u = w.times(&p) + *f;
+            p[0] = (p[0] - u[0] * iwn).greatest(zero);
+            let u = w.times(&p) + *f;
+            let mut squared = zero;
             for k in 1..S::D {
-                p[k] -= u[k] * iwt;
-                squared += p[k] * p[k];
+                p[k] = p[k] - u[k] * iwt;
+                squared = squared + p[k] * p[k];
             }
             let bound = limits.mu * p[0] + limits.cohesion;
-            if squared > bound * bound {
-                let share = bound / squared.sqrt();
-                for k in 1..S::D {
-                    p[k] *= share;
-                }
+            let outside = squared.above(bound * bound);
+            let share = L::select(outside, bound / squared.sqrt(), one);
+            for k in 1..S::D {
+                p[k] = p[k] * share;
             }
-            if (p - old).norm() <= 1e-14 * p.norm() {
+            p = <S::V<L>>::select(ended, old, p);
+            ended = ended | (p - old).norm().at_most(L::all(EXACT) * p.norm());
+            if ended.all() {
                 break;
             }
         }
         p
     }
+
+    /// W' + C.
+    #[inline(always)]
+    fn compliant(&self, [c_n, c_t]: [L; 2]) -> S::M<L> {
+        <S::M<L>>::from_fn(|i, j| {
+            let w = self.w.entry(i, j);
+            match (i, j) {
+                (0, 0) => w + c_n,
+                _ if i == j => w + c_t,
+                _ => w,
+            }
+        })
+    }
 }
 
 /// W' + C.
-#[inline(always)]
 pub(super) fn compliant<S: Space>(w: &S::Matrix, [c_n, c_t]: [f64; 2]) -> S::Matrix {
     let mut c = S::Vector::zero();
     for k in 0..S::D {

@@ -1,34 +1,45 @@
-//! The packed rows over which the solver iterates, and the exact solution of one contact.
+//! Contacts in rows, over which the solver iterates, and the exact solution of one contact.
 //!
-//! A contact of two balls has W_nt = 0, W_nn = 1/m_i + 1/m_j and an isotropic W_tt, so that its problem is
-//! solved in closed form: first the normal part, then the tangential part within the cone.
+//! A row has a [`State`] (normal and impulse), a [`Law`] and the [`Motion`] of its two bodies; a
+//! [`Kind`] is the pair of the last two. Each is written once, over lanes: the same source is
+//! compiled for one contact and for several at a time. A contact of two balls has W_nt = 0, W_nn =
+//! 1/m_i + 1/m_j and an isotropic W_tt, so that its law is solved in closed form, part by part;
+//! with lever arms it has a full block of W.
 
 mod block;
 mod cone;
 mod full;
-#[cfg(target_arch = "x86_64")]
-mod lanes;
-mod lever;
+mod law;
 mod moment;
+mod motion;
 mod plain;
+mod rigid_bodies;
 mod solver_bodies;
+mod state;
 mod system;
+#[cfg(test)]
+mod tests;
 mod visit;
 
-pub(super) use block::{Bonded, Loose, OnBlock};
+pub(super) use block::{Bonded, Unbonded};
 pub(super) use cone::HELD;
-pub(super) use full::FullRow;
-pub(super) use lever::LeverRow;
+pub(super) use full::Full;
 pub use moment::{MomentForm, MomentSolution};
 pub(super) use moment::{MomentRow, turning};
-pub(super) use plain::PlainRow;
+pub(super) use plain::Plain;
+pub(super) use rigid_bodies::RigidBodies;
 pub(super) use solver_bodies::SolverBodies;
+pub(super) use state::{Moving, Parts};
 pub(super) use system::{SystemRow, Term};
 pub(super) use visit::{Free, Load, Measure, Update, Visit, noise, visit};
 
-use super::form::{ContactForm, ContactSolution};
-use super::{cone as cones, error};
-use crate::geometry::space::{Space, VectorLike, greatest};
+use super::error::Residual;
+use super::form::{ContactForm, ContactSolution, Mobility};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::lanes::{Batch, BatchMut, Lane, LaneVector, part, part_mut};
+use law::Law;
+use motion::Motion;
+use state::State;
 
 /// Velocity record of a body in the solver: 64 bytes in both dimensions.
 #[derive(Clone, Copy, Debug)]
@@ -44,161 +55,233 @@ pub struct SolverBody<S: Space> {
     pub is: f64,
 }
 
-impl<S: Space> SolverBody<S> {
-    /// Returns the record of an immovable body.
-    #[cfg(target_arch = "x86_64")]
-    fn idle() -> Self {
-        Self {
+/// A kind of contacts between two rigid bodies: a law that is solved in closed form, and how the
+/// bodies move.
+pub(super) trait Kind<S: Space>: Law<S> {
+    type Motion: Motion<S>;
+    /// Whether in space eight contacts at a time are quicker than four, because registers suffice.
+    const EIGHT: bool = false;
+    /// Whether bonds may act on its contacts.
+    const BONDS: bool;
+
+    /// Whether a contact can be of this kind.
+    fn serves(contact: &ContactForm<S>) -> bool;
+    /// The law and the motion of a contact. The bodies are looked up.
+    fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> (Self, Self::Motion);
+    /// Whether a contact may have a tangential impulse.
+    fn grips(&self) -> bool {
+        true
+    }
+    /// Where none of the contacts has friction, and their bodies do not turn: solves them for the
+    /// difference of the velocities of the centres; gives the change of the impulses in world axes.
+    #[inline(always)]
+    fn without_friction<L: Lane>(
+        _law: Batch<Self, L>,
+        _state: &mut State<S, L>,
+        _difference: &S::V<L>,
+        _relaxation: L,
+    ) -> Option<S::V<L>> {
+        None
+    }
+}
+
+/// A contact in the solver. What an update reads stands together.
+#[derive(Clone, Debug)]
+#[repr(C)]
+pub(super) struct Row<S: Space, K: Kind<S>> {
+    state: State<S>,
+    bodies: [u32; 2],
+    motion: K::Motion,
+    law: K,
+}
+
+impl<S: Space, K: Kind<S>> Row<S, K> {
+    #[inline]
+    pub fn new(contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> Self {
+        let (law, motion) = K::new(contact, bodies);
+        let mut row = Self {
+            state: State::new(&contact.normal, &contact.impulse),
+            law,
+            motion,
+            bodies: contact.bodies,
+        };
+        row.set(&contact.impulse);
+        row
+    }
+
+    /// A contact that contributes nothing, and one of its bodies.
+    fn between_immovable_bodies() -> (Self, SolverBody<S>) {
+        let body = SolverBody {
             v: S::Vector::zero(),
             s: S::Spin::zero(),
             im: 0.0,
             is: 0.0,
+        };
+        let mobility = Mobility {
+            mass: S::Vector::zero(),
+            inertia: S::Tensor::uniform(0.0),
+        };
+        let bodies = RigidBodies {
+            solver_bodies: &[body; 2],
+            masses: &[mobility; 2],
+            lengths: &[1.0; 2],
+        };
+        (Self::new(&ContactForm::idle(), &bodies), body)
+    }
+
+    #[inline(always)]
+    pub fn bodies(&self) -> [u32; 2] {
+        self.bodies
+    }
+
+    /// The normal and the tangential impulse.
+    #[inline(always)]
+    pub fn local_impulse(&self) -> Parts<S> {
+        self.state.p
+    }
+
+    /// Sets them; the caller updates the velocities.
+    #[inline(always)]
+    pub fn set_local_impulse(&mut self, parts: Parts<S>) {
+        self.state.p = parts;
+    }
+
+    /// Sets an impulse given in world axes; the caller updates the velocities.
+    pub fn set(&mut self, impulse: &S::Vector) {
+        self.state.set(impulse);
+        if !self.law.grips() {
+            self.state.p.t = Parts::<S>::zero().t;
         }
     }
-}
 
-/// Contribution of one contact to the convergence test.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Residual {
-    /// |p - proj(p - rho (u + mu |u_t| n))|^2 / rho^2 (m^2/s^2).
-    pub squared: f64,
-    /// |u|^2 (m^2/s^2).
-    pub velocity: f64,
-    /// |p / rho|^2 (m^2/s^2).
-    pub impulse: f64,
-    /// p . r, r the residual velocity (J).
-    pub power: f64,
-    /// |p . r|, or rho |r|^2 where that is larger: a contact without the impulse that it should have (J).
-    pub unbalanced: f64,
-    /// |p_t . (u_t + s_t)|, the work of slip (J).
-    pub slip: f64,
-}
-
-/// Normal and tangential impulse of a contact (N s).
-pub(super) type LocalImpulse<S> = (f64, <S as Space>::Tangent);
-
-/// A contact in the solver.
-pub(super) trait Row<S: Space>: Clone + Send + Sync + 'static {
-    fn bodies(&self) -> [u32; 2];
-    /// Solves the contact for the current velocities, applies `relaxation` times the impulse increment, and
-    /// updates the velocities.
-    fn update(&mut self, a: &mut SolverBody<S>, b: &mut SolverBody<S>, relaxation: f64);
-    /// Applies the stored impulse to the velocities.
-    fn load(&self, a: &mut SolverBody<S>, b: &mut SolverBody<S>);
-    /// Returns the normal and the tangential impulse.
-    fn local_impulse(&self) -> LocalImpulse<S>;
-    /// Sets them; the caller updates the velocities.
-    fn set_local_impulse(&mut self, parts: LocalImpulse<S>);
-    /// Sets an impulse given in world axes; the caller updates the velocities.
-    fn set(&mut self, impulse: &S::Vector);
-    /// Returns |u|^2 at the current velocities.
-    fn speed(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64;
-    /// Returns rho of the natural map; 0 for a contact that moves nothing, whose impulse follows from given velocities.
-    fn rho(&self) -> f64;
-    /// Returns the friction coefficient.
-    fn friction(&self) -> f64;
-    fn residual(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> Residual;
-    /// Returns the work on the compliance of the unilateral part, c |p|^2 (J).
-    fn yields(&self, _: &SolverBody<S>, _: &SolverBody<S>) -> f64 {
-        0.0
+    /// rho of the natural map; 0 for a contact that moves nothing, whose impulse follows from given
+    /// velocities.
+    pub fn rho(&self) -> f64 {
+        K::limits(Batch::one(&self.law)).rho
     }
-    /// Returns the solution at the current velocities: the bond's part follows from them, the unilateral
-    /// part is the rest.
-    fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S>;
+
+    /// Sets the impulse to what these velocities ask for, which it does not change.
+    pub fn solve_at(&mut self, a: &SolverBody<S>, b: &SolverBody<S>) {
+        let (mut a, mut b) = (Moving::of(a), Moving::of(b));
+        Self::update(BatchMut::one(self), &mut a, &mut b, 1.0);
+    }
+
+    /// Solves contacts for the current velocities, applies `relaxation` times the change of the
+    /// impulses, and updates the velocities.
+    #[inline(always)]
+    pub fn update<L: Lane>(
+        mut rows: BatchMut<Self, L>,
+        a: &mut Moving<S, L>,
+        b: &mut Moving<S, L>,
+        relaxation: L,
+    ) {
+        let (mut state, motion) = (part!(rows, state).read(), part!(rows, motion).read());
+        let (law, difference) = (part!(rows, law), a.v - b.v);
+        if let Some(p) = K::without_friction(law, &mut state, &difference, relaxation) {
+            a.v = a.v + p * a.im;
+            b.v = b.v - p * b.im;
+        } else {
+            let u = K::Motion::relative(&motion, &state.n, a, b);
+            let change = K::solve(part_mut!(rows, law), &mut state, u, relaxation);
+            K::Motion::push(&motion, &state.n, &change, a, b);
+        }
+        part_mut!(rows, state.p).write(&state.p);
+    }
+
+    /// Applies the stored impulses to the velocities.
+    #[inline(always)]
+    pub fn load<L: Lane>(rows: Batch<Self, L>, a: &mut Moving<S, L>, b: &mut Moving<S, L>) {
+        let (state, motion) = (part!(rows, state).read(), part!(rows, motion).read());
+        K::Motion::push(&motion, &state.n, &state.p, a, b);
+    }
+
+    /// The relative velocities.
+    #[inline(always)]
+    fn relative<L: Lane>(rows: Batch<Self, L>, a: &Moving<S, L>, b: &Moving<S, L>) -> Parts<S, L> {
+        let (state, motion) = (part!(rows, state).read(), part!(rows, motion).read());
+        K::Motion::relative(&motion, &state.n, a, b)
+    }
+
+    /// The contributions to the convergence test.
+    #[inline(always)]
+    pub fn residual<L: Lane>(
+        rows: Batch<Self, L>,
+        a: &Moving<S, L>,
+        b: &Moving<S, L>,
+    ) -> Residual<L> {
+        let u = Self::relative(rows, a, b);
+        <K as Law<S>>::residual(part!(rows, law), &part!(rows, state).read(), &u)
+    }
+
+    /// |u|^2, rho of the natural map and friction.
+    #[inline(always)]
+    pub fn speed<L: Lane>(rows: Batch<Self, L>, a: &Moving<S, L>, b: &Moving<S, L>) -> [L; 3] {
+        let u = Self::relative(rows, a, b);
+        let limits = K::limits(part!(rows, law));
+        [u.dot(&u), limits.rho, limits.mu]
+    }
+
+    /// The work on the compliance of the unilateral part, c |p|^2 (J).
+    pub fn work_on_compliance(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> f64 {
+        let u = Self::relative(Batch::one(self), &Moving::of(a), &Moving::of(b));
+        self.law.work_on_compliance(&self.state, &u)
+    }
+
+    /// The solution at the current velocities.
+    pub fn solution(&self, a: &SolverBody<S>, b: &SolverBody<S>) -> ContactSolution<S> {
+        let u = Self::relative(Batch::one(self), &Moving::of(a), &Moving::of(b));
+        self.law.solution(&self.state, &u)
+    }
 }
 
 /// Appends the components of an impulse.
-pub(super) fn store<S: Space>((n, t): LocalImpulse<S>, out: &mut Vec<f64>) {
-    out.push(n);
-    for k in 0..S::Tangent::N {
-        out.push(t[k]);
-    }
+pub(super) fn store<S: Space>(p: Parts<S>, out: &mut Vec<f64>) {
+    out.push(p.n);
+    out.extend((0..<S::T<f64>>::N).map(|k| p.t[k]));
 }
 
 /// Takes them from the front of `from`.
-pub(super) fn restore<S: Space>(from: &mut &[f64]) -> LocalImpulse<S> {
-    let size = 1 + S::Tangent::N;
-    let (parts, rest) = from.split_at(size);
+pub(super) fn restore<S: Space>(from: &mut &[f64]) -> Parts<S> {
+    let (parts, rest) = from.split_at(1 + <S::T<f64>>::N);
     *from = rest;
-    (parts[0], S::Tangent::from_slice(&parts[1..]))
-}
-
-#[inline(always)]
-fn relative<S: Space>(n: &S::Vector, a: &SolverBody<S>, b: &SolverBody<S>) -> (f64, S::Tangent) {
-    let d = a.v - b.v;
-    (n.dot(&d), S::tangential(n, &d) - S::roll(&(a.s + b.s), n))
-}
-
-#[inline(always)]
-fn push<S: Space>(
-    n: &S::Vector,
-    dn: f64,
-    dt: S::Tangent,
-    a: &mut SolverBody<S>,
-    b: &mut SolverBody<S>,
-) {
-    let impulse = *n * dn + S::tangent_vector(n, &dt);
-    let twist = S::twist(n, &dt);
-    a.v += impulse * a.im;
-    b.v -= impulse * b.im;
-    a.s -= twist * a.is;
-    b.s -= twist * b.is;
-}
-
-/// Computes the natural map of the De Saxce form in velocities, for a shifted impulse (P_n, p_t), a velocity
-/// and its shift.
-#[inline]
-fn natural_map<T: VectorLike>(
-    (pn, pt): (f64, T),
-    (un, ut): (f64, T),
-    (sn, st): (f64, T),
-    rho: f64,
-    mu: f64,
-    c: f64,
-) -> Residual {
-    let slide = ut + st;
-    let (zn, zt) = cones::project(
-        pn - rho * (un + sn + mu * slide.norm()),
-        pt - slide * rho,
-        mu,
-        c,
-    );
-    let over = 1.0 / rho;
-    let (rn, rt) = ((pn - zn) * over, (pt - zt) * over);
-    Residual {
-        squared: error::residual(rn * rn + rt.dot(&rt), pn * over, un + sn, mu),
-        velocity: un * un + ut.dot(&ut),
-        impulse: (pn * pn + pt.dot(&pt)) * (over * over),
-        power: pn * rn + pt.dot(&rt),
-        unbalanced: greatest((pn * rn + pt.dot(&rt)).abs(), rho * (rn * rn + rt.dot(&rt))),
-        slip: pt.dot(&slide).abs(),
+    Parts {
+        n: parts[0],
+        t: LaneVector::from_fn(|k| parts[1 + k]),
     }
 }
 
 /// Returns 1/w; zero where nothing moves.
-fn inverse(w: f64) -> f64 {
-    if w > 0.0 { 1.0 / w } else { 0.0 }
+#[inline(always)]
+fn inverse<L: Lane>(w: L) -> L {
+    let zero = L::all(0.0);
+    L::select(w.above(zero), L::all(1.0) / w, zero)
 }
 
-/// Returns 1/w_t. Where bodies can move only along the normal the slip is given, and friction takes its
-/// bound at once.
-fn inverse_along(w_t: f64, w_n: f64) -> f64 {
+/// Returns 1/w_t. Where bodies can move only along the normal the slip is given, and friction takes
+/// its bound at once.
+#[inline(always)]
+fn inverse_along<L: Lane>(w_t: L, w_n: L) -> L {
     const MIN_RATIO: f64 = 1e-12;
-    inverse(w_t.max(MIN_RATIO * w_n))
+    inverse(w_t.greatest(L::all(MIN_RATIO) * w_n))
 }
 
-/// As [`inverse_along`]; where nothing moves at all, a shear cohesion (N s) takes its bound from a slip of 1e-12 m/s on.
-fn answer_to_slip(w_t: f64, w_n: f64, cohesion: f64) -> f64 {
+/// As [`inverse_along`]; where nothing moves at all, a shear cohesion (N s) takes its bound from a
+/// slip of 1e-12 m/s on.
+#[inline(always)]
+fn answer_to_slip<L: Lane>(w_t: L, w_n: L, cohesion: L) -> L {
     const LEAST_SLIP: f64 = 1e-12;
-    if w_t > 0.0 || w_n > 0.0 {
-        inverse_along(w_t, w_n)
-    } else {
-        cohesion / LEAST_SLIP
-    }
+    let zero = L::all(0.0);
+    let moves = w_t.above(zero) | w_n.above(zero);
+    L::select(
+        moves,
+        inverse_along(w_t, w_n),
+        cohesion / L::all(LEAST_SLIP),
+    )
 }
 
-/// The shift along the normal of a contact with this W_nn. Where both bodies are held along the normal, the velocity is given, and the
-/// impulse of a rigid contact is not determined: it is open, and its bond, cohesion or damping alone acts. A compliance determines it.
+/// The shift along the normal of a contact with this W_nn. Where both bodies are held along the
+/// normal, the velocity is given, and the impulse of a rigid contact is not determined: it is open,
+/// and its bond, cohesion or damping alone acts. A compliance determines it.
 fn shift_along<S: Space>(contact: &ContactForm<S>, w_n: f64) -> f64 {
     if w_n + contact.compliance[0] > 0.0 {
         contact.shift_n

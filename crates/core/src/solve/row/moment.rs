@@ -1,10 +1,11 @@
 //! Moments of a contact: rolling and spinning friction, and the bending and twist of a bond.
 //!
-//! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and M_sc
-//! opposes w with |M_sc| <= (friction length) p_n, separately for bending and twist.
+//! M = M_sc + M_el, dual to the relative spin w = w_i - w_j: M_el = -(a + B w) as for impulses, and
+//! M_sc opposes w with |M_sc| <= (friction length) p_n, separately for bending and twist.
 
-use super::{Residual, SolverBody, Term, inverse};
+use super::{SolverBody, Term, inverse};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
+use crate::solve::error::Residual;
 use crate::solve::form::{Mobility, Place};
 use crate::solve::nodal::NodalSystem;
 
@@ -23,7 +24,8 @@ pub struct MomentForm<S: Space> {
     pub b_twist: f64,
     /// Bending stiffness over the step (N m s^2).
     pub b_bend: f64,
-    /// Dissipation of the time scheme beyond the change of the stored energy: loss_twist w_n^2 + loss_bend
+    /// Dissipation of the time scheme beyond the change of the stored energy: loss_twist w_n^2 +
+    /// loss_bend
     /// |w_t|^2 (J s^2).
     pub loss_twist: f64,
     /// See `loss_twist`.
@@ -52,7 +54,8 @@ pub(in crate::solve) struct MomentRow<S: Space> {
     n: S::Vector,
     /// Inverse lengths of the bodies (1/m); 0 of the body of a dynamical system.
     over: [f64; 2],
-    /// Nodes of systems that turn: their velocity times the weight (1/m) is a spin, and the moment times the weight the impulse on them.
+    /// Nodes of systems that turn: their velocity times the weight (1/m) is a spin, and the moment
+    /// times the weight the impulse on them.
     terms: Vec<Term>,
     /// Inverse inertias times the lengths (1/(kg m)).
     inverse_spins: [S::Tensor; 2],
@@ -88,7 +91,8 @@ impl<S: Space> MomentRow<S> {
         }
     }
 
-    /// The same with systems on these sides, by the nodes that turn with them: their bodies have no spin of their own.
+    /// The same with systems on these sides, by the nodes that turn with them: their bodies have no
+    /// spin of their own.
     pub fn with_systems(mut self, nodes: [Option<Term>; 2], systems: &[NodalSystem<S>]) -> Self {
         for (side, term) in nodes.into_iter().enumerate() {
             let Some(term) = term else { continue };
@@ -161,8 +165,8 @@ impl<S: Space> MomentRow<S> {
         b.s -= self.inverse_spins[1].apply(moment);
     }
 
-    /// Solves for the current spins under the normal impulse `pn`. Where nothing can turn the spin is given: friction is at its bound against
-    /// it.
+    /// Solves for the current spins under the normal impulse `pn`. Where nothing can turn the spin
+    /// is given: friction is at its bound against it.
     pub fn update(
         &mut self,
         pn: f64,
@@ -216,7 +220,8 @@ impl<S: Space> MomentRow<S> {
         self.moment = *moment;
     }
 
-    /// Adds what the stored moment does to the velocities; those of nodes are right once their systems are settled.
+    /// Adds what the stored moment does to the velocities; those of nodes are right once their
+    /// systems are settled.
     pub fn load(
         &self,
         a: &mut SolverBody<S>,
@@ -297,7 +302,8 @@ fn against<T: VectorLike>(spin: &T, bound: f64) -> T {
     }
 }
 
-/// A moment as the impulse on a node that turns with a system, see [`crate::bodies::DynamicalSystem::turning_node`].
+/// A moment as the impulse on a node that turns with a system, see
+/// [`crate::bodies::DynamicalSystem::turning_node`].
 pub(in crate::solve) fn turning<S: Space>(spin: &S::Spin) -> S::Vector {
     let mut out = S::Vector::zero();
     for k in 0..S::Spin::N {
@@ -313,8 +319,9 @@ mod tests {
     use crate::solve::Problem;
     use nalgebra::{Matrix1, Vector1, Vector2};
 
-    /// Without rolling friction and bond a moment of 2 N m s is a residual: with W of 1/4 + 1/16 it turns by w = 5/8 rad/s, over the shorter length
-    /// of 1/2 m a velocity. The bodies turn at 3 rad/s against each other.
+    /// Without rolling friction and bond a moment of 2 N m s is a residual: with W of 1/4 + 1/16 it
+    /// turns by w = 5/8 rad/s, over the shorter length of 1/2 m a velocity. The bodies turn at 3
+    /// rad/s against each other.
     #[test]
     fn residuals_of_moments_are_velocities_at_the_shorter_length() {
         let mut problem = Problem::<Dim2>::default();
@@ -341,7 +348,14 @@ mod tests {
         };
         let [a, b] = inertias.map(mobility);
         let normal = Vector2::new(0.0, 1.0);
-        let row = MomentRow::<Dim2>::new(&form, Place::Plain(0), [0, 1], normal, [&a, &b], lengths);
+        let row = MomentRow::<Dim2>::new(
+            &form,
+            Place::Row { kind: 0, row: 0 },
+            [0, 1],
+            normal,
+            [&a, &b],
+            lengths,
+        );
         let bodies = &problem.solver_bodies;
         let found = row.residual(1.0, &bodies[0], &bodies[1], &[]);
         let near = |a: f64, b: f64| (a - b).abs() < 1e-14;

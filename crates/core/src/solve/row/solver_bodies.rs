@@ -5,16 +5,16 @@ use crate::geometry::space::Space;
 
 /// Velocities accessed by several threads, each at its own bodies.
 ///
-/// Indices are not checked here, in the innermost loop, but where rows are made: [`Problem::push`](crate::solve::Problem::push) and
-/// `push_all` look up both bodies of each contact, which must differ, and a problem never loses a body. Rows of moments are checked
-/// where they are used ([`Self::alone`]).
+/// Indices are not checked here, in the innermost loop, but where rows are made:
+/// [`RigidBodies`](super::RigidBodies) looks up both bodies of each contact, which must differ, and
+/// a problem never loses a body. Rows of moments are checked where they are used ([`Self::alone`]).
 pub(in crate::solve) struct SolverBodies<S: Space> {
     first: *mut SolverBody<S>,
     len: usize,
 }
 
-// SAFETY: contacts solved at the same time share no movable body (see `colour`), and records of immovable
-// bodies are only read; so no record is written while another thread accesses it.
+// SAFETY: contacts solved at the same time share no movable body (see `colour`), and records of
+// immovable bodies are only read; so no record is written while another thread accesses it.
 unsafe impl<S: Space> Sync for SolverBodies<S> {}
 
 impl<S: Space> SolverBodies<S> {
@@ -31,26 +31,6 @@ impl<S: Space> SolverBodies<S> {
         debug_assert!((body as usize) < self.len);
         // SAFETY: the index was looked up when the row was made, see above.
         unsafe { self.first.add(body as usize) }
-    }
-
-    /// Runs `f` on the records of two bodies and stores those of movable bodies.
-    #[inline(always)]
-    pub fn with(&self, bodies: [u32; 2], f: impl FnOnce(&mut SolverBody<S>, &mut SolverBody<S>)) {
-        debug_assert!(bodies[0] != bodies[1]);
-        let [a, b] = bodies.map(|k| self.at(k));
-        // SAFETY: see `Sync` above.
-        unsafe {
-            let (mut x, mut y) = (*a, *b);
-            f(&mut x, &mut y);
-            if x.im > 0.0 || x.is > 0.0 {
-                (*a).v = x.v;
-                (*a).s = x.s;
-            }
-            if y.im > 0.0 || y.is > 0.0 {
-                (*b).v = y.v;
-                (*b).s = y.s;
-            }
-        }
     }
 
     /// Runs `f` on the records of two bodies on a single thread; stores both.

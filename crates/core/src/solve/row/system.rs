@@ -1,10 +1,13 @@
-//! A contact of which a side is a dynamical system: solved as a block, its impulse changes the velocities of all nodes of the
-//! system that are touched.
+//! A contact of which a side is a dynamical system: solved as a block, its impulse changes the
+//! velocities of all nodes of the system that are touched.
 
-use super::block::{Bonded, OnBlock};
-use super::{LocalImpulse, Residual, SolverBody};
+use super::law::{Law, Limits};
+use super::state::{Parts, State};
+use super::{Bonded, SolverBody};
+use crate::geometry::lane_space::{lanes_of, vector_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
-use crate::solve::error::Scale;
+use crate::lanes::{Batch, BatchMut};
+use crate::solve::error::{Residual, Scale};
 use crate::solve::form::{ContactForm, ContactSolution, Mobility};
 use crate::solve::nodal::NodalSystem;
 
@@ -32,13 +35,15 @@ struct RigidSide<S: Space> {
 #[derive(Clone, Debug)]
 pub(in crate::solve) struct SystemRow<S: Space> {
     rigid: [Option<RigidSide<S>>; 2],
-    /// By side of a system its index, the point of it, and 1 for the candidate's and -1 for the antagonist's.
+    /// By side of a system its index, the point of it, and 1 for the candidate's and -1 for the
+    /// antagonist's.
     points: [Option<(u32, u32, f64)>; 2],
     /// The same by nodes.
     terms: Vec<Term>,
     /// W_cc in world axes (1/kg).
     block: S::Matrix,
-    contact: Bonded<S>,
+    state: State<S>,
+    law: Bonded<S>,
 }
 
 /// Body, arm (m), mobility and length (m) of a rigid side.
@@ -65,7 +70,8 @@ impl<S: Space> SystemRow<S> {
             rigid,
             points,
             terms,
-            contact: Bonded::new(contact, &block),
+            state: State::new(&contact.normal, &contact.impulse),
+            law: Bonded::of(contact, &block),
             block,
         }
     }
@@ -94,19 +100,17 @@ impl<S: Space> SystemRow<S> {
     }
 
     /// Its relative velocity along and across its normal (m/s).
-    fn parts(
-        &self,
-        solver_bodies: &[SolverBody<S>],
-        systems: &[NodalSystem<S>],
-    ) -> (f64, S::Tangent) {
-        let (u, n) = (
-            self.relative(solver_bodies, systems),
-            self.contact.state().n,
-        );
-        (n.dot(&u), S::tangential(&n, &u))
+    fn parts(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> Parts<S> {
+        let u = self.relative(solver_bodies, systems);
+        Parts::of(&self.state.n, &lanes_of(&u))
     }
 
-    /// Adds what an impulse does to the velocities of bodies, and gives `on_point` the system, the point and the impulse on it.
+    fn limits(&self) -> Limits<S> {
+        Bonded::limits(Batch::one(&self.law))
+    }
+
+    /// Adds what an impulse does to the velocities of bodies, and gives `on_point` the system, the
+    /// point and the impulse on it.
     fn push(
         &self,
         p: &S::Vector,
@@ -127,26 +131,27 @@ impl<S: Space> SystemRow<S> {
         }
     }
 
-    /// Solves the contact for the current velocities, goes `relaxation` times as far, and updates them.
+    /// Solves the contact for the current velocities, goes `relaxation` times as far, and updates
+    /// them.
     pub fn update(
         &mut self,
         solver_bodies: &mut [SolverBody<S>],
         systems: &mut [NodalSystem<S>],
         relaxation: f64,
     ) {
-        let u = self.relative(solver_bodies, systems);
-        let n = self.contact.state().n;
-        let (un, ut) = (n.dot(&u), S::tangential(&n, &u));
-        let (dn, dt) = self.contact.update(un, &ut, relaxation);
-        let change = n * dn + S::tangent_vector(&n, &dt);
+        let u = self.parts(solver_bodies, systems);
+        let law = BatchMut::one(&mut self.law);
+        let change = Bonded::solve(law, &mut self.state, u, relaxation);
+        let change = vector_of(&change.joined(&self.state.n));
         self.push(&change, solver_bodies, |system, point, p| {
             systems[system as usize].push(point, p);
         });
     }
 
-    /// Adds what the stored impulse does to the velocities; those of nodes are right once their systems are settled.
+    /// Adds what the stored impulse does to the velocities; those of nodes are right once their
+    /// systems are settled.
     pub fn load(&self, solver_bodies: &mut [SolverBody<S>], systems: &mut [NodalSystem<S>]) {
-        let impulse = self.contact.state().impulse();
+        let impulse = self.state.impulse();
         self.push(&impulse, solver_bodies, |system, point, p| {
             systems[system as usize].load(point, p);
         });
@@ -156,13 +161,13 @@ impl<S: Space> SystemRow<S> {
     pub fn add_impulses(&self, impulses: &mut [Vec<S::Vector>]) {
         for term in &self.terms {
             impulses[term.system as usize][term.node as usize] +=
-                self.contact.state().impulse() * term.weight;
+                self.state.impulse() * term.weight;
         }
     }
 
-    /// See [`super::Row::rho`].
+    /// rho of the natural map, see [`Limits::rho`].
     pub fn rho(&self) -> f64 {
-        self.contact.limits().rho
+        self.limits().rho
     }
 
     /// The nodes that it acts on.
@@ -183,9 +188,10 @@ impl<S: Space> SystemRow<S> {
         })
     }
 
-    /// The compliance of its law and of its sides, of which `sides` is known (1/kg); not above that of the natural map.
+    /// The compliance of its law and of its sides, of which `sides` is known (1/kg); not above that
+    /// of the natural map.
     pub fn compliance_beside(&self, sides: f64) -> f64 {
-        let limits = self.contact.limits();
+        let limits = self.limits();
         if limits.rho <= 0.0 {
             return 0.0;
         }
@@ -204,22 +210,22 @@ impl<S: Space> SystemRow<S> {
 
     /// Whether a bond may act on it.
     pub fn is_bonded(&self) -> bool {
-        self.contact.is_bonded()
+        self.law.is_bonded()
     }
 
-    /// See [`super::Row::local_impulse`].
-    pub fn impulse(&self) -> LocalImpulse<S> {
-        self.contact.state().local_impulse()
+    /// The normal and the tangential impulse.
+    pub fn impulse(&self) -> Parts<S> {
+        self.state.p
     }
 
-    /// See [`super::Row::set_local_impulse`].
-    pub fn set_impulse(&mut self, parts: LocalImpulse<S>) {
-        self.contact.state_mut().set_local_impulse(parts);
+    /// Sets them; the caller updates the velocities.
+    pub fn set_impulse(&mut self, parts: Parts<S>) {
+        self.state.p = parts;
     }
 
-    /// See [`super::Row::set`].
+    /// Sets an impulse given in world axes; the caller updates the velocities.
     pub fn set(&mut self, impulse: &S::Vector) {
-        self.contact.state_mut().set(impulse);
+        self.state.set(impulse);
     }
 
     pub fn residual(
@@ -227,14 +233,18 @@ impl<S: Space> SystemRow<S> {
         solver_bodies: &[SolverBody<S>],
         systems: &[NodalSystem<S>],
     ) -> Residual {
-        let (un, ut) = self.parts(solver_bodies, systems);
-        self.contact.residual(un, &ut)
+        let u = self.parts(solver_bodies, systems);
+        Bonded::residual(Batch::one(&self.law), &self.state, &u)
     }
 
-    /// See [`super::Row::yields`].
-    pub fn yields(&self, solver_bodies: &[SolverBody<S>], systems: &[NodalSystem<S>]) -> f64 {
-        let (un, ut) = self.parts(solver_bodies, systems);
-        self.contact.yields(un, &ut)
+    /// The work on the compliance of the unilateral part, c |p|^2 (J).
+    pub fn work_on_compliance(
+        &self,
+        solver_bodies: &[SolverBody<S>],
+        systems: &[NodalSystem<S>],
+    ) -> f64 {
+        let u = self.parts(solver_bodies, systems);
+        self.law.work_on_compliance(&self.state, &u)
     }
 
     pub fn solution(
@@ -242,8 +252,8 @@ impl<S: Space> SystemRow<S> {
         solver_bodies: &[SolverBody<S>],
         systems: &[NodalSystem<S>],
     ) -> ContactSolution<S> {
-        let (un, ut) = self.parts(solver_bodies, systems);
-        self.contact.solution(un, &ut)
+        let u = self.parts(solver_bodies, systems);
+        self.law.solution(&self.state, &u)
     }
 
     /// Scales of the error from the free velocities, which are the current ones.
@@ -261,8 +271,8 @@ impl<S: Space> SystemRow<S> {
         let own: f64 = rigid.chain(points).sum();
         Scale {
             free: speed,
-            energy: self.contact.limits().rho * speed,
-            noise: super::visit::noise(own, self.contact.limits().mu),
+            energy: self.limits().rho * speed,
+            noise: super::visit::noise(own, self.limits().mu),
             ..Scale::default()
         }
     }

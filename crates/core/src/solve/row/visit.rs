@@ -1,10 +1,9 @@
-//! Operations applied to every row in turn: several contacts at a time with vector instructions where
-//! available, otherwise one by one, with bitwise identical results.
+//! Operations applied to every row in turn: several contacts at a time with vector instructions
+//! where available, otherwise one by one, with bitwise identical results.
 
-#[cfg(target_arch = "x86_64")]
-use super::lanes::{self, Moving, Records, Tuple, Wide};
-use super::{Row, SolverBodies, SolverBody};
-use crate::geometry::space::{Space, VectorLike, least};
+use super::{Kind, Moving, Row, SolverBodies, SolverBody};
+use crate::geometry::space::Space;
+use crate::lanes::{BatchMut, Instructions, Lane, LaneVector, SUMS, Wide, prefetch};
 use crate::solve::error::{ROUNDINGS, Scale, Sums};
 
 /// An operation on rows.
@@ -12,78 +11,166 @@ pub trait Visit {
     /// Whether to process two vector registers of contacts at a time in 3D, to hide latency.
     const TWO_REGISTERS: bool;
 
-    /// Processes one row, the `at`-th of those visited.
-    fn visit_row<S: Space, R: Row<S>>(
+    /// Processes rows with the bodies of either side, from the `at`-th on. The bodies that move
+    /// differ, or are only read.
+    fn visit<S: Space, K: Kind<S>, L: Lane>(
         &mut self,
-        row: &mut R,
-        solver_bodies: &SolverBodies<S>,
-        at: usize,
-    );
-
-    /// Processes the rows from the `at`-th on, which share no movable body or are only read.
-    ///
-    /// # Safety
-    /// Rows and records are valid, and nobody else writes them.
-    #[cfg(target_arch = "x86_64")]
-    unsafe fn visit_wide<W: Wide, const U: usize>(
-        &mut self,
-        rows: &Records<W, U>,
-        a: &Records<SolverBody<W::Space>, U>,
-        b: &Records<SolverBody<W::Space>, U>,
+        rows: BatchMut<Row<S, K>, L>,
+        a: BatchMut<SolverBody<S>, L>,
+        b: BatchMut<SolverBody<S>, L>,
         at: usize,
     );
 }
 
-/// Visits a block of rows, given the starts of its groups and the end of the last; contacts of a group share
-/// no movable body.
-pub fn visit<S: Space, R: Row<S>>(
-    rows: &mut [R],
+/// Visits a block of rows, given the starts of its groups and the end of the last; contacts of a
+/// group share no movable body.
+pub fn visit<S: Space, K: Kind<S>>(
+    rows: &mut [Row<S, K>],
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) {
     // Groups of a single contact would leave three of four lanes idle.
-    #[cfg(target_arch = "x86_64")]
-    if rows.len() >= 2 * groups.len() && lanes::visit(rows, groups, solver_bodies, what) {
-        return;
-    }
-    for (at, row) in rows.iter_mut().enumerate() {
-        what.visit_row(row, solver_bodies, at);
+    let wide =
+        (rows.len() >= 2 * groups.len()).then(|| Instructions::of_this_machine().next_back());
+    match wide.flatten() {
+        // SAFETY: the machine has them.
+        Some(with) => unsafe { visit_with(with, rows, groups, solver_bodies, what) },
+        None => visit_one_by_one(rows, solver_bodies, what),
     }
 }
 
-/// Solves the contact for the current velocities, with the given relaxation, and updates the velocities.
+/// Visits rows in turn.
+pub(super) fn visit_one_by_one<S: Space, K: Kind<S>>(
+    rows: &mut [Row<S, K>],
+    solver_bodies: &SolverBodies<S>,
+    what: &mut impl Visit,
+) {
+    for (at, row) in rows.iter_mut().enumerate() {
+        let [a, b] = row.bodies.map(|body| solver_bodies.at(body));
+        debug_assert!(a != b);
+        // SAFETY: see `Sync` of `SolverBodies`.
+        let (a, b) = unsafe { (BatchMut::new(a), BatchMut::new(b)) };
+        what.visit::<S, K, f64>(BatchMut::one(row), a, b, at);
+    }
+}
+
+/// Visits rows by groups.
+///
+/// # Safety
+/// The machine has the instructions.
+pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
+    with: Instructions,
+    rows: &mut [Row<S, K>],
+    groups: &[u32],
+    solver_bodies: &SolverBodies<S>,
+    what: &mut impl Visit,
+) {
+    debug_assert!(groups.last().map(|end| (end - groups[0]) as usize) == Some(rows.len()));
+    let visit = ByGroups {
+        count: rows.len(),
+        rows: rows.as_mut_ptr(),
+        groups,
+        solver_bodies,
+        what,
+    };
+    // SAFETY: as asked for.
+    unsafe { with.run(visit) }
+}
+
+/// Rows that are visited by groups.
+struct ByGroups<'a, S: Space, K: Kind<S>, V> {
+    rows: *mut Row<S, K>,
+    count: usize,
+    groups: &'a [u32],
+    solver_bodies: &'a SolverBodies<S>,
+    what: &'a mut V,
+}
+
+impl<S: Space, K: Kind<S>, V: Visit> Wide for ByGroups<'_, S, K, V> {
+    #[inline(always)]
+    fn run<L4: Lane, L8: Lane>(mut self) {
+        let (row, body) = Row::between_immovable_bodies();
+        let mut idle = Idle { row, body };
+        let eight = V::TWO_REGISTERS && S::D == 3 && K::EIGHT;
+        for group in self.groups.windows(2) {
+            let [mut at, end] = [group[0], group[1]].map(|k| (k - self.groups[0]) as usize);
+            while eight && at + L8::WIDTH <= end {
+                self.visit::<L8>(at, end, &mut idle);
+                at += L8::WIDTH;
+            }
+            while at < end {
+                self.visit::<L4>(at, end, &mut idle);
+                at += L4::WIDTH;
+            }
+        }
+    }
+}
+
+/// Fills the lanes without a contact.
+struct Idle<S: Space, K: Kind<S>> {
+    row: Row<S, K>,
+    body: SolverBody<S>,
+}
+
+/// Prefetch distance in contacts.
+const AHEAD: usize = 16;
+
+impl<S: Space, K: Kind<S>, V: Visit> ByGroups<'_, S, K, V> {
+    /// Visits the rows from the `at`-th on, up to at most `end`, the end of the group.
+    #[inline(always)]
+    fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut Idle<S, K>) {
+        let (rows, bodies) = (self.rows, self.solver_bodies);
+        // SAFETY: there are `count` rows, whose bodies are those of `solver_bodies`; of a group
+        // they differ where they move. Idle rows and bodies may be shared, and what is read there
+        // does not matter.
+        let (rows, a, b) = unsafe {
+            let body = |row: *mut Row<S, K>, side: usize| bodies.at((*row).bodies[side]);
+            if at + AHEAD + L::WIDTH <= self.count {
+                for k in 0..L::WIDTH {
+                    let row = rows.add(at + AHEAD + k);
+                    prefetch(body(row, 0));
+                    prefetch(body(row, 1));
+                }
+            }
+            if at + L::WIDTH <= end {
+                let rows = L::each(|k| rows.add(at + k));
+                let a = L::map(rows, |row| body(row, 0));
+                (rows, a, L::map(rows, |row| body(row, 1)))
+            } else {
+                let (idle_row, idle_body) = (&raw mut idle.row, &raw mut idle.body);
+                let row = |k: usize| (at + k < end).then(|| rows.add(at + k));
+                let side =
+                    |side: usize| L::each(|k| row(k).map_or(idle_body, |row| body(row, side)));
+                let rows = L::each(|k| row(k).unwrap_or(idle_row));
+                (rows, side(0), side(1))
+            }
+        };
+        // SAFETY: as above.
+        let (rows, a, b) = unsafe { (BatchMut::new(rows), BatchMut::new(a), BatchMut::new(b)) };
+        self.what.visit::<S, K, L>(rows, a, b, at);
+    }
+}
+
+/// Solves the contact for the current velocities, with the given relaxation, and updates the
+/// velocities.
 pub struct Update(pub f64);
 
 impl Visit for Update {
     const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn visit_row<S: Space, R: Row<S>>(
+    fn visit<S: Space, K: Kind<S>, L: Lane>(
         &mut self,
-        row: &mut R,
-        solver_bodies: &SolverBodies<S>,
+        rows: BatchMut<Row<S, K>, L>,
+        mut a: BatchMut<SolverBody<S>, L>,
+        mut b: BatchMut<SolverBody<S>, L>,
         _: usize,
     ) {
-        solver_bodies.with(row.bodies(), |a, b| row.update(a, b, self.0));
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    unsafe fn visit_wide<W: Wide, const U: usize>(
-        &mut self,
-        rows: &Records<W, U>,
-        a: &Records<SolverBody<W::Space>, U>,
-        b: &Records<SolverBody<W::Space>, U>,
-        _: usize,
-    ) {
-        // SAFETY: as asked for.
-        unsafe {
-            let (mut i, mut j) = (Moving::load(a), Moving::load(b));
-            W::updates(rows, &mut i, &mut j, lanes::Lanes::all(self.0));
-            i.store(a);
-            j.store(b);
-        }
+        let (mut i, mut j) = (Moving::load(&a), Moving::load(&b));
+        Row::update(rows, &mut i, &mut j, L::all(self.0));
+        i.store(&mut a);
+        j.store(&mut b);
     }
 }
 
@@ -94,55 +181,38 @@ impl Visit for Load {
     const TWO_REGISTERS: bool = true;
 
     #[inline(always)]
-    fn visit_row<S: Space, R: Row<S>>(
+    fn visit<S: Space, K: Kind<S>, L: Lane>(
         &mut self,
-        row: &mut R,
-        solver_bodies: &SolverBodies<S>,
+        rows: BatchMut<Row<S, K>, L>,
+        mut a: BatchMut<SolverBody<S>, L>,
+        mut b: BatchMut<SolverBody<S>, L>,
         _: usize,
     ) {
-        solver_bodies.with(row.bodies(), |a, b| row.load(a, b));
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    unsafe fn visit_wide<W: Wide, const U: usize>(
-        &mut self,
-        rows: &Records<W, U>,
-        a: &Records<SolverBody<W::Space>, U>,
-        b: &Records<SolverBody<W::Space>, U>,
-        _: usize,
-    ) {
-        // SAFETY: as asked for.
-        unsafe {
-            let (mut i, mut j) = (Moving::load(a), Moving::load(b));
-            W::loads(rows, &mut i, &mut j);
-            i.store(a);
-            j.store(b);
-        }
+        let (mut i, mut j) = (Moving::load(&a), Moving::load(&b));
+        Row::load(*rows, &mut i, &mut j);
+        i.store(&mut a);
+        j.store(&mut b);
     }
 }
-
-/// Number of separate partial sums: the lanes of a vector register.
-const APART: usize = 4;
 
 /// Sums the contributions of contacts to the convergence test.
 #[derive(Default)]
 pub struct Measure {
-    residual: [f64; APART],
-    velocity: [f64; APART],
-    impulse: [f64; APART],
-    power: [f64; APART],
-    unbalanced: [f64; APART],
-    slip: [f64; APART],
-    worst: [f64; APART],
-    worst_at: [f64; APART],
+    residual: [f64; SUMS],
+    velocity: [f64; SUMS],
+    impulse: [f64; SUMS],
+    power: [f64; SUMS],
+    unbalanced: [f64; SUMS],
+    slip: [f64; SUMS],
+    worst: [f64; SUMS],
+    worst_at: [f64; SUMS],
 }
 
 impl Measure {
     /// Returns the sums; contacts are counted from `first`.
     pub fn sums(&self, first: usize) -> Sums {
         let mut out = Sums::default();
-        for k in 0..APART {
+        for k in 0..SUMS {
             out.merge(&Sums {
                 residual: self.residual[k],
                 velocity: self.velocity[k],
@@ -163,63 +233,42 @@ impl Visit for Measure {
     const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn visit_row<S: Space, R: Row<S>>(
+    fn visit<S: Space, K: Kind<S>, L: Lane>(
         &mut self,
-        row: &mut R,
-        solver_bodies: &SolverBodies<S>,
+        rows: BatchMut<Row<S, K>, L>,
+        a: BatchMut<SolverBody<S>, L>,
+        b: BatchMut<SolverBody<S>, L>,
         at: usize,
     ) {
-        let (a, b) = solver_bodies.read(row.bodies());
-        let (r, k) = (row.residual(&a, &b), at % APART);
-        self.residual[k] += r.squared;
-        self.velocity[k] += r.velocity;
-        self.impulse[k] += r.impulse;
-        self.power[k] += r.power;
-        self.unbalanced[k] += r.unbalanced;
-        self.slip[k] += r.slip;
-        if r.squared > self.worst[k] {
-            self.worst[k] = r.squared;
-            self.worst_at[k] = at as f64;
-        }
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    unsafe fn visit_wide<W: Wide, const U: usize>(
-        &mut self,
-        rows: &Records<W, U>,
-        a: &Records<SolverBody<W::Space>, U>,
-        b: &Records<SolverBody<W::Space>, U>,
-        at: usize,
-    ) {
-        // SAFETY: as asked for.
-        let r = unsafe { W::residuals(rows, &Moving::load(a), &Moving::load(b)) };
-        r.squared.add_to(&mut self.residual);
-        r.velocity.add_to(&mut self.velocity);
-        r.impulse.add_to(&mut self.impulse);
-        r.power.add_to(&mut self.power);
-        r.unbalanced.add_to(&mut self.unbalanced);
-        r.slip.add_to(&mut self.slip);
+        let r = Row::residual(*rows, &Moving::load(&a), &Moving::load(&b));
+        r.squared.add_to(&mut self.residual, at);
+        r.velocity.add_to(&mut self.velocity, at);
+        r.impulse.add_to(&mut self.impulse, at);
+        r.power.add_to(&mut self.power, at);
+        r.unbalanced.add_to(&mut self.unbalanced, at);
+        r.slip.add_to(&mut self.slip, at);
         r.squared.raise(&mut self.worst, &mut self.worst_at, at);
     }
 }
 
-/// Squared rounding of the relative velocity of a contact, by the squared velocities of its sides and its friction.
+/// Squared rounding of the relative velocity of a contact, by the squared velocities of its sides
+/// and its friction.
 #[inline(always)]
-pub fn noise(own: f64, friction: f64) -> f64 {
-    let mu = least(friction, MAX_FRICTION);
-    own * (1.0 + mu * mu) * ROUNDINGS
+pub fn noise<L: Lane>(own: L, friction: L) -> L {
+    let mu = friction.least(L::all(MAX_FRICTION));
+    own * (L::all(1.0) + mu * mu) * L::all(ROUNDINGS)
 }
 
 /// Sums the scales of the error from the free velocities, which are the current ones.
 #[derive(Default)]
 pub struct Free {
-    free: [f64; APART],
-    energy: [f64; APART],
-    noise: [f64; APART],
+    free: [f64; SUMS],
+    energy: [f64; SUMS],
+    noise: [f64; SUMS],
 }
 
-/// The natural map multiplies the rounding error of a slip by mu; mu is capped here for that purpose.
+/// The natural map multiplies the rounding error of a slip by mu; mu is capped here for that
+/// purpose.
 const MAX_FRICTION: f64 = 1e6;
 
 impl Free {
@@ -240,41 +289,19 @@ impl Visit for Free {
     const TWO_REGISTERS: bool = false;
 
     #[inline(always)]
-    fn visit_row<S: Space, R: Row<S>>(
+    fn visit<S: Space, K: Kind<S>, L: Lane>(
         &mut self,
-        row: &mut R,
-        solver_bodies: &SolverBodies<S>,
+        rows: BatchMut<Row<S, K>, L>,
+        a: BatchMut<SolverBody<S>, L>,
+        b: BatchMut<SolverBody<S>, L>,
         at: usize,
     ) {
-        let (a, b) = solver_bodies.read(row.bodies());
-        let (speed, k) = (row.speed(&a, &b), at % APART);
-        self.free[k] += speed;
-        self.energy[k] += row.rho() * speed;
+        let (a, b) = (Moving::<S, L>::load(&a), Moving::<S, L>::load(&b));
+        let [speed, rho, mu] = Row::speed(*rows, &a, &b);
+        speed.add_to(&mut self.free, at);
+        (rho * speed).add_to(&mut self.energy, at);
         let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);
-        self.noise[k] += noise(own, row.friction());
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    unsafe fn visit_wide<W: Wide, const U: usize>(
-        &mut self,
-        rows: &Records<W, U>,
-        a: &Records<SolverBody<W::Space>, U>,
-        b: &Records<SolverBody<W::Space>, U>,
-        _: usize,
-    ) {
-        // SAFETY: as asked for.
-        unsafe {
-            let (a, b) = (Moving::<W::Space, U>::load(a), Moving::load(b));
-            let row = W::speeds(rows, &a, &b);
-            row.speed.add_to(&mut self.free);
-            (row.rho * row.speed).add_to(&mut self.energy);
-            let own = a.v.dot(a.v) + a.s.dot(a.s) + b.v.dot(b.v) + b.s.dot(b.s);
-            let mu = row.mu.min(lanes::Lanes::all(MAX_FRICTION));
-            let one = lanes::Lanes::all(1.0);
-            let noise = own * (one + mu * mu) * lanes::Lanes::all(ROUNDINGS);
-            noise.add_to(&mut self.noise);
-        }
+        noise(own, mu).add_to(&mut self.noise, at);
     }
 }
 

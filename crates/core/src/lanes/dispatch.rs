@@ -1,0 +1,126 @@
+//! The choice of vector instructions at run time, and functions that are compiled for each.
+
+use super::Lane;
+
+/// What is compiled for vector instructions: it is called with lanes of four contacts, and of
+/// eight.
+pub(crate) trait Wide {
+    /// Does it. The function is inlined.
+    fn run<L4: Lane, L8: Lane>(self);
+}
+
+/// Vector instructions of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Instructions {
+    /// 256 bits.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// Used for its registers, which are twice as many: also 256 bits. Fused multiplication and
+    /// addition, which comes with it, is not formed from separate operations.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    /// 128 bits.
+    #[cfg(target_arch = "aarch64")]
+    Neon,
+}
+
+#[cfg(target_arch = "x86_64")]
+mod compiled {
+    use super::{Instructions, Wide};
+    use crate::lanes::wide::Lanes;
+    use std::arch::x86_64::__m256d;
+
+    impl Instructions {
+        /// The instructions that this machine has, the best last.
+        pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
+            let avx2 = is_x86_feature_detected!("avx2");
+            // With what the features of `avx512` imply.
+            let avx512 = is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("fma")
+                && is_x86_feature_detected!("f16c");
+            let all = [(Self::Avx2, avx2), (Self::Avx512, avx2 && avx512)];
+            all.into_iter()
+                .filter_map(|(with, has)| has.then_some(with))
+        }
+
+        /// Runs what is compiled for these instructions.
+        ///
+        /// # Safety
+        /// The machine has them.
+        #[inline(always)]
+        pub unsafe fn run(self, what: impl Wide) {
+            // SAFETY: as asked for.
+            unsafe {
+                match self {
+                    Self::Avx2 => avx2(what),
+                    Self::Avx512 => avx512(what),
+                }
+            }
+        }
+    }
+
+    #[target_feature(enable = "avx2")]
+    fn avx2(what: impl Wide) {
+        what.run::<Lanes<__m256d, 1>, Lanes<__m256d, 2>>();
+    }
+
+    #[target_feature(enable = "avx2,avx512f,avx512vl,avx512dq")]
+    fn avx512(what: impl Wide) {
+        what.run::<Lanes<__m256d, 1>, Lanes<__m256d, 2>>();
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+mod compiled {
+    use super::{Instructions, Wide};
+    use crate::lanes::{neon::Pairs, wide::Lanes};
+
+    impl Instructions {
+        /// The instructions that this machine has.
+        pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
+            std::iter::once(Self::Neon)
+        }
+
+        /// Runs what is compiled for these instructions.
+        ///
+        /// # Safety
+        /// The machine has them.
+        #[inline(always)]
+        pub unsafe fn run(self, what: impl Wide) {
+            what.run::<Lanes<Pairs, 1>, Lanes<Pairs, 2>>();
+        }
+    }
+}
+
+#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+mod compiled {
+    use super::{Instructions, Wide};
+
+    impl Instructions {
+        /// None that are known.
+        pub fn of_this_machine() -> impl DoubleEndedIterator<Item = Self> {
+            std::iter::empty()
+        }
+
+        /// # Safety
+        /// There are no such instructions.
+        pub unsafe fn run(self, _: impl Wide) {
+            match self {}
+        }
+    }
+}
+
+/// Asks for what is there in memory, which is read soon.
+#[inline(always)]
+pub(crate) fn prefetch<T>(what: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a hint, which reads nothing.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(what.cast());
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = what;
+}

@@ -1,0 +1,152 @@
+//! Records in memory, each of one contact, that are read and written in columns: a number of each
+//! in a lane.
+
+use super::Lane;
+use std::marker::PhantomData;
+use std::ops::Deref;
+
+/// A structure of numbers alone, which may be those of several contacts.
+///
+/// Those with an even number of numbers are aligned to 16 bytes where they are read in columns, so
+/// that no pair of numbers lies in two lines of the cache.
+///
+/// # Safety
+/// `Self` consists of `f64` alone, and `With<L>` of as many `L`, in the same order (`repr(C)`).
+pub unsafe trait Record: Copy {
+    /// The structure with a lane in the place of each number.
+    type With<L: Lane>: Copy;
+    /// How many numbers.
+    const COUNT: usize = size_of::<Self>() / size_of::<f64>();
+    /// Whether it is always followed by eight bytes of the same structure, which may be read with
+    /// it.
+    const FOLLOWED: bool = false;
+}
+
+// SAFETY: one number.
+unsafe impl Record for f64 {
+    type With<L: Lane> = L;
+}
+
+/// Implements [`Record`] for a structure over a space and a lane.
+macro_rules! record {
+    ($name:ident) => {
+        // SAFETY: the structure is `repr(C)` and has fields of the type of its lane, or records of
+        // it.
+        unsafe impl<S: $crate::geometry::space::Space> $crate::lanes::Record for $name<S, f64> {
+            type With<L: $crate::lanes::Lane> = $name<S, L>;
+        }
+    };
+}
+pub(crate) use record;
+
+/// Structures of several contacts, at any places in memory, of which records are read.
+pub(crate) struct Batch<'a, T, L: Lane>(L::Each<*mut T>, PhantomData<&'a T>);
+
+impl<T, L: Lane> Clone for Batch<'_, T, L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T, L: Lane> Copy for Batch<'_, T, L> {}
+
+impl<'a, T, L: Lane> Batch<'a, T, L> {
+    /// A part of each structure; see [`part`].
+    ///
+    /// # Safety
+    /// `of` gives a field of its structure.
+    #[inline(always)]
+    pub unsafe fn part<P>(&self, of: impl Fn(*mut T) -> *mut P) -> Batch<'a, P, L> {
+        Batch(L::map(self.0, of), PhantomData)
+    }
+
+    #[inline(always)]
+    pub fn read(&self) -> T::With<L>
+    where
+        T: Record,
+    {
+        // SAFETY: the structures are borrowed.
+        unsafe { L::gather(self.0) }
+    }
+}
+
+impl<'a, T> Batch<'a, T, f64> {
+    /// One structure.
+    #[inline(always)]
+    pub fn one(of: &'a T) -> Self {
+        Self(std::ptr::from_ref(of).cast_mut(), PhantomData)
+    }
+}
+
+/// A batch whose records are written, too.
+pub(crate) struct BatchMut<'a, T, L: Lane>(Batch<'a, T, L>, PhantomData<&'a mut T>);
+
+impl<'a, T, L: Lane> Deref for BatchMut<'a, T, L> {
+    type Target = Batch<'a, T, L>;
+    #[inline(always)]
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<'a, T, L: Lane> BatchMut<'a, T, L> {
+    /// # Safety
+    /// The structures are valid, and nobody else uses them, while the batch is used; those of
+    /// several lanes may be the same if it does not matter what is written there.
+    #[inline(always)]
+    pub unsafe fn new(each: L::Each<*mut T>) -> Self {
+        Self(Batch(each, PhantomData), PhantomData)
+    }
+
+    /// A part of each structure; see [`part_mut`].
+    ///
+    /// # Safety
+    /// `of` gives a field of its structure.
+    #[inline(always)]
+    pub unsafe fn part_mut<P>(&mut self, of: impl Fn(*mut T) -> *mut P) -> BatchMut<'_, P, L> {
+        BatchMut(Batch(L::map(self.0.0, of), PhantomData), PhantomData)
+    }
+
+    #[inline(always)]
+    pub fn write(&mut self, value: &T::With<L>)
+    where
+        T: Record,
+    {
+        // SAFETY: see `new`.
+        unsafe { L::scatter(self.0.0, value) }
+    }
+
+    /// Writes those of the lanes of a mask.
+    #[inline(always)]
+    pub fn write_where(&mut self, mask: L::Mask, value: &T::With<L>)
+    where
+        T: Record,
+    {
+        // SAFETY: see `new`.
+        unsafe { L::scatter_where(mask, self.0.0, value) }
+    }
+}
+
+impl<'a, T> BatchMut<'a, T, f64> {
+    /// One structure.
+    #[inline(always)]
+    pub fn one(of: &'a mut T) -> Self {
+        let of: *mut T = of;
+        Self(Batch(of, PhantomData), PhantomData)
+    }
+}
+
+/// A field of each structure of a batch, to be read.
+macro_rules! part {
+    ($batch:expr, $($field:tt)+) => {
+        // SAFETY: a field.
+        unsafe { $batch.part(|x| &raw mut (*x).$($field)+) }
+    };
+}
+/// A field of each structure of a batch.
+macro_rules! part_mut {
+    ($batch:expr, $($field:tt)+) => {
+        // SAFETY: a field.
+        unsafe { $batch.part_mut(|x| &raw mut (*x).$($field)+) }
+    };
+}
+pub(crate) use {part, part_mut};

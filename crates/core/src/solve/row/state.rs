@@ -1,0 +1,177 @@
+//! What changes in a sweep: the impulses of contacts and the velocities of bodies.
+
+use super::SolverBody;
+use crate::geometry::lane_space::{lanes_of, vector_of};
+use crate::geometry::space::Space;
+use crate::lanes::{Batch, BatchMut, Lane, LaneVector, Record, record};
+use std::ops::{Add, Mul, Sub};
+
+/// Normal and tangential part of an impulse or a velocity.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(in crate::solve) struct Parts<S: Space, L: Lane = f64> {
+    pub n: L,
+    pub t: S::T<L>,
+}
+record!(Parts);
+
+impl<S: Space, L: Lane> Parts<S, L> {
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self {
+            n: L::all(0.0),
+            t: <S::T<L>>::zero(),
+        }
+    }
+
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> L {
+        self.n * other.n + self.t.dot(&other.t)
+    }
+
+    /// Of a vector at a contact of unit normal `n`.
+    #[inline(always)]
+    pub fn of(n: &S::V<L>, v: &S::V<L>) -> Self {
+        let along = n.dot(v);
+        Self {
+            n: along,
+            t: S::across(n, v, along),
+        }
+    }
+
+    /// The vector.
+    #[inline(always)]
+    pub fn joined(&self, n: &S::V<L>) -> S::V<L> {
+        S::joined(n, self.n, &self.t)
+    }
+}
+
+impl<S: Space, L: Lane> Add for Parts<S, L> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            n: self.n + other.n,
+            t: self.t + other.t,
+        }
+    }
+}
+
+impl<S: Space, L: Lane> Sub for Parts<S, L> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            n: self.n - other.n,
+            t: self.t - other.t,
+        }
+    }
+}
+
+impl<S: Space, L: Lane> Mul<L> for Parts<S, L> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, by: L) -> Self {
+        Self {
+            n: self.n * by,
+            t: self.t * by,
+        }
+    }
+}
+
+/// Normal and impulse of a contact.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(in crate::solve) struct State<S: Space, L: Lane = f64> {
+    pub n: S::V<L>,
+    pub p: Parts<S, L>,
+}
+
+// SAFETY: as `record` says; in rows the bodies or the law follow.
+unsafe impl<S: Space> Record for State<S> {
+    type With<L: Lane> = State<S, L>;
+    const FOLLOWED: bool = true;
+}
+
+impl<S: Space> State<S> {
+    /// With an impulse in world axes.
+    pub fn new(normal: &S::Vector, impulse: &S::Vector) -> Self {
+        let mut state = Self {
+            n: lanes_of(normal),
+            p: Parts::zero(),
+        };
+        state.set(impulse);
+        state
+    }
+
+    /// The impulse in world axes (N s).
+    pub fn impulse(&self) -> S::Vector {
+        vector_of(&self.p.joined(&self.n))
+    }
+
+    /// Sets an impulse given in world axes.
+    pub fn set(&mut self, impulse: &S::Vector) {
+        self.p = Parts::of(&self.n, &lanes_of(impulse));
+    }
+}
+
+/// Velocities of bodies, see [`SolverBody`].
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub(in crate::solve) struct Moving<S: Space, L: Lane = f64> {
+    pub v: S::V<L>,
+    pub s: S::T<L>,
+    pub im: L,
+    pub is: L,
+}
+record!(Moving);
+
+/// Its first numbers: in the plane four, which are written at once.
+#[derive(Clone, Copy)]
+#[repr(C)]
+struct Front<S: Space, L: Lane> {
+    v: S::V<L>,
+    s: S::T<L>,
+    im: L,
+}
+record!(Front);
+
+impl<S: Space> Moving<S> {
+    pub fn of(body: &SolverBody<S>) -> Self {
+        Self {
+            v: lanes_of(&body.v),
+            s: lanes_of(&body.s),
+            im: body.im,
+            is: body.is,
+        }
+    }
+}
+
+impl<S: Space, L: Lane> Moving<S, L> {
+    #[inline(always)]
+    pub fn load(from: &Batch<SolverBody<S>, L>) -> Self {
+        // SAFETY: the record of a body begins with these numbers, in this order.
+        unsafe { from.part(|body| body.cast::<Moving<S>>()) }.read()
+    }
+
+    /// Writes back the velocities of bodies that move: records of immovable ones may be shared.
+    #[inline(always)]
+    pub fn store(&self, to: &mut BatchMut<SolverBody<S>, L>) {
+        let zero = L::all(0.0);
+        let moves = self.im.above(zero) | self.is.above(zero);
+        if S::D == 2 {
+            let front = Front {
+                v: self.v,
+                s: self.s,
+                im: self.im,
+            };
+            // SAFETY: as for `load`.
+            let mut to = unsafe { to.part_mut(|body| body.cast::<Front<S, f64>>()) };
+            to.write_where(moves, &front);
+        } else {
+            // SAFETY: as for `load`.
+            let mut to = unsafe { to.part_mut(|body| body.cast::<Moving<S>>()) };
+            to.write_where(moves, self);
+        }
+    }
+}
