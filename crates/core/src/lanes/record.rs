@@ -17,9 +17,6 @@ pub unsafe trait Record: Copy {
     type With<L: Lane>: Copy;
     /// How many numbers.
     const COUNT: usize = size_of::<Self>() / size_of::<f64>();
-    /// Whether it is always followed by eight bytes of the same structure, which may be read with
-    /// it.
-    const FOLLOWED: bool = false;
 }
 
 // SAFETY: one number.

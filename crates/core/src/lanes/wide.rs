@@ -168,23 +168,6 @@ unsafe fn gather_four<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *
     }
 }
 
-/// Reads the columns of three numbers.
-///
-/// # Safety
-/// As for [`gather_four`], and they are followed by a fourth.
-#[inline(always)]
-unsafe fn gather_three<F: Four, T, const U: usize>(from: &[[*mut T; 4]; U], to: *mut F, at: usize) {
-    for u in 0..U {
-        // SAFETY: as asked for.
-        unsafe {
-            let columns = F::load_columns(numbers(&from[u], at));
-            for k in 0..3 {
-                to.add((at + k) * U + u).write(columns[k]);
-            }
-        }
-    }
-}
-
 /// Reads the columns of two numbers.
 ///
 /// # Safety
@@ -378,7 +361,6 @@ impl<F: Four, const U: usize> Lane for Lanes<F, U> {
         unsafe {
             by_fours!(T::COUNT, gather_four(from, to));
             match count % 4 {
-                3 if T::FOLLOWED => gather_three(from, to, count - 3),
                 3 if count > 4 => gather_four(from, to, count - 4),
                 3 => {
                     gather_two(from, to, 0);

@@ -45,6 +45,7 @@ pub struct Order {
     movable: Vec<bool>,
     sequence: Vec<u32>,
     places: Vec<u32>,
+    pairs: Vec<[u32; 2]>,
     schedule: Schedule,
     /// How often it was computed.
     changes: u64,
@@ -83,6 +84,8 @@ impl Order {
         self.movable.clear();
         self.movable.extend_from_slice(movable);
         (self.sequence, self.schedule) = order(&self.bodies, movable, parallel);
+        let pairs = self.sequence.iter().map(|k| self.bodies[*k as usize]);
+        self.pairs = pairs.collect();
         self.places.resize(self.sequence.len(), 0);
         for (k, old) in self.sequence.iter().enumerate() {
             self.places[*old as usize] = k as u32;
@@ -92,6 +95,11 @@ impl Order {
     /// Returns the old index of each contact in the new order.
     pub fn sequence(&self) -> &[u32] {
         &self.sequence
+    }
+
+    /// Returns the bodies of each contact in the new order.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
     }
 
     /// Returns the new index of each contact.

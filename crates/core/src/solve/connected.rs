@@ -128,7 +128,7 @@ impl<S: Space> Problem<S> {
         let movable = self.movable(false);
         let mut sets = Connected::new(&movable, |found| {
             for rows in &self.rows {
-                of_kind!(rows, rows => rows.all().iter().for_each(|row| found(row.bodies())));
+                of_kind!(rows, rows => rows.pairs().iter().for_each(|pair| found(*pair)));
             }
         });
         for row in &self.of_systems {

@@ -401,11 +401,9 @@ impl<S: Space> Problem<S> {
     pub fn solution(&self, k: usize) -> ContactSolution<S> {
         let bodies = &self.solver_bodies;
         match self.places[k] {
-            Place::Row { kind, row } => of_kind!(&self.rows[kind as usize], rows => {
-                let row = rows.row(row);
-                let [i, j] = row.bodies().map(|b| &bodies[b as usize]);
-                row.solution(i, j)
-            }),
+            Place::Row { kind, row } => {
+                of_kind!(&self.rows[kind as usize], rows => rows.solution(row, bodies))
+            }
             Place::System(r) => self.of_systems[r as usize].solution(bodies, &self.systems),
         }
     }

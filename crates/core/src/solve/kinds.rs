@@ -32,8 +32,9 @@ macro_rules! kinds {
                 serves.iter().position(|serves| *serves).unwrap_or(KINDS - 1)
             }
 
-            /// Bytes of a row of each kind.
-            pub const BYTES: [usize; KINDS] = [$(size_of::<Row<S, $law>>()),+];
+            /// Bytes of a row of each kind, with the indices of its bodies.
+            pub const BYTES: [usize; KINDS] =
+                [$(size_of::<Row<S, $law>>() + size_of::<[u32; 2]>()),+];
         }
 
         macro_rules! of_kind {

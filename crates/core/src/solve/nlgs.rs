@@ -335,11 +335,9 @@ impl<S: Space> Problem<S> {
     fn solve_at_rest(&mut self, place: Place) {
         let bodies = &mut self.solver_bodies;
         match place {
-            Place::Row { kind, row } => of_kind!(&mut self.rows[kind as usize], rows => {
-                let row = rows.row_mut(row);
-                let [i, j] = row.bodies().map(|b| &bodies[b as usize]);
-                row.solve_at(i, j);
-            }),
+            Place::Row { kind, row } => {
+                of_kind!(&mut self.rows[kind as usize], rows => rows.solve_at(row, bodies));
+            }
             Place::System(r) => {
                 self.of_systems[r as usize].update(bodies, &mut self.systems, 1.0);
             }

@@ -45,8 +45,8 @@ impl<S: Space> Problem<S> {
     /// Gives the bodies of each contact between rigid bodies, and its index as pushed.
     fn each_body_pair(&self, give: &mut impl FnMut([u32; 2], u32)) {
         for (rows, pushed) in self.rows.iter().zip(&self.of_kind) {
-            of_kind!(rows, rows => for (row, k) in rows.all().iter().zip(rows.sequence()) {
-                give(row.bodies(), pushed[*k as usize]);
+            of_kind!(rows, rows => for (pair, k) in rows.pairs().iter().zip(rows.sequence()) {
+                give(*pair, pushed[*k as usize]);
             });
         }
     }

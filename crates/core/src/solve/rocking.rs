@@ -129,16 +129,16 @@ fn add<S: Space, K: Kind<S>>(
     free: impl Fn([u32; 2]) -> [SolverBody<S>; 2],
     out: &mut [(Sums, Scale)],
 ) {
-    for row in rows.all() {
-        let Some(set) = of(row.bodies()) else {
+    for (row, pair) in rows.all().iter().zip(rows.pairs()) {
+        let Some(set) = of(*pair) else {
             continue;
         };
         let (sums, scale) = &mut out[set];
-        let [a, b] = now(row.bodies());
+        let [a, b] = now(*pair);
         let [i, j] = [&a, &b].map(Moving::of);
         sums.add_moment(&Row::residual(Batch::one(row), &i, &j));
         scale.work += row.work_on_compliance(&a, &b);
-        let [a, b] = free(row.bodies());
+        let [a, b] = free(*pair);
         let [a, b] = [&a, &b].map(Moving::of);
         let [speed, rho, mu] = Row::speed(Batch::one(row), &a, &b);
         let own = a.v.dot(&a.v) + a.s.dot(&a.s) + b.v.dot(&b.v) + b.s.dot(&b.s);

@@ -2,9 +2,9 @@
 
 use super::colour::Order;
 use super::error::{Scale, Sums};
-use super::form::ContactForm;
+use super::form::{ContactForm, ContactSolution};
 use super::row::{
-    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, Update, Visit, visit,
+    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, SolverBody, Update, Visit, visit,
 };
 use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, pays};
@@ -23,6 +23,8 @@ const ORDERED: f64 = 14.0;
 #[derive(Debug)]
 pub(in crate::solve) struct Rows<S: Space, K: Kind<S>> {
     rows: Vec<Row<S, K>>,
+    /// Their bodies, until they are sorted.
+    pushed: Vec<[u32; 2]>,
     order: Order,
     /// Whether the rows are in that order.
     sorted: bool,
@@ -32,6 +34,7 @@ impl<S: Space, K: Kind<S>> Default for Rows<S, K> {
     fn default() -> Self {
         Self {
             rows: Vec::new(),
+            pushed: Vec::new(),
             order: Order::default(),
             sorted: true,
         }
@@ -42,6 +45,7 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
     /// Removes all, and keeps the memory and the last order.
     pub fn clear(&mut self) {
         self.rows.clear();
+        self.pushed.clear();
         self.sorted = false;
     }
 
@@ -56,7 +60,11 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
 
     /// Adds a row; gives its place until rows are sorted.
     pub fn push(&mut self, contact: &ContactForm<S>, bodies: &RigidBodies<S>) -> u32 {
+        if self.sorted {
+            self.pushed = self.pairs().to_vec();
+        }
         self.rows.push(Row::new(contact, bodies));
+        self.pushed.push(contact.bodies);
         self.sorted = false;
         self.rows.len() as u32 - 1
     }
@@ -71,12 +79,38 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
         &self.rows
     }
 
+    /// The bodies of each of [`Self::all`].
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        if self.sorted {
+            self.order.pairs()
+        } else {
+            &self.pushed
+        }
+    }
+
     pub fn row(&self, place: u32) -> &Row<S, K> {
         &self.rows[place as usize]
     }
 
     pub fn row_mut(&mut self, place: u32) -> &mut Row<S, K> {
         &mut self.rows[place as usize]
+    }
+
+    /// The records of the bodies of a row.
+    fn bodies<'a>(&self, place: u32, all: &'a [SolverBody<S>]) -> [&'a SolverBody<S>; 2] {
+        self.pairs()[place as usize].map(|b| &all[b as usize])
+    }
+
+    /// The solution of a row at the current velocities.
+    pub fn solution(&self, place: u32, bodies: &[SolverBody<S>]) -> ContactSolution<S> {
+        let [a, b] = self.bodies(place, bodies);
+        self.row(place).solution(a, b)
+    }
+
+    /// Sets the impulse of a row to what the current velocities ask for, which it does not change.
+    pub fn solve_at(&mut self, place: u32, bodies: &[SolverBody<S>]) {
+        let [a, b] = self.bodies(place, bodies);
+        self.row_mut(place).solve_at(a, b);
     }
 
     /// The place of each row in the order of the iteration.
@@ -96,10 +130,10 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
 
     /// Sorts the rows by colour.
     pub fn sort(&mut self, movable: &[bool]) {
-        let Self { rows, order, .. } = self;
-        order.update(rows.len(), |k| rows[k].bodies(), movable, false);
-        let sorted = order.sequence().iter();
-        *rows = sorted.map(|k| rows[*k as usize].clone()).collect();
+        let pushed = self.pairs().to_vec();
+        self.order.update(pushed.len(), |k| pushed[k], movable, false);
+        let sorted = self.order.sequence().iter();
+        self.rows = sorted.map(|k| self.rows[*k as usize].clone()).collect();
         self.sorted = true;
     }
 
@@ -173,11 +207,13 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
             "rows are sorted before they are visited"
         );
         let rows = Shared(self.rows.as_mut_ptr());
+        let pairs = self.order.pairs();
         schedule.run(pays(parallel, count, ORDERED), |block| {
             // SAFETY: blocks are disjoint, and each is run once.
             let part = unsafe { rows.slice(schedule.block(block)) };
             let mut visitor = what(part, schedule.block(block));
-            visit(part, schedule.groups(block), solver_bodies, &mut visitor);
+            let rows = (part, &pairs[schedule.block(block)]);
+            visit(rows, schedule.groups(block), solver_bodies, &mut visitor);
         });
     }
 
@@ -218,13 +254,13 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
 
     /// The work on the compliance of the contacts, see [`Row::work_on_compliance`].
     pub fn work_on_compliance(&self, solver_bodies: &SolverBodies<S>, parallel: bool) -> f64 {
-        let of = |row: &Row<S, K>| {
-            let (a, b) = solver_bodies.read(row.bodies());
-            row.work_on_compliance(&a, &b)
+        let (count, pairs) = (self.rows.len(), self.pairs());
+        let of = |k: usize| {
+            let (a, b) = solver_bodies.read(pairs[k]);
+            self.rows[k].work_on_compliance(&a, &b)
         };
-        let count = self.rows.len();
         let parts = map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
-            self.rows[range].iter().map(of).sum::<f64>()
+            range.map(of).sum::<f64>()
         });
         parts.iter().sum()
     }
@@ -247,13 +283,15 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
     ) -> Vec<T> {
         let count = self.rows.len();
         let rows = Shared(self.rows.as_mut_ptr());
+        let pairs = self.pairs();
         map_ranges(pays(parallel, count, VISIT), count, CHUNK, |range| {
             let at = range.start;
             let groups = [0, range.len() as u32];
+            let bodies = &pairs[range.clone()];
             // SAFETY: chunks are disjoint, and each is read once.
             let part = unsafe { rows.slice(range) };
             let mut visitor = what();
-            visit(part, &groups, solver_bodies, &mut visitor);
+            visit((part, bodies), &groups, solver_bodies, &mut visitor);
             found(&visitor, at)
         })
     }

@@ -90,7 +90,6 @@ pub(super) trait Kind<S: Space>: Law<S> {
 #[repr(C)]
 pub(super) struct Row<S: Space, K: Kind<S>> {
     state: State<S>,
-    bodies: [u32; 2],
     motion: K::Motion,
     law: K,
 }
@@ -103,7 +102,6 @@ impl<S: Space, K: Kind<S>> Row<S, K> {
             state: State::new(&contact.normal, &contact.impulse),
             law,
             motion,
-            bodies: contact.bodies,
         };
         row.set(&contact.impulse);
         row
@@ -127,11 +125,6 @@ impl<S: Space, K: Kind<S>> Row<S, K> {
             lengths: &[1.0; 2],
         };
         (Self::new(&ContactForm::idle(), &bodies), body)
-    }
-
-    #[inline(always)]
-    pub fn bodies(&self) -> [u32; 2] {
-        self.bodies
     }
 
     /// The normal and the tangential impulse.

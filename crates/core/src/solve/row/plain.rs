@@ -11,7 +11,7 @@ use crate::solve::form::ContactForm;
 
 /// Frictional contact without bond.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
+#[repr(C, align(16))]
 pub(in crate::solve) struct Plain<L = f64> {
     shift: L,
     iwn: L,

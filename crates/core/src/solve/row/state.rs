@@ -3,7 +3,7 @@
 use super::SolverBody;
 use crate::geometry::lane_space::{lanes_of, vector_of};
 use crate::geometry::space::Space;
-use crate::lanes::{Batch, BatchMut, Lane, LaneVector, Record, record};
+use crate::lanes::{Batch, BatchMut, Lane, LaneVector, record};
 use std::ops::{Add, Mul, Sub};
 
 /// Normal and tangential part of an impulse or a velocity.
@@ -86,12 +86,7 @@ pub(in crate::solve) struct State<S: Space, L: Lane = f64> {
     pub n: S::V<L>,
     pub p: Parts<S, L>,
 }
-
-// SAFETY: as `record` says; in rows the bodies or the law follow.
-unsafe impl<S: Space> Record for State<S> {
-    type With<L: Lane> = State<S, L>;
-    const FOLLOWED: bool = true;
-}
+record!(State);
 
 impl<S: Space> State<S> {
     /// With an impulse in world axes.

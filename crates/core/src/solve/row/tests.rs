@@ -164,6 +164,7 @@ fn masses<S: Space>(bodies: &[SolverBody<S>]) -> Vec<Mobility<S>> {
 #[derive(Clone)]
 struct Contacts<S: Space, K: Kind<S>> {
     rows: Vec<Row<S, K>>,
+    pairs: Vec<[u32; 2]>,
     solver_bodies: Vec<SolverBody<S>>,
 }
 
@@ -184,12 +185,13 @@ impl<S: Space, K: Kind<S>> Contacts<S, K> {
     /// Visits several contacts at a time, or one by one.
     fn visit<V: Visit>(&mut self, with: Option<Instructions>, groups: &[u32], what: &mut V) {
         let solver_bodies = SolverBodies::new(&mut self.solver_bodies);
+        let rows = (&mut self.rows[..], &self.pairs[..]);
         match with {
             // SAFETY: the machine has the instructions.
             Some(with) => unsafe {
-                visit_with(with, &mut self.rows, groups, &solver_bodies, what);
+                visit_with(with, rows, groups, &solver_bodies, what);
             },
-            None => visit_one_by_one(&mut self.rows, &solver_bodies, what),
+            None => visit_one_by_one(rows, &solver_bodies, what),
         }
     }
 }
@@ -205,6 +207,7 @@ fn same<S: Space, K: Kind<S>>(form: impl Fn(u32) -> ContactForm<S>) {
     let rows = (0..145).map(|pair| Row::<S, K>::new(&form(pair), &bodies));
     let start = Contacts {
         rows: rows.collect(),
+        pairs: (0..145).map(|pair| form(pair).bodies).collect(),
         solver_bodies: solver_bodies.clone(),
     };
     // Groups of all remainders, up to the end of the prefetch distance.

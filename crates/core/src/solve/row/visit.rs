@@ -22,10 +22,10 @@ pub trait Visit {
     );
 }
 
-/// Visits a block of rows, given the starts of its groups and the end of the last; contacts of a
+/// Visits a block of rows, given with the bodies of each, the starts of its groups and the end of the last; contacts of a
 /// group share no movable body.
 pub fn visit<S: Space, K: Kind<S>>(
-    rows: &mut [Row<S, K>],
+    (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
@@ -35,19 +35,19 @@ pub fn visit<S: Space, K: Kind<S>>(
         (rows.len() >= 2 * groups.len()).then(|| Instructions::of_this_machine().next_back());
     match wide.flatten() {
         // SAFETY: the machine has them.
-        Some(with) => unsafe { visit_with(with, rows, groups, solver_bodies, what) },
-        None => visit_one_by_one(rows, solver_bodies, what),
+        Some(with) => unsafe { visit_with(with, (rows, pairs), groups, solver_bodies, what) },
+        None => visit_one_by_one((rows, pairs), solver_bodies, what),
     }
 }
 
 /// Visits rows in turn.
 pub(super) fn visit_one_by_one<S: Space, K: Kind<S>>(
-    rows: &mut [Row<S, K>],
+    (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) {
-    for (at, row) in rows.iter_mut().enumerate() {
-        let [a, b] = row.bodies.map(|body| solver_bodies.at(body));
+    for (at, (row, pair)) in rows.iter_mut().zip(pairs).enumerate() {
+        let [a, b] = pair.map(|body| solver_bodies.at(body));
         debug_assert!(a != b);
         // SAFETY: see `Sync` of `SolverBodies`.
         let (a, b) = unsafe { (BatchMut::new(a), BatchMut::new(b)) };
@@ -61,15 +61,15 @@ pub(super) fn visit_one_by_one<S: Space, K: Kind<S>>(
 /// The machine has the instructions.
 pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
     with: Instructions,
-    rows: &mut [Row<S, K>],
+    (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],
     solver_bodies: &SolverBodies<S>,
     what: &mut impl Visit,
 ) {
     debug_assert!(groups.last().map(|end| (end - groups[0]) as usize) == Some(rows.len()));
     let visit = ByGroups {
-        count: rows.len(),
         rows: rows.as_mut_ptr(),
+        pairs: &pairs[..rows.len()],
         groups,
         solver_bodies,
         what,
@@ -81,7 +81,7 @@ pub(super) unsafe fn visit_with<S: Space, K: Kind<S>>(
 /// Rows that are visited by groups.
 struct ByGroups<'a, S: Space, K: Kind<S>, V> {
     rows: *mut Row<S, K>,
-    count: usize,
+    pairs: &'a [[u32; 2]],
     groups: &'a [u32],
     solver_bodies: &'a SolverBodies<S>,
     what: &'a mut V,
@@ -120,30 +120,29 @@ impl<S: Space, K: Kind<S>, V: Visit> ByGroups<'_, S, K, V> {
     /// Visits the rows from the `at`-th on, up to at most `end`, the end of the group.
     #[inline(always)]
     fn visit<L: Lane>(&mut self, at: usize, end: usize, idle: &mut Idle<S, K>) {
-        let (rows, bodies) = (self.rows, self.solver_bodies);
-        // SAFETY: there are `count` rows, whose bodies are those of `solver_bodies`; of a group
-        // they differ where they move. Idle rows and bodies may be shared, and what is read there
-        // does not matter.
+        let (rows, pairs, count) = (self.rows, self.pairs.as_ptr(), self.pairs.len());
+        // SAFETY: there are as many rows as pairs, of bodies of `solver_bodies`; in a group these
+        // differ where they move. Idle rows and bodies may be shared, and what is read there does
+        // not matter.
         let (rows, a, b) = unsafe {
-            let body = |row: *mut Row<S, K>, side: usize| bodies.at((*row).bodies[side]);
-            if at + AHEAD + L::WIDTH <= self.count {
+            let body = |k: usize, side: usize| self.solver_bodies.at((*pairs.add(k))[side]);
+            if at + AHEAD + L::WIDTH <= count {
                 for k in 0..L::WIDTH {
-                    let row = rows.add(at + AHEAD + k);
-                    prefetch(body(row, 0));
-                    prefetch(body(row, 1));
+                    prefetch(body(at + AHEAD + k, 0));
+                    prefetch(body(at + AHEAD + k, 1));
                 }
             }
             if at + L::WIDTH <= end {
                 let rows = L::each(|k| rows.add(at + k));
-                let a = L::map(rows, |row| body(row, 0));
-                (rows, a, L::map(rows, |row| body(row, 1)))
+                let a = L::each(|k| body(at + k, 0));
+                (rows, a, L::each(|k| body(at + k, 1)))
             } else {
                 let (idle_row, idle_body) = (&raw mut idle.row, &raw mut idle.body);
-                let row = |k: usize| (at + k < end).then(|| rows.add(at + k));
-                let side =
-                    |side: usize| L::each(|k| row(k).map_or(idle_body, |row| body(row, side)));
-                let rows = L::each(|k| row(k).unwrap_or(idle_row));
-                (rows, side(0), side(1))
+                let is = |k: usize| at + k < end;
+                let each = L::each(|k| if is(k) { rows.add(at + k) } else { idle_row });
+                let a = L::each(|k| if is(k) { body(at + k, 0) } else { idle_body });
+                let b = L::each(|k| if is(k) { body(at + k, 1) } else { idle_body });
+                (each, a, b)
             }
         };
         // SAFETY: as above.
