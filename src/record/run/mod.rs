@@ -375,7 +375,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
             self.done += self.accuracy.as_ref().map_or(1, AccuracyControl::spanned);
             let step = self.done;
             if phase == 1 && self.simulation.state.control.phase() == 2 {
-                self.camera.dye(InDimension::of(&self.simulation));
+                self.camera.assign_layers(InDimension::of(&self.simulation));
                 self.observers.begin(&mut self.simulation);
             }
             self.simulation.between_steps()?;

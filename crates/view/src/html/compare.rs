@@ -4,7 +4,7 @@ use crate::html::arrays::Arrays;
 use crate::html::folder::RunFolder;
 use crate::html::page::{Page, difference_table, escape, footer, item, section, table, value};
 use crate::html::results::{self, ResultRow};
-use crate::html::series::Series;
+use crate::html::statistics::Statistics;
 use crate::html::{ReportError, figures, write};
 use fretwork_observe::chart::Figure;
 use serde_json::{Value, json};
@@ -43,10 +43,10 @@ fn names(runs: &[RunFolder]) -> Vec<String> {
 
 fn page(runs: &[RunFolder], names: &[String]) -> String {
     let mut gaps: Vec<Vec<String>> = runs.iter().map(|r| r.gaps.clone()).collect();
-    let series: Vec<Series> = runs
+    let series: Vec<Statistics> = runs
         .iter()
         .zip(&mut gaps)
-        .map(|(run, gaps)| Series::read(run, ROWS, gaps))
+        .map(|(run, gaps)| Statistics::read(run, ROWS, gaps))
         .collect();
     let described = runs.iter().zip(&series).zip(&mut gaps);
     let described: Vec<Vec<Figure>> = described

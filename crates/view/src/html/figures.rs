@@ -3,15 +3,15 @@
 
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
-use crate::html::series::Series;
-use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series as Curve, Style};
+use crate::html::statistics::Statistics;
+use fretwork_observe::chart::{Axis, Chart, Colours, Field, Figure, Series, Style};
 use serde_json::{Value, json};
 
 /// Limit on the cells of a chart in a page.
 const MOST_CELLS: usize = 20_000;
 
 /// The figures that the observers of a run described, with numbers from its statistics.
-pub(crate) fn of_run(run: &RunFolder, rows: &Series, gaps: &mut Vec<String>) -> Vec<Figure> {
+pub(crate) fn of_run(run: &RunFolder, rows: &Statistics, gaps: &mut Vec<String>) -> Vec<Figure> {
     let text = std::fs::read_to_string(run.path.join(Figure::FILE));
     let parsed = text
         .map_err(|e| e.to_string())
@@ -77,7 +77,7 @@ pub(crate) fn overlaid(runs: &[(&str, Vec<Figure>)], numbers: &mut Arrays) -> Ve
                     _ => format!("{run}: {}", series.label),
                 };
                 let series_of_all = &mut all[at].1.series;
-                series_of_all.push(Curve {
+                series_of_all.push(Series {
                     label,
                     colour: None,
                     place: series_of_all.len(),
@@ -134,7 +134,7 @@ fn axis(axis: &Axis, values: impl Iterator<Item = f64>, range: Option<(f64, f64)
     })
 }
 
-fn series(index: usize, series: &Curve, numbers: &mut Arrays) -> Value {
+fn series(index: usize, series: &Series, numbers: &mut Arrays) -> Value {
     let mut array = |of: fn(&(f64, f64)) -> f64, list: &[(f64, f64)]| match list.is_empty() {
         true => Value::Null,
         false => json!(numbers.number(&list.iter().map(of).collect::<Vec<_>>())),
@@ -202,7 +202,7 @@ fn kind(values: &[f64]) -> Kind {
 pub(crate) fn columns(
     name: &str,
     prefix: &str,
-    statistics: &Series,
+    statistics: &Statistics,
     numbers: &mut Arrays,
 ) -> Value {
     let columns: Vec<Value> = statistics

@@ -1,7 +1,7 @@
 //! Pages as HTML: reports of runs, several runs side by side, and sheets of studies and fits.
 //!
 //! ```text
-//! folder of a run ─► folder (results.h5, summary.json) ─► series, figures, scene, materials ─► page ─► report.html
+//! folder of a run ─► folder (results.h5, summary.json) ─► statistics, figures, scene, materials ─► page ─► report.html
 //! ```
 //! Data stand in the page as gzip in base64 and are unpacked by the browser; names, units and
 //! descriptions of columns and fields are those of the attributes in `results.h5`. A page loads
@@ -16,8 +16,8 @@ mod materials;
 mod page;
 mod results;
 mod scene;
-mod series;
 mod sheet;
+mod statistics;
 
 pub use compare::compare;
 pub use laws::{LawInfo, LawParameter};

@@ -5,7 +5,7 @@ use crate::html::arrays::Arrays;
 use crate::html::folder::RunFolder;
 use crate::html::materials::Files;
 use crate::html::scene::Scene;
-use crate::html::series::Series;
+use crate::html::statistics::Statistics;
 use crate::html::{Options, figures};
 use crate::html::{laws as law_data, results::quantity};
 use serde_json::{Value, json};
@@ -74,8 +74,8 @@ pub(crate) fn page(run: &RunFolder, options: &Options<'_>) -> String {
 
 /// The statistics with at most about so many rows, and the figures: what scripts read of them, and
 /// the packed numbers.
-fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Series, Value, String) {
-    let statistics = Series::read(run, most, gaps);
+fn numbers(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> (Statistics, Value, String) {
+    let statistics = Statistics::read(run, most, gaps);
     let mut numbers = Arrays::default();
     let columns = figures::columns("", "", &statistics, &mut numbers);
     let mut list = figures::json(&figures::of_run(run, &statistics, gaps), &mut numbers);
@@ -159,7 +159,7 @@ fn viewer(scene: &Scene) -> String {
     )
 }
 
-fn figure_frames(figures: &Value, statistics: &Series) -> String {
+fn figure_frames(figures: &Value, statistics: &Statistics) -> String {
     let sampled = match statistics.every {
         0 | 1 => String::new(),
         n => format!(

@@ -3,7 +3,7 @@
 use super::escape;
 use crate::html::folder::RunFolder;
 use crate::html::results::{self, Group, ResultRow};
-use crate::html::series::Series;
+use crate::html::statistics::Statistics;
 use fretwork_store::summary::FROM_THE_CLOCK;
 use serde_json::Value;
 
@@ -11,7 +11,7 @@ use serde_json::Value;
 const MANY: usize = 12;
 
 /// The results of a run.
-pub(crate) fn html(run: &RunFolder, series: &Series) -> String {
+pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
     let groups = results::groups(run);
     if groups.is_empty() {
         return last_row(series);
@@ -44,7 +44,7 @@ const LAST: [&str; 13] = [
 ];
 
 /// The last row of the statistics, of a run that has no results.
-fn last_row(series: &Series) -> String {
+fn last_row(series: &Statistics) -> String {
     let row = |name: &&str| {
         let column = series.column(name)?;
         Some(ResultRow {

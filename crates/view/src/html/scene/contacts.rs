@@ -1,7 +1,7 @@
 //! Contacts of a state: lines with fields.
 
 use super::detail::Detail;
-use super::range::{Field, Ranges};
+use super::range::{FieldInfo, Ranges};
 use super::{Note, push_points, states};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -11,12 +11,12 @@ const ROOT: &str = "views/contacts";
 
 /// The fields of contacts.
 #[derive(Default)]
-pub(super) struct Contacts(Vec<Field>);
+pub(super) struct Contacts(Vec<FieldInfo>);
 
 impl Contacts {
     /// Finds the fields.
     pub fn find(run: &RunFolder) -> Self {
-        Self(Field::numbers(run, &format!("{ROOT}/CellData")))
+        Self(FieldInfo::numbers(run, &format!("{ROOT}/CellData")))
     }
 
     /// The fields for the page.
@@ -53,7 +53,7 @@ impl Contacts {
         push_points(arrays, "contact.a", &from, dimension);
         push_points(arrays, "contact.b", &to, dimension);
         let rows = states::cells(run, "contacts", ("Lines", 1), state)?;
-        for Field { name, .. } in self.0.iter().filter(|f| detail.keeps(&f.name)) {
+        for FieldInfo { name, .. } in self.0.iter().filter(|f| detail.keeps(&f.name)) {
             let values = run
                 .reader
                 .values(&format!("{ROOT}/CellData/{name}"), rows, 1)?;

@@ -2,7 +2,7 @@
 
 use super::detail::Detail;
 use super::outline::{flat, solid};
-use super::range::{Field, Ranges};
+use super::range::{FieldInfo, Ranges};
 use super::{Note, push_points, states};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -22,14 +22,14 @@ const OF_GEOMETRY: [&str; 6] = [
     "gone",
 ];
 
-/// Field that the page derives from the components of the velocity.
+/// FieldInfo that the page derives from the components of the velocity.
 const SPEED: &str = "speed";
 
 /// The grains of a run.
 #[derive(Default)]
 pub(super) struct Grains {
     dimension: usize,
-    fields: Vec<Field>,
+    fields: Vec<FieldInfo>,
     /// Numbers of the convex parts of a body in the list of outlines, in the order of the view.
     parts: HashMap<u64, Vec<usize>>,
     pieces: Vec<ShapedPiece>,
@@ -59,7 +59,7 @@ impl Grains {
         let has = |name: &&&str| reader.has(&format!("{ROOT}/{name}"));
         Ok(Self {
             dimension,
-            fields: Field::numbers(run, ROOT),
+            fields: FieldInfo::numbers(run, ROOT),
             parts,
             shaped: shaped.bodies.iter().map(|b| b.id).collect(),
             pieces: shaped.pieces,
@@ -86,7 +86,7 @@ impl Grains {
             .iter()
             .filter(|f| !OF_GEOMETRY.contains(&f.name.as_str()));
         let speed = self.velocity().next().and_then(|of| {
-            let speed = Field {
+            let speed = FieldInfo {
                 doc: "size of the velocity".to_owned(),
                 unit: of.unit.clone(),
                 name: SPEED.to_owned(),
@@ -147,7 +147,7 @@ impl Grains {
     }
 
     /// Names of the components of the velocity.
-    fn velocity(&self) -> impl Iterator<Item = &Field> {
+    fn velocity(&self) -> impl Iterator<Item = &FieldInfo> {
         self.fields
             .iter()
             .filter(|f| f.name.starts_with("velocity_"))

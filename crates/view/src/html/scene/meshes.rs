@@ -1,7 +1,7 @@
 //! Bodies and grains that deform, and surfaces that touch: triangles or lines with fields at points
 //! and elements. Of tetrahedra only the faces outside are shown.
 
-use super::range::{Field, Ranges};
+use super::range::{FieldInfo, Ranges};
 use super::{Note, Places, place, push_points};
 use crate::html::arrays::{Arrays, Kind};
 use crate::html::folder::RunFolder;
@@ -13,7 +13,7 @@ const GROUPS: [&str; 3] = ["meshes", "elastic_grains", "surfaces"];
 
 /// A field with the count of its numbers at a place.
 struct MeshField {
-    field: Field,
+    field: FieldInfo,
     width: usize,
     of_cells: bool,
 }
@@ -204,7 +204,7 @@ fn mesh(run: &RunFolder, path: &str) -> Result<Option<Mesh>, String> {
         for name in reader.datasets_in(&group).filter(|n| *n != "body") {
             fields.push(MeshField {
                 width: reader.width(&format!("{group}/{name}"))?,
-                field: Field::read(run, &group, name),
+                field: FieldInfo::read(run, &group, name),
                 of_cells,
             });
         }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 
 /// A field of a view, as its attributes describe it.
-pub(super) struct Field {
+pub(super) struct FieldInfo {
     /// Name.
     pub name: String,
     /// SI unit, empty for a pure number.
@@ -14,7 +14,7 @@ pub(super) struct Field {
     pub doc: String,
 }
 
-impl Field {
+impl FieldInfo {
     /// The field of a name in a group of `results.h5`.
     pub fn read(run: &RunFolder, group: &str, name: &str) -> Self {
         let (unit, doc) = run.reader.described(&format!("{group}/{name}"));
@@ -67,7 +67,7 @@ impl Ranges {
     }
 
     /// A field for the page under a name, if it has values.
-    pub fn head(&self, group: &str, name: &str, field: &Field) -> Option<Value> {
+    pub fn head(&self, group: &str, name: &str, field: &FieldInfo) -> Option<Value> {
         let range = self.0.get(&(group.to_owned(), name.to_owned()))?;
         Some(json!({
             "name": name, "unit": field.unit, "doc": field.doc,

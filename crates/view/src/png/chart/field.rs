@@ -3,7 +3,7 @@
 use super::Layout;
 use crate::png::canvas::{Canvas, DrawError, INK, Rgb, SOFT_INK, TEXT, WHITE};
 use crate::png::font::{TextStyle, text_width};
-use crate::png::scene::paint::{Coloured, Scale, colour_bar};
+use crate::png::scene::paint::{ColourScale, Coloured, colour_bar};
 use crate::png::scene::zone::zone_entry;
 use fretwork_observe::chart::{Colours, Field};
 use fretwork_observe::picture::{OPEN, Paint};
@@ -51,7 +51,7 @@ impl Layout<'_> {
         let [left, top, width, height] = self.box_px();
         let row = top + height + 142.0 * u;
         if let Colours::Values { scale, .. } = &field.colours {
-            let scale = Scale {
+            let scale = ColourScale {
                 label: scale.name.clone(),
                 unit: scale.unit.clone(),
                 top: field.top(),

@@ -161,14 +161,14 @@ fn entry(
 }
 
 /// The legend as rows above a plot that has no free area for a box.
-pub(crate) struct Rows {
+pub(crate) struct LegendRows {
     /// Height of all rows, pixels.
     pub height: f32,
     /// Index of each series, and the position of its entry.
     entries: Vec<(usize, [f32; 2])>,
 }
 
-impl Rows {
+impl LegendRows {
     /// Arranges the entries within the width of the plot.
     pub fn of(layout: &Layout<'_>) -> Self {
         let Layout { chart, u, plot, .. } = layout;

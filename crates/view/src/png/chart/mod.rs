@@ -10,7 +10,7 @@ use crate::png::font::{Anchor, TextStyle as Text, text_width};
 use curve::{PALETTE, draw_series, gradient, thinned};
 use fretwork_observe::chart::{Chart, Series};
 use legend::Legend;
-pub(crate) use scale::Scale;
+pub(crate) use scale::AxisScale;
 use std::path::Path;
 
 /// Width of a page of several charts in pixels: 318 per inch if it is printed 16 cm wide.
@@ -95,8 +95,8 @@ struct Plot {
 /// A chart with its scales and the place of its plot; `u` is the scale of the picture.
 struct Layout<'a> {
     chart: &'a Chart,
-    x: Scale,
-    y: Scale,
+    x: AxisScale,
+    y: AxisScale,
     plot: Plot,
     u: f32,
 }
@@ -118,7 +118,7 @@ fn page(chart: &Chart, page_width: u32) -> Result<Canvas, DrawError> {
     let corner = legend.as_ref().and_then(|l| l.free_place(&ink, &layout));
     let mut rows = None;
     if legend.is_some() && corner.is_none() {
-        let laid = legend::Rows::of(&layout);
+        let laid = legend::LegendRows::of(&layout);
         let room = (laid.height as i32).min(layout.plot.height / 2);
         layout.plot.top += room;
         layout.plot.height -= room;
@@ -171,9 +171,9 @@ impl<'a> Layout<'a> {
         let ticks_y = ((high / em - 7.0) / 2.6) as usize;
         let heights = shown().map(|p| p.1).chain(ends(chart));
         let xs = shown().map(|p| p.0);
-        let x = Scale::fit(&chart.x, xs, chart.x_range, ticks_x.clamp(2, 8))?;
-        let y = Scale::fit(&chart.y, heights, chart.y_range, ticks_y.clamp(2, 8))?;
-        let widest = |scale: &Scale| {
+        let x = AxisScale::fit(&chart.x, xs, chart.x_range, ticks_x.clamp(2, 8))?;
+        let y = AxisScale::fit(&chart.y, heights, chart.y_range, ticks_y.clamp(2, 8))?;
+        let widest = |scale: &AxisScale| {
             let widths = scale.ticks.iter().map(|t| text_width(&t.1, em));
             widths.fold(0.0, f32::max)
         };
@@ -287,13 +287,13 @@ impl<'a> Layout<'a> {
     /// Pixels of the ticks, `minor` or labelled: to the right, and downwards.
     fn ticks(&self, minor: bool) -> [Vec<f32>; 2] {
         let [left, top, width, height] = self.box_px();
-        let places = |scale: &Scale| -> Vec<f64> {
+        let places = |scale: &AxisScale| -> Vec<f64> {
             match minor {
                 true => scale.minor.clone(),
                 false => scale.ticks.iter().map(|t| t.0).collect(),
             }
         };
-        let share = |scale: &Scale, v: f64| scale.share(v) as f32;
+        let share = |scale: &AxisScale, v: f64| scale.share(v) as f32;
         let across = places(&self.x).into_iter();
         let down = places(&self.y).into_iter();
         [

@@ -5,7 +5,7 @@ use fretwork_observe::chart::{Axis, number, superscript};
 
 /// A scale fitted to data: range, tick values and labels.
 #[derive(Clone, Debug)]
-pub(crate) struct Scale {
+pub(crate) struct AxisScale {
     /// Exponent of ten by which values are divided.
     pub exponent: i32,
     log: bool,
@@ -19,7 +19,7 @@ pub(crate) struct Scale {
     pub label: String,
 }
 
-impl Scale {
+impl AxisScale {
     /// Fits a scale to values in the axis unit, or to a requested range.
     pub fn fit(
         axis: &Axis,
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(labels, ["−1.0", "−0.5", "0.0", "0.5", "1.0"]);
         assert_eq!(round_ticks(0.0, 100.0, 5)[1].1, "20");
         let log = Axis::new("t", "s").log();
-        let scale = Scale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
+        let scale = AxisScale::fit(&log, [1e-3, -1.0, 10.0].into_iter(), None, 6).unwrap();
         assert_eq!(scale.ticks[0].1, "10⁻³");
     }
 
@@ -165,7 +165,7 @@ mod tests {
     fn whole_numbers_have_no_ticks_between_them() {
         let axis = Axis::new("cycle number N", "").whole();
         for (first, last) in [(1.0, 3.0), (1.0, 1.0), (1.0, 12.0), (1.0, 1000.0)] {
-            let scale = Scale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
+            let scale = AxisScale::fit(&axis, [first, last].into_iter(), None, 8).unwrap();
             assert!(!scale.ticks.is_empty() && scale.ticks.len() < 14);
             assert!(
                 scale.ticks.iter().all(|t| !t.1.contains('.')),
@@ -179,11 +179,11 @@ mod tests {
     fn constants_and_nothing_have_a_range() {
         let axis = Axis::new("φ", "");
         for values in [vec![], vec![0.0], vec![-3.0, -3.0], vec![f64::NAN]] {
-            let scale = Scale::fit(&axis, values.into_iter(), None, 5).unwrap();
+            let scale = AxisScale::fit(&axis, values.into_iter(), None, 5).unwrap();
             assert!(scale.range.0 < scale.range.1);
             assert!(scale.ticks.len() > 1);
         }
-        let error = Scale::fit(&axis, [].into_iter(), Some((2.0, 1.0)), 5).unwrap_err();
+        let error = AxisScale::fit(&axis, [].into_iter(), Some((2.0, 1.0)), 5).unwrap_err();
         assert!(error.to_string().contains("2 to 1 of axis 'φ'"), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Deformable bodies in the plane: their elements, in grey or by their von Mises stress.
 
 use super::images;
-use crate::{Outline, Paint, Scale};
+use crate::{ColourScale, Outline, Paint};
 use fretwork_core::bodies::von_mises;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -76,12 +76,12 @@ pub(crate) fn grains<S: Space>(
 }
 
 /// The scale of the stress in a window; none where nothing is stressed.
-pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<Scale> {
+pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<ColourScale> {
     let most = seen(s, window, true)
         .iter()
         .map(|e| e.1)
         .fold(0.0, f64::max);
-    (most > 0.0).then(|| Scale {
+    (most > 0.0).then(|| ColourScale {
         label: "von Mises stress".to_owned(),
         unit: "Pa".to_owned(),
         top: round_top(most),
@@ -93,7 +93,7 @@ pub(crate) fn scale<S: Space>(s: &Simulation<S>, window: [f64; 4]) -> Option<Sca
 pub(crate) fn elements<S: Space>(
     s: &Simulation<S>,
     window: [f64; 4],
-    scale: Option<&Scale>,
+    scale: Option<&ColourScale>,
 ) -> Vec<Outline> {
     let paint = |stress: f64| scale.map_or(Paint::Grey, |scale| Paint::Value(stress / scale.top));
     let outline = |(points, stress): (Vec<[f64; 2]>, f64)| Outline {

@@ -8,7 +8,7 @@ mod zones;
 
 pub use fretwork_observe::placement::{ends, piece_centre, piece_outline};
 
-use crate::{Disk, Frame, Link, LinkState, Outline, Paint, Scale};
+use crate::{ColourScale, Disk, Frame, Link, LinkState, Outline, Paint};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{InDimension, Simulation};
@@ -51,12 +51,12 @@ impl Camera {
             paints: Vec::new(),
         };
         camera.follow(simulation);
-        camera.dye(simulation);
+        camera.assign_layers(simulation);
         camera
     }
 
     /// Colours the grains by the layers in which they are now.
-    pub fn dye(&mut self, simulation: InDimension<'_>) {
+    pub fn assign_layers(&mut self, simulation: InDimension<'_>) {
         if let Some(thickness) = self.layers {
             self.paints = in_dimension!(simulation, |s| layers(s, thickness));
         }
@@ -166,7 +166,7 @@ impl Camera {
             Shows::Stress => (&[][..], mesh::scale(simulation, self.window)),
             Shows::Values { values, label, top } => {
                 made = values.iter().map(|v| Paint::Value(v / top)).collect();
-                let scale = Scale {
+                let scale = ColourScale {
                     label: (*label).to_owned(),
                     unit: String::new(),
                     top: *top,

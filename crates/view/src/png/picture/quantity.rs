@@ -1,7 +1,7 @@
 //! Default quantity for the colours of grains: their speed, or the damage of their bonds if there
 //! are bonds.
 
-use crate::{Paint, Scale};
+use crate::{ColourScale, Paint};
 use fretwork_core::contact::{BondState, Key};
 use fretwork_core::fields::Field;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -15,7 +15,7 @@ const WITHIN: f64 = 0.98;
 
 /// Colours of the balls and then of the convex parts, and their scale; `None` if nothing moves. In
 /// 2D bonds are drawn one by one, and the scale is theirs.
-pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
+pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<ColourScale>) {
     let values = match (s.state.network.bonds_made() > 0, S::D) {
         (true, 2) => return (Vec::new(), Some(damage_scale(true))),
         (true, _) => damage(s),
@@ -44,7 +44,7 @@ pub(crate) fn of<S: Space>(s: &Simulation<S>) -> (Vec<Paint>, Option<Scale>) {
         if high <= 0.0 {
             return (Vec::new(), None);
         }
-        Scale {
+        ColourScale {
             label: "speed |v|".to_owned(),
             unit: unit(s.fields.grains.get("velocity_x")),
             top: round_top(high),
@@ -63,13 +63,13 @@ fn unit<S: Space, T>(field: Option<&Field<S, T>>) -> String {
     field.map_or_else(String::new, |f| f.unit.to_owned())
 }
 
-fn damage_scale(bonds: bool) -> Scale {
+fn damage_scale(bonds: bool) -> ColourScale {
     let label = if bonds {
         "damage D of intact bonds"
     } else {
         "mean damage D of the bonds of a grain"
     };
-    Scale {
+    ColourScale {
         label: label.to_owned(),
         unit: String::new(),
         top: 1.0,

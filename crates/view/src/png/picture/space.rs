@@ -2,7 +2,7 @@
 
 use super::{balls, paint};
 use crate::png::scene::clip::{Side, clip, sides_of_box};
-use crate::{Faces, Paint, Scene, Sphere, View};
+use crate::{Faces, Paint, SolidScene, Sphere, View};
 use fretwork_core::geometry::shape::Carried;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
@@ -20,8 +20,8 @@ fn view() -> View {
     View::new(0.6, 0.4)
 }
 
-/// Scene of a picture. `paints` are those of the balls, then of the convex parts.
-pub(crate) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
+/// SolidScene of a picture. `paints` are those of the balls, then of the convex parts.
+pub(crate) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> SolidScene {
     let shown = |body: u32| !s.state.bodies.removed[body as usize];
     let mut spheres = Vec::with_capacity(s.shapes.balls.len());
     for (k, (ball, (centre, radius))) in s.shapes.balls.iter().zip(balls(s)).enumerate() {
@@ -48,7 +48,7 @@ pub(crate) fn scene<S: Space>(s: &Simulation<S>, paints: &[Paint]) -> Scene {
         });
     }
     faces.extend(walls(s));
-    Scene {
+    SolidScene {
         view: view(),
         spheres,
         faces,

@@ -17,8 +17,8 @@ use crate::png::font::{Anchor, TextStyle, text_width};
 use clip::{clip, sides_of_box};
 use frame::{centroid, push_bar};
 use fretwork_observe::picture::Paint;
-use paint::{Coloured, DAMAGED, SOUND, Scale};
-use solid::{Place, Scene};
+use paint::{ColourScale, Coloured, DAMAGED, SOUND};
+use solid::{Place, SolidScene};
 use zone::ZoneLine;
 
 /// A first body (rail, wheel), or a grain with corners.
@@ -100,9 +100,9 @@ pub struct Frame {
     /// What sticks and slips, drawn over all others.
     pub zones: Vec<ZoneLine>,
     /// Colour scale of the values of grains or bonds, if they are coloured by a value.
-    pub scale: Option<Scale>,
+    pub scale: Option<ColourScale>,
     /// The 3D scene, drawn instead of bodies and disks.
-    pub scene: Option<Scene>,
+    pub scene: Option<SolidScene>,
     /// Width of the picture in pixels; the height follows from the window.
     pub width_px: u32,
 }
@@ -418,7 +418,7 @@ mod tests {
             first: true,
         };
         let corner = [f64::NAN, 0.0, 1.0];
-        let scene = Scene {
+        let scene = SolidScene {
             view: View::new(0.6, 0.4),
             spheres: vec![Sphere {
                 centre: corner,

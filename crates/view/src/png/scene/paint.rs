@@ -7,7 +7,7 @@ use fretwork_observe::picture::Paint;
 
 /// Legend of the colours of [`Paint::Value`], or of bonds.
 #[derive(Clone, Debug)]
-pub struct Scale {
+pub struct ColourScale {
     /// The quantity.
     pub label: String,
     /// SI unit without prefix, empty for a pure number.
@@ -66,14 +66,15 @@ impl Coloured for Paint {
 /// middle of the bar; the ticks are below.
 pub(crate) fn colour_bar(
     page: &mut Canvas,
-    scale: &Scale,
+    scale: &ColourScale,
     [left, middle]: [f32; 2],
     length: f32,
     u: f32,
 ) -> Result<(), DrawError> {
     let em = 0.9 * TEXT * u;
     let axis = Axis::new(scale.label.clone(), scale.unit.clone());
-    let fitted = crate::png::chart::Scale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
+    let fitted =
+        crate::png::chart::AxisScale::fit(&axis, [].into_iter(), Some((0.0, scale.top)), 3)?;
     let (length, thick) = ((length * u).round(), (22.0 * u).round());
     let (left, top) = ((left + 0.5 * em).round(), (middle - thick / 2.0).round());
     for i in 0..length as i32 {

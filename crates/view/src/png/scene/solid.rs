@@ -34,7 +34,7 @@ pub struct Faces {
 
 /// Content of a 3D picture.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct SolidScene {
     /// Direction of view.
     pub view: View,
     /// Spheres.
@@ -86,7 +86,7 @@ struct Seen {
     edges: Vec<[Corner; 2]>,
 }
 
-impl Scene {
+impl SolidScene {
     /// Projected corners of everything shown: to the right, upwards (m).
     pub fn extent(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let spheres = self.spheres.iter().flat_map(|s| {
@@ -356,8 +356,8 @@ mod tests {
         FACES.map(|f| f.map(corner).to_vec()).to_vec()
     }
 
-    fn scene(view: View, faces: Vec<Faces>, spheres: Vec<Sphere>) -> Scene {
-        Scene {
+    fn scene(view: View, faces: Vec<Faces>, spheres: Vec<Sphere>) -> SolidScene {
+        SolidScene {
             view,
             spheres,
             faces,
@@ -365,7 +365,7 @@ mod tests {
     }
 
     /// The field of 100 by 100 pixels over four metres about the origin.
-    fn painted(scene: &Scene) -> Canvas {
+    fn painted(scene: &SolidScene) -> Canvas {
         let mut field = Canvas::new(100, 100).unwrap();
         let place = Place {
             left: -2.0,

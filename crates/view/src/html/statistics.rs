@@ -22,7 +22,7 @@ pub(crate) struct Column {
 
 /// The statistics of a run.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Series {
+pub(crate) struct Statistics {
     /// Rows in the file.
     pub rows: usize,
     /// Rows from one that is kept to the next.
@@ -31,7 +31,7 @@ pub(crate) struct Series {
     pub columns: Vec<Column>,
 }
 
-impl Series {
+impl Statistics {
     /// Reads the statistics of a run, at most about `most` rows of each column.
     pub fn read(run: &RunFolder, most: usize, gaps: &mut Vec<String>) -> Self {
         let reader = &run.reader;
@@ -70,7 +70,7 @@ impl Series {
     }
 }
 
-impl Columns for Series {
+impl Columns for Statistics {
     fn column(&self, name: &str) -> Option<(&str, Rc<[f64]>)> {
         let column = Self::column(self, name)?;
         Some((&column.unit, column.values.clone()))
