@@ -1,5 +1,6 @@
 //! Reconstruction of the command line of this call, to be printed for the user to repeat.
 
+use crate::experiments::shell;
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
@@ -20,17 +21,7 @@ pub(super) fn command(with: &[&str]) -> String {
             words.push((*word).to_owned());
         }
     }
-    let quoted: Vec<String> = words.iter().map(|w| quote(w)).collect();
-    quoted.join(" ")
-}
-
-/// Quotes an argument for a POSIX shell.
-fn quote(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "-_./=:,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
+    shell::command(&words)
 }
 
 #[cfg(test)]
@@ -38,11 +29,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_quoted_where_a_shell_would_read_them_otherwise() {
-        assert_eq!(quote("time.step=1e-4"), "time.step=1e-4");
-        assert_eq!(quote("a case.ron"), "'a case.ron'");
-        assert_eq!(quote("x=[\"it's\"]"), "'x=[\"it'\\''s\"]'");
-        assert_eq!(quote(""), "''");
+    fn the_command_is_what_was_called() {
         keep(&["fretwork", "run", "a case.ron", "--json"].map(OsString::from));
         assert_eq!(
             command(&["--resume"]),

@@ -10,7 +10,7 @@ mod springs;
 use super::output::answer;
 use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
-use crate::experiments::runs::cost::Trial;
+use crate::experiments::runs::trial::Trial;
 use crate::geometry::space::Space;
 use crate::record::biaxial::Biaxial;
 use crate::record::check_names;
@@ -72,9 +72,7 @@ pub type CheckLine = (String, String);
 
 /// The estimated time of a run, from steps that are made for half a second.
 pub fn run_time<S: Space>(loaded: &Loaded, built: Built<S>) -> CheckLine {
-    let steps = most_steps(&loaded.case);
-    let grains = built.simulation.state.bodies.grains().count();
-    let mut text = Trial::of(built.simulation, steps).text(steps, grains, S::D);
+    let mut text = Trial::of(&loaded.case, built).text();
     if loaded.case.accuracy.is_some() {
         text += "; with time.step throughout, where the run chooses its steps";
     }

@@ -1,19 +1,18 @@
 //! `fretwork fit`: parameters of a case for which its runs give measured curves.
 
+use super::experiment::{RunsBar, interrupted, results};
 use super::output::{answer_json, inform, report};
-use super::{Failure, PluginArgs, again};
+use super::{Failure, PluginArgs};
+use crate::experiments::duration::parse as duration;
 use crate::experiments::fit::evaluate::Tests;
 use crate::experiments::fit::half_step::half_step;
-use crate::experiments::fit::outcome::{Outcome, identify};
+use crate::experiments::fit::outcome::identify;
 use crate::experiments::fit::search::{Found, Progress, Search, Stage};
-use crate::experiments::fit::spec::ReadFit;
-use crate::experiments::fit::{FitError, OWNER, files, page};
-use crate::experiments::runs::duration::parse as duration;
+use crate::experiments::fit::spec::FitFile;
+use crate::experiments::fit::{OWNER, files, page};
 use crate::interrupt;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
@@ -41,24 +40,10 @@ pub struct FitArgs {
     plugins: PluginArgs,
 }
 
-impl From<FitError> for Failure {
-    fn from(e: FitError) -> Self {
-        match e {
-            FitError::Input(e) => Self::Input(e),
-            FitError::Runs(e) => e.into(),
-            FitError::Usage(text) => Self::Usage(text),
-            FitError::Failed(text) => Self::Failed(text),
-        }
-    }
-}
-
 pub fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let out = args.out.clone().unwrap_or_else(|| {
-        let name = args.fit.file_stem().unwrap_or_default();
-        Path::new("results").join("fit").join(name)
-    });
+    let out = results(args.out.as_deref(), "fit", &args.fit);
     let program = args.plugins.program()?;
-    let read = ReadFit::read(&args.fit)?;
+    let read = FitFile::read(&args.fit)?;
     let _lock = OWNER.take(&out)?;
     let runs = args.cache.clone().unwrap_or_else(|| out.join("runs"));
     let mut tests = Tests::new(&read, &runs, &program)?;
@@ -67,14 +52,20 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
         inform(&page::consists_of(&read, &tests));
     }
     let stop = interrupt::watch();
-    let display = Display::new(args.json);
+    let bar = Mutex::new(RunsBar::default());
     let search = Search {
         tests: &tests,
         spec: read.spec.search,
         seeds: read.spec.seeds,
         jobs: args.jobs.into(),
         stop,
-        told: &|progress| display.show(progress),
+        watch: &|progress| {
+            if !args.json
+                && let Ok(mut bar) = bar.lock()
+            {
+                show(progress, &mut bar);
+            }
+        },
     };
     let mut found: Found = search.run()?;
     let mut outcome = match stop.load(Ordering::Relaxed) {
@@ -84,13 +75,10 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
     if let Some(outcome) = outcome.as_mut().filter(|_| read.spec.half_step) {
         outcome.half_step = half_step(&search, &found, outcome)?;
     }
-    display.finish();
-    files::evaluations(&tests, &found, &out.join("evaluations.csv"))?;
+    drop(bar);
+    files::write_evaluations(&tests, &found, &out)?;
     if stop.load(Ordering::Relaxed) {
-        return Err(Failure::Failed(format!(
-            "interrupted: finished runs are kept; to continue from there:\n  {}",
-            again::command(&[])
-        )));
+        return Err(interrupted());
     }
     let Some(outcome) = outcome else {
         return Err(Failure::Failed(format!(
@@ -98,33 +86,11 @@ pub fn fit(args: &FitArgs) -> Result<(), Failure> {
             out.display()
         )));
     };
-    tell(args, &read, &tests, &found, &outcome, &out)
-}
-
-/// Writes the files and prints the answer.
-fn tell(
-    args: &FitArgs,
-    read: &ReadFit,
-    tests: &Tests,
-    found: &Found,
-    outcome: &Outcome,
-    out: &Path,
-) -> Result<(), Failure> {
-    let failed = |e: &dyn std::fmt::Display| Failure::Failed(e.to_string());
-    let json = files::json(read, tests, found, outcome);
-    let text = serde_json::to_string_pretty(&json).unwrap_or_default();
-    let path = out.join("fit.json");
-    std::fs::write(&path, format!("{text}\n"))
-        .map_err(|e| failed(&format!("cannot write {}: {e}", path.display())))?;
-    files::curves(tests, found, outcome, &out.join("curves.csv"))?;
-    page::sheet(read, tests, found, outcome)
-        .write(&out.join("fit.html"))
-        .map_err(|e| failed(&e))?;
-    page::draw(read, tests, found, outcome, &out.join("fit.png")).map_err(|e| failed(&e))?;
+    let json = files::write(&read, &tests, &found, &outcome, &out)?;
     if args.json {
-        return answer_json(&text);
+        return answer_json(&json);
     }
-    inform(&page::answer(read, tests, found, outcome));
+    inform(&page::answer(&read, &tests, &found, &outcome));
     inform(&format!(
         "{0}/fit.html, {0}/fit.png, {0}/fit.json, {0}/curves.csv, {0}/evaluations.csv",
         out.display()
@@ -132,58 +98,14 @@ fn tell(
     Ok(())
 }
 
-/// A bar for each stage on a terminal, otherwise a line.
-struct Display {
-    bar: Mutex<Option<ProgressBar>>,
-    terminal: bool,
-    silent: bool,
-}
-
-impl Display {
-    fn new(silent: bool) -> Self {
-        Self {
-            bar: Mutex::new(None),
-            terminal: std::io::stderr().is_terminal()
-                && std::env::var_os("FRETWORK_QUIET").is_none(),
-            silent,
-        }
-    }
-
-    fn show(&self, progress: &Progress) {
-        if self.silent {
-            return;
-        }
-        let Ok(mut bar) = self.bar.lock() else { return };
-        match progress {
-            Progress::Begins(stage, runs) if self.terminal => {
-                let style = ProgressStyle::with_template(
-                    "{msg:16} {bar:30} {pos}/{len} runs  {elapsed} of about {duration}",
-                );
-                let new = ProgressBar::new(*runs as u64).with_message(stage.word());
-                new.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-                new.enable_steady_tick(Duration::from_secs(1));
-                *bar = Some(new);
-            }
-            Progress::Begins(..) => {}
-            Progress::Run => {
-                if let Some(bar) = bar.as_ref() {
-                    bar.inc(1);
-                }
-            }
-            Progress::Ended(stage, least, failed) => {
-                if let Some(bar) = bar.take() {
-                    bar.finish_and_clear();
-                }
-                report(&line(*stage, *least, *failed));
-            }
-        }
-    }
-
-    fn finish(&self) {
-        if let Ok(mut bar) = self.bar.lock()
-            && let Some(bar) = bar.take()
-        {
-            bar.finish_and_clear();
+/// A bar for each stage on a terminal, and a line at its end.
+fn show(progress: &Progress, bar: &mut RunsBar) {
+    match progress {
+        Progress::Begins(stage, runs) => *bar = RunsBar::new(*runs, &stage.word()),
+        Progress::Run => bar.run(),
+        Progress::Ended(stage, least, failed) => {
+            *bar = RunsBar::default();
+            report(&line(*stage, *least, *failed));
         }
     }
 }

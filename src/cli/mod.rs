@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod contact_patch;
 mod ending;
+mod experiment;
 mod fit;
 mod law;
 mod number;

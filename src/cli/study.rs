@@ -1,28 +1,21 @@
 //! `fretwork study`: one case at many points of its factors.
 
-mod answers;
-
+use super::experiment::{RunsBar, interrupted, results};
 use super::output::{answer, answer_json, inform, report};
-use super::{Failure, PluginArgs, again};
-use crate::experiments::runs::duration::{parse as duration, seconds};
+use super::{Failure, PluginArgs};
+use crate::experiments::duration::{parse as duration, seconds};
 use crate::experiments::runs::stored::Finished;
-use crate::experiments::study::analysis::Analysis;
-use crate::experiments::study::execute::{Event, execute, missing};
+use crate::experiments::study::execute::{execute, missing};
 use crate::experiments::study::export::{Engine, Export};
-use crate::experiments::study::figures::draw;
 use crate::experiments::study::forecast::Forecast;
-use crate::experiments::study::page::sheet;
 use crate::experiments::study::plan::{Place, Plan, Point};
-use crate::experiments::study::spec::ReadSpec;
-use crate::experiments::study::table::{Cell, Table, status};
-use crate::experiments::study::{OWNER, StudyError};
+use crate::experiments::study::rows::{DONE, Rows, status};
+use crate::experiments::study::spec::StudyFile;
+use crate::experiments::study::{OWNER, answers, write};
 use crate::interrupt;
 use clap::{Args, Subcommand, ValueEnum};
 use fretwork_store::folder_lock::FolderLock;
-use indicatif::{ProgressBar, ProgressStyle};
-use std::collections::BTreeSet;
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -160,22 +153,9 @@ fn range(text: &str) -> Result<(usize, usize), String> {
     Ok((first, last))
 }
 
-impl From<StudyError> for Failure {
-    fn from(e: StudyError) -> Self {
-        match e {
-            StudyError::Input(e) => Self::Input(e),
-            StudyError::Runs(e) => e.into(),
-            StudyError::Usage(text) => Self::Usage(text),
-        }
-    }
-}
-
 impl StudyArgs {
     fn out(&self) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| {
-            let name = self.study.file_stem().unwrap_or_default();
-            Path::new("results").join("study").join(name)
-        })
+        results(self.out.as_deref(), "study", &self.study)
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
@@ -184,7 +164,7 @@ impl StudyArgs {
             cache: self.cache.as_deref(),
             program: &self.plugins.program()?,
         };
-        Ok(Plan::new(&ReadSpec::read(&self.study)?, place)?)
+        Ok(Plan::new(&StudyFile::read(&self.study)?, place)?)
     }
 
     /// The plan, and its folder for this command alone. Nothing is written if the study is wrong.
@@ -222,10 +202,10 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
     if args.points && !args.json {
         return answer(&answers::points(&plan));
     }
-    let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
+    let open = missing(&plan);
     let forecast = match args.no_timing || args.points {
         true => None,
-        false => Some(Forecast::of(&plan, &open, &args.of.plugins.search()?)?),
+        false => Some(Forecast::of(&plan, &open, &args.of.plugins.search()?)),
     };
     match args.json {
         true => answer_json(&answers::check_json(
@@ -245,10 +225,10 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
 
 fn run(args: &RunArgs) -> Result<(), Failure> {
     let (plan, _lock) = args.of.plan_alone()?;
-    let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
+    let open = missing(&plan);
     let jobs = usize::from(args.jobs);
     if !args.json {
-        let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?)?;
+        let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?);
         inform(&answers::consists_of(
             &plan,
             open.len(),
@@ -257,19 +237,23 @@ fn run(args: &RunArgs) -> Result<(), Failure> {
         ));
     }
     let stop = interrupt::watch();
-    let display = Display::new(&plan, open.len(), args.json);
-    execute(&plan, open, jobs, args.limit, stop, &|event| {
-        display.show(event)
+    let bar = match args.json {
+        true => RunsBar::default(),
+        false => RunsBar::new(open.len(), ""),
+    };
+    execute(&plan, open, jobs, args.limit, stop, &|point, run| {
+        if !args.json {
+            let line = format!("{}: {}", name(&plan, point), how(run));
+            bar.line(&line, status(Some(run)).0 != DONE);
+            bar.run();
+        }
     })?;
-    display.finish();
+    drop(bar);
     gather(&plan, args.json)?;
-    if stop.load(Ordering::Relaxed) {
-        return Err(Failure::Failed(format!(
-            "interrupted: finished runs are kept; to continue from there:\n  {}",
-            again::command(&[])
-        )));
+    match stop.load(Ordering::Relaxed) {
+        true => Err(interrupted()),
+        false => Ok(()),
     }
-    Ok(())
 }
 
 fn point(args: &PointArgs) -> Result<(), Failure> {
@@ -288,14 +272,12 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
     let points: Vec<Point> = (first..=last).filter_map(|k| plan.point(k)).collect();
     let count = points.len();
     let wanting = std::sync::Mutex::new(Vec::new());
-    let ended = execute(&plan, points, 1, args.limit, stop, &|event| {
-        if let Event::Ended(point, run) = event {
-            report(&format!("{}: {}", name(&plan, point), how(run)));
-            if !run.is_result()
-                && let Ok(mut wanting) = wanting.lock()
-            {
-                wanting.push(point.number);
-            }
+    let ended = execute(&plan, points, 1, args.limit, stop, &|point, run| {
+        report(&format!("{}: {}", name(&plan, point), how(run)));
+        if !run.is_result()
+            && let Ok(mut wanting) = wanting.lock()
+        {
+            wanting.push(point.number);
         }
     })?;
     let wanting = wanting.into_inner().unwrap_or_default();
@@ -315,8 +297,8 @@ fn point(args: &PointArgs) -> Result<(), Failure> {
 
 fn export(args: &ExportArgs) -> Result<(), Failure> {
     let (plan, _lock) = args.of.plan_alone()?;
-    let open: Vec<Point> = missing(&plan).into_iter().map(|m| m.0).collect();
-    let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?)?;
+    let open = missing(&plan);
+    let forecast = Forecast::of(&plan, &open, &args.of.plugins.search()?);
     inform(&answers::consists_of(&plan, open.len(), Some(&forecast), 1));
     let chunk = args
         .chunk
@@ -353,57 +335,12 @@ fn collect(args: &CollectArgs) -> Result<(), Failure> {
 
 /// Writes the table of the runs that are there, and says what it holds.
 fn gather(plan: &Plan, json: bool) -> Result<(), Failure> {
-    let table = Table::of(plan);
-    let others = other_runs(plan, &table);
-    if table.counts().missing == plan.count() && others > 0 {
-        return Err(Failure::Failed(format!(
-            "none of the {others} runs in {} is of this study by this program: its build, its laws, the case or a file that it names is another since; \
-             tables are left as they are, `fretwork study run` makes the runs again",
-            plan.launcher.folder.display()
-        )));
+    let rows = Rows::of(plan);
+    let drawn = write(plan, &rows)?;
+    match json {
+        true => answer_json(&answers::json(plan, &rows)),
+        false => answer(&answers::collected(plan, &rows, drawn)),
     }
-    let (csv, parquet) = (plan.out.join("table.csv"), plan.out.join("table.parquet"));
-    crate::experiments::study::csv::write(&table, &csv)?;
-    crate::experiments::study::parquet::write(&table, &parquet)?;
-    let analysis = Analysis::of(plan, &plan.design, &table);
-    let settings = plan.out.join("settings.csv");
-    crate::experiments::study::csv::write(&Table::of_settings(plan, &analysis), &settings)?;
-    let page = plan.out.join("study.html");
-    let picture = plan.out.join("study.png");
-    let failed = |e: &dyn std::fmt::Display| Failure::Failed(e.to_string());
-    sheet(plan, &table, &analysis)
-        .write(&page)
-        .map_err(|e| failed(&e))?;
-    let drawn = draw(plan, &analysis, &picture).map_err(|e| failed(&e))?;
-    if !drawn {
-        // A picture of an earlier state would be mistaken for one of this.
-        let _ = std::fs::remove_file(&picture);
-    }
-    if json {
-        return answer_json(&answers::json(plan, &table));
-    }
-    answer(&answers::collected(plan, &table, drawn))
-}
-
-/// Number of runs in the folder that are no points of the study by this program.
-fn other_runs(plan: &Plan, table: &Table) -> usize {
-    let own: BTreeSet<&str> = table
-        .column("folder")
-        .into_iter()
-        .flat_map(|c| &c.cells)
-        .filter_map(|c| match c {
-            Cell::Text(name) => Some(name.as_str()),
-            _ => None,
-        })
-        .collect();
-    let folders = std::fs::read_dir(&plan.launcher.folder)
-        .into_iter()
-        .flatten()
-        .flatten();
-    folders
-        .filter(|f| f.path().join("run.json").is_file())
-        .filter(|f| !own.contains(f.file_name().to_string_lossy().as_ref()))
-        .count()
 }
 
 /// A run, for a line of progress.
@@ -422,52 +359,5 @@ fn how(run: &Finished) -> String {
     match status(Some(run)) {
         (word, why) if why.is_empty() => format!("{word} in {took}"),
         (word, why) => format!("{} after {took}: {why}", word.to_uppercase()),
-    }
-}
-
-/// A bar on a terminal, otherwise a line for each run.
-struct Display<'a> {
-    plan: &'a Plan,
-    bar: Option<ProgressBar>,
-    silent: bool,
-}
-
-impl<'a> Display<'a> {
-    fn new(plan: &'a Plan, count: usize, silent: bool) -> Self {
-        let terminal =
-            std::io::stderr().is_terminal() && std::env::var_os("FRETWORK_QUIET").is_none();
-        let bar = (terminal && !silent && count > 0).then(|| {
-            let style = ProgressStyle::with_template(
-                "{bar:40} {pos}/{len} runs  {elapsed} of about {duration}",
-            );
-            let bar = ProgressBar::new(count as u64);
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.enable_steady_tick(Duration::from_secs(1));
-            bar
-        });
-        Self { plan, bar, silent }
-    }
-
-    fn show(&self, event: &Event<'_>) {
-        let Event::Ended(point, run) = event else {
-            return;
-        };
-        let line = format!("{}: {}", name(self.plan, point), how(run));
-        match &self.bar {
-            Some(bar) => {
-                if status(Some(run)).0 != crate::experiments::study::table::DONE {
-                    bar.println(line);
-                }
-                bar.inc(1);
-            }
-            None if !self.silent => report(&line),
-            None => {}
-        }
-    }
-
-    fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 }

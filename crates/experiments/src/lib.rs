@@ -1,30 +1,47 @@
 //! Experiments: runs of a case in processes of their own, and the questions that they answer.
 //!
-//! [`runs`] makes runs and keeps each under a key of all that determines it. [`study`] varies the
-//! values of a case, [`fit`] finds those for which it gives measured curves, [`trade`] compares
-//! accuracy with cost, [`contact_patch`] goes from a patch in closed form to the runs of a window
-//! of it. The mathematics is that of [`fretwork_study`].
+//! ```text
+//!  file of a study or a fit, options of a trade
+//!        ▼
+//!  factors: what varies, with its levels or its range      factor
+//!        ▼
+//!  settings: a level of each factor                        study::design, trade::plan, fit::search
+//!        ▼
+//!  runs: changes of the case, and a seed                   changes, runs
+//!        ▼
+//!  a process and a folder for each, kept by its key        runs::{launcher, key, stored}
+//!        ▼
+//!  tables: a row a run or a setting                        table
+//!        ▼
+//!  answers: effects, errors, estimates                     study::analysis, trade::compare, fit::outcome
+//! ```
+//!
+//! [`study`] varies the values of a case, [`fit`] finds those for which it gives measured curves,
+//! [`trade`] compares accuracy with cost, [`contact_patch`] goes from a patch in closed form to the
+//! runs of a window of it. The mathematics is that of [`fretwork_study`].
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod case;
+mod changes;
 pub mod contact_patch;
+pub mod duration;
+mod error;
+mod expression;
+pub mod factor;
 pub mod fit;
+pub mod folder;
 pub mod runs;
+pub mod shell;
+pub mod spec;
 pub mod study;
+pub mod table;
 pub mod trade;
 
-use fretwork_scene::{InputError, Loaded, Scene};
-use fretwork_store::results::state;
-use std::path::Path;
+pub use case::{build, load};
+pub use error::Error;
 
-/// Reads a case and applies the `--set` arguments; grains of another run are read from its
-/// `results.h5`.
-///
-/// # Errors
-/// At file, line and column.
-pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
-    Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
-}
+use fretwork_scene::{InputError, Loaded, Scene};
 
 /// What experiments need of the program that makes their runs.
 #[derive(Clone, Debug)]

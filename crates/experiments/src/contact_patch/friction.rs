@@ -3,7 +3,7 @@
 use super::question::{Question, range};
 use super::range::Range;
 use super::runs;
-use crate::trade::interval::Mean;
+use fretwork_study::interval::Mean;
 use serde::Serialize;
 
 /// A friction coefficient with its interval.

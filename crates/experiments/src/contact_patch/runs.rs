@@ -1,7 +1,7 @@
 //! What the summaries of runs of a window say: friction, and the wear of its first bodies.
 
 use super::range::Range;
-use crate::trade::interval::Mean;
+use fretwork_study::interval::Mean;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 

@@ -1,32 +1,23 @@
 //! Values of all tests at points of the parameters: runs of their cases, over seeds, several at a time.
 
-use super::FitError;
 use super::measured;
 use super::model::Model;
-use super::spec::{ReadFit, TestSpec};
-use crate::Program;
-use crate::load;
-use crate::runs::RunsError;
-use crate::runs::expression::{Derived, number};
-use crate::runs::launcher::{Ended, Launcher};
+use super::spec::{FitFile, TestSpec};
+use crate::changes::Changes;
+use crate::factor::Factor;
+use crate::runs::launcher::{Launcher, Patience, Run};
 use crate::runs::offer::{Offer, columns};
-use crate::runs::perturbation::Perturbation;
 use crate::runs::pool::each;
 use crate::runs::quantity::Quantity;
-use crate::runs::randomness::seed_matters;
-use crate::runs::spec::RangeScale;
-use crate::runs::stored::{Limits, Status, summary};
+use crate::runs::stored::{Status, summary};
+use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::Scene;
-use fretwork_study::design::scale::Scale;
+use fretwork_scene::{InputError, Scene};
 use fretwork_study::fit::bounds::{Bounds, Parameter};
 use fretwork_study::fit::residuals::{Curve, Measurement, Target};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
-
-/// A time that no run reaches.
-const FOREVER: Duration = Duration::from_secs(100 * 365 * 86_400);
+use std::time::Duration;
 
 /// A test whose runs can be made.
 #[derive(Debug)]
@@ -34,7 +25,7 @@ struct Test {
     launcher: Launcher,
     /// Its first seed.
     seed: u64,
-    derived: Vec<Derived>,
+    changes: Changes,
     output: Output,
 }
 
@@ -61,7 +52,7 @@ pub struct Tests {
     pub bounds: Bounds,
     /// Whether the seeds of any case change its scene.
     pub random: bool,
-    keys: Vec<Vec<String>>,
+    factors: Vec<Factor>,
     tests: Vec<Test>,
     /// Whether measured specimens scatter as runs do from seed to seed.
     pub specimen_scatters: bool,
@@ -70,43 +61,30 @@ pub struct Tests {
 }
 
 impl Tests {
-    /// Reads measurements and cases, and checks that the cases take the parameters at both ends of their ranges.
+    /// Reads measurements and cases, and checks that the cases take the parameters at both ends of
+    /// their ranges.
     ///
     /// # Errors
     /// What is wrong with the fit, a case or a measurement.
-    pub fn new(read: &ReadFit, folder: &Path, program: &Program) -> Result<Self, FitError> {
-        let search = &program.search;
+    pub fn new(read: &FitFile, folder: &Path, program: &Program) -> Result<Self, Error> {
         let spec = &read.spec;
+        let factors: Vec<Factor> = spec.parameters.iter().map(|p| p.factor()).collect();
         let bounds = bounds(read)?;
-        let names: Vec<&str> = spec.parameters.iter().map(|p| p.name.as_str()).collect();
-        let keys: Vec<Vec<String>> = spec.parameters.iter().map(|p| p.key.0.clone()).collect();
+        let middle = bounds.values(&vec![0.5; bounds.len()]);
         let (mut tests, mut measurements, mut random) = (Vec::new(), Vec::new(), false);
         for (k, test) in spec.tests.iter().enumerate() {
             let at = |key: &str, why: String| read.source.error_at(&format!("tests.{k}{key}"), why);
             let (name, case, set) = test.common();
             let case = read.beside(case);
-            let (with, set): (Vec<String>, Vec<String>) =
-                set.iter().cloned().partition(|s| Derived::is(s));
-            let derived = with.iter().map(|text| Derived::parse(text, &names));
-            let derived = derived
-                .collect::<Result<Vec<_>, _>>()
-                .map_err(|why| at(".set", why))?;
-            let limits = Limits {
-                unconverged: spec.unconverged,
-                residual: spec.residual,
-            };
-            let mut launcher = Launcher::new(&case, &set, program.plugins.clone(), folder, limits)?;
+            let changes = Changes::parse(set, &spec.names()).map_err(|(_, why)| at(".set", why))?;
+            let fixed = &changes.fixed;
+            let mut launcher = Launcher::new(&case, fixed, program, folder, spec.limits())?;
             launcher.threads = spec.threads;
-            let middle = bounds.values(&vec![0.5; names.len()]);
-            let sets = changes(&keys, &derived, &middle)?;
-            let loaded = load(&case, &[set, sets].concat())?;
-            let scene = loaded.build(search)?;
-            (program.check_names)(&loaded, &scene)?;
-            let matters = seed_matters(&loaded, &scene, search)?;
+            let sets = sets_of(&factors, &changes, &middle).map_err(Error::Usage)?;
+            let loaded = load(&case, &[fixed.clone(), sets].concat())?;
+            let (scene, matters) = build(&loaded, program)?;
             random |= matters;
-            launcher.perturbation = (!matters).then_some(Perturbation {
-                first: loaded.case.seed,
-            });
+            launcher.perturb_unless(matters, loaded.case.seed);
             let (output, measurement) = match test {
                 TestSpec::Curve {
                     measured: from,
@@ -117,7 +95,7 @@ impl Tests {
                     let made = Model::new(model, &columns)
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
                     let (curve, reach) =
-                        measured::read(name, from, &read.beside(&from.file), model.along)?;
+                        measured::curve(name, from, &read.beside(&from.file), model.along)?;
                     (Output::Curve(Box::new(made.reaching(reach))), curve)
                 }
                 TestSpec::Value {
@@ -146,48 +124,44 @@ impl Tests {
             tests.push(Test {
                 launcher,
                 seed: loaded.case.seed,
-                derived,
+                changes,
                 output,
             });
         }
-        let target = Target::new(measurements).map_err(|e| FitError::Usage(e.to_string()))?;
-        let target = if spec.balanced {
-            target.balanced()
-        } else {
-            target
-        };
+        let target = Target::new(measurements).map_err(|e| Error::Usage(e.to_string()))?;
         let tests = Self {
-            target,
+            target: match spec.balanced {
+                true => target.balanced(),
+                false => target,
+            },
             bounds,
             random,
             specimen_scatters: spec.specimen_scatters,
-            keys,
+            factors,
             tests,
             limit: None,
         };
-        tests.check_ends(read, search)?;
+        tests.check_ends(read, &program.search)?;
         Ok(tests)
     }
 
     /// Refuses a range whose ends a case does not take.
-    fn check_ends(&self, read: &ReadFit, search: &SearchPath) -> Result<(), FitError> {
-        for (p, parameter) in self.bounds.parameters().iter().enumerate() {
+    fn check_ends(&self, read: &FitFile, search: &SearchPath) -> Result<(), InputError> {
+        for (p, factor) in self.factors.iter().enumerate() {
             for end in [0.0, 1.0] {
-                let mut place = vec![0.5; self.bounds.len()];
+                let mut place = vec![0.5; self.factors.len()];
                 place[p] = end;
                 let values = self.bounds.values(&place);
-                for test in &self.tests {
-                    let sets = changes(&self.keys, &test.derived, &values)?;
-                    let sets = [test.launcher.sets.clone(), sets].concat();
-                    load(&test.launcher.case, &sets)
-                        .and_then(|loaded| loaded.build(search))
-                        .map_err(|e| {
-                            e.note(format!(
-                                "with `{}` at an end of its range in {}",
-                                parameter.name,
-                                read.path.display()
-                            ))
-                        })?;
+                for test in 0..self.tests.len() {
+                    let built = load(self.case(test), &self.sets(test, &values))
+                        .and_then(|loaded| loaded.build(search));
+                    built.map_err(|e| {
+                        e.note(format!(
+                            "with `{}` at an end of its range in {}",
+                            factor.name,
+                            read.path.display()
+                        ))
+                    })?;
                 }
             }
         }
@@ -207,7 +181,7 @@ impl Tests {
         jobs: usize,
         stop: &AtomicBool,
         watch: &(dyn Fn() + Sync),
-    ) -> Result<Vec<Vec<Option<Sample>>>, FitError> {
+    ) -> Result<Vec<Vec<Option<Sample>>>, Error> {
         let mut items = Vec::new();
         for point in points {
             for seed in seeds.clone() {
@@ -217,7 +191,7 @@ impl Tests {
             }
         }
         let work = |(point, seed, test): &(&Vec<f64>, u64, &Test)| {
-            let curve = test.run(&self.keys, point, *seed, finer, self.limit, stop)?;
+            let curve = test.run(&self.factors, point, *seed, finer, self.limit, stop)?;
             watch();
             Ok(curve)
         };
@@ -249,19 +223,10 @@ impl Tests {
         Some(Sample { values })
     }
 
-    /// The curve of a test from a run that was made.
-    pub fn curve(&self, test: usize, values: &[f64], seed: u64) -> Option<(Vec<f64>, Vec<f64>)> {
-        let stop = AtomicBool::new(false);
-        let curve = self.tests[test]
-            .run(&self.keys, values, seed, 1, None, &stop)
-            .ok()??;
-        curve.ok()
-    }
-
     /// The `--set` arguments of a test for values of the parameters.
     pub fn sets(&self, test: usize, values: &[f64]) -> Vec<String> {
         let test = &self.tests[test];
-        let own = changes(&self.keys, &test.derived, values).unwrap_or_default();
+        let own = sets_of(&self.factors, &test.changes, values).unwrap_or_default();
         [test.launcher.sets.clone(), own].concat()
     }
 
@@ -278,16 +243,16 @@ impl Test {
     /// One run, with its step over `finer` and rows at the same times; `None` if it was interrupted.
     fn run(
         &self,
-        keys: &[Vec<String>],
+        factors: &[Factor],
         values: &[f64],
         seed: u64,
         finer: u32,
         limit: Option<Duration>,
         stop: &AtomicBool,
-    ) -> Result<Option<RunCurve>, RunsError> {
-        let mut sets = match changes(keys, &self.derived, values) {
+    ) -> Result<Option<RunCurve>, Error> {
+        let mut sets = match sets_of(factors, &self.changes, values) {
             Ok(sets) => sets,
-            Err(why) => return Ok(Some(Err(why.to_string()))),
+            Err(why) => return Ok(Some(Err(why))),
         };
         let whole = [self.launcher.sets.clone(), sets.clone()].concat();
         let case = match load(&self.launcher.case, &whole) {
@@ -300,20 +265,25 @@ impl Test {
             sets.push(format!("time.step={step:e}"));
             sets.push(format!("output.every={every}"));
         }
-        let limit = limit.map(|l| l * finer);
-        let seed = self.seed.wrapping_add(seed);
-        let deadline = Instant::now() + FOREVER;
-        let ended = self.launcher.run(&sets, seed, deadline, limit, stop)?;
-        let Ended::Finished(run) = ended else {
+        let run = Run {
+            sets,
+            seed: self.seed.wrapping_add(seed),
+        };
+        let patience = Patience {
+            deadline: None,
+            limit: limit.map(|l| l * finer),
+            stop,
+        };
+        let Some(ended) = self.launcher.run(&run, patience)? else {
             return Ok(None);
         };
-        if let Status::Slow(s) = run.status {
+        if let Status::Slow(s) = ended.status {
             return Ok(Some(Err(format!("it took more than {s:.0} s"))));
         }
-        if let Some(why) = run.status.failure() {
+        if let Some(why) = ended.status.failure() {
             return Ok(Some(Err(why)));
         }
-        let place = self.launcher.place(&sets, seed);
+        let place = self.launcher.place(&run);
         Ok(Some(match &self.output {
             Output::Curve(model) => model.curve(&place.join("statistics.csv"), step),
             Output::Value(quantity) => match quantity.read(&summary(&place), &place) {
@@ -325,57 +295,31 @@ impl Test {
 }
 
 /// The changes of a case for values of the parameters.
-fn changes(
-    keys: &[Vec<String>],
-    derived: &[Derived],
-    values: &[f64],
-) -> Result<Vec<String>, FitError> {
-    let mut sets = Vec::new();
-    for (keys, value) in keys.iter().zip(values) {
-        let text = number(*value);
-        // A field of floats takes a number with a point.
-        let text = if text.contains(['.', 'e']) {
-            text
-        } else {
-            format!("{text}.0")
-        };
-        sets.extend(keys.iter().map(|key| format!("{key}={text}")));
-    }
-    let known: Vec<Option<f64>> = values.iter().copied().map(Some).collect();
-    for one in derived {
-        sets.push(one.set(&known).map_err(FitError::Usage)?);
-    }
-    Ok(sets)
+fn sets_of(factors: &[Factor], changes: &Changes, values: &[f64]) -> Result<Vec<String>, String> {
+    let own = factors
+        .iter()
+        .zip(values)
+        .flat_map(|(f, x)| f.exactly(*x).sets);
+    let numbers: Vec<Option<f64>> = values.iter().copied().map(Some).collect();
+    Ok(own.chain(changes.derived(&numbers)?).collect())
 }
 
 /// The region of the parameters.
-fn bounds(read: &ReadFit) -> Result<Bounds, FitError> {
+fn bounds(read: &FitFile) -> Result<Bounds, InputError> {
     let spec = &read.spec;
     let parameters = spec.parameters.iter().map(|p| Parameter {
         name: p.name.clone(),
-        scale: match p.scale {
-            RangeScale::Log => Scale::Logarithmic {
-                from: p.low,
-                to: p.high,
-            },
-            _ => Scale::Linear {
-                from: p.low,
-                to: p.high,
-            },
-        },
+        scale: p.scale.between(p.low, p.high),
     });
     let place = |name: &String| {
         let place = spec.parameters.iter().position(|p| p.name == *name);
         place.ok_or_else(|| {
-            read.source
-                .error_at("order", format!("`{name}` is no parameter"))
+            let why = format!("`{name}` is no parameter");
+            read.source.error_at("order", why)
         })
     };
-    let orders: Result<Vec<(usize, usize)>, fretwork_scene::InputError> = spec
-        .order
-        .iter()
-        .map(|(a, b)| Ok((place(a)?, place(b)?)))
-        .collect();
-    let bounds = Bounds::new(parameters.collect(), &orders?);
-    bounds.map_err(|e| read.source.error_at("parameters", e.to_string()).into())
+    let orders = spec.order.iter().map(|(a, b)| Ok((place(a)?, place(b)?)));
+    let orders = orders.collect::<Result<Vec<_>, InputError>>()?;
+    Bounds::new(parameters.collect(), &orders)
+        .map_err(|e| read.source.error_at("parameters", e.to_string()))
 }

@@ -2,23 +2,50 @@
 
 use super::evaluate::Tests;
 use super::outcome::{HalfStep, Outcome, mean_of};
+use super::page::{draw, sheet};
 use super::search::Found;
-use super::spec::ReadFit;
-use crate::runs::RunsError;
-use crate::runs::cells::guarded;
+use super::spec::FitFile;
+use crate::Error;
+use crate::table::{Column, Table, csv};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// The fit as JSON.
-pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Value {
-    let told = &outcome.identification;
+/// Writes all points that were run.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_evaluations(tests: &Tests, found: &Found, out: &Path) -> Result<(), Error> {
+    let path = out.join("evaluations.csv");
+    csv::write(&evaluations(tests, found), &path, csv::Numbers::Exponents)
+}
+
+/// Writes the other files of a fit into its folder; returns its JSON.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(
+    read: &FitFile,
+    tests: &Tests,
+    found: &Found,
+    outcome: &Outcome,
+    out: &Path,
+) -> Result<String, Error> {
+    let json = json(read, tests, found, outcome);
+    let json = serde_json::to_string_pretty(&json).unwrap_or_default();
+    let path = out.join("fit.json");
+    std::fs::write(&path, format!("{json}\n")).map_err(|e| Error::write(&path, &e))?;
+    let curves = curves(tests, found, outcome);
+    csv::write(&curves, &out.join("curves.csv"), csv::Numbers::Exponents)?;
+    let page = sheet(read, tests, found, outcome).write(&out.join("fit.html"));
+    page.map_err(|e| Error::Failed(e.to_string()))?;
+    draw(read, tests, found, outcome, &out.join("fit.png"))?;
+    Ok(json)
+}
+
+fn json(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Value {
+    let known = &outcome.identification;
     let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
-    let names: Vec<&str> = read
-        .spec
-        .parameters
-        .iter()
-        .map(|p| p.name.as_str())
-        .collect();
+    let names = read.spec.names();
     let half = |place: usize| match &outcome.half_step {
         Some(HalfStep::Moves { parameters, .. }) => json!(parameters[place]),
         _ => Value::Null,
@@ -31,7 +58,7 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
         Some(HalfStep::Failed(why)) => json!(why),
         _ => Value::Null,
     };
-    let parameters: Vec<Value> = told
+    let parameters: Vec<Value> = known
         .estimates
         .iter()
         .zip(&read.spec.parameters)
@@ -44,7 +71,7 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
             })
         })
         .collect();
-    let directions: Vec<Value> = told
+    let directions: Vec<Value> = known
         .directions
         .iter()
         .map(|d| {
@@ -59,9 +86,9 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
         .collect();
     let best = &found.evaluations[outcome.best];
     json!({
-        "title": read.spec.title, "parameters": parameters, "correlation": told.correlation, "directions": directions,
+        "title": read.spec.title, "parameters": parameters, "correlation": known.correlation, "directions": directions,
         "chi_squared": best.chi_squared.map(number), "values": tests.target.measured().len(),
-        "reduced": told.reduced.map(number), "p": told.p, "describes": told.describes, "widened": number(told.widened), "at_edge": told.at_edge, "settled": outcome.settled,
+        "reduced": known.reduced.map(number), "p": known.p, "describes": known.describes, "widened": number(known.widened), "at_edge": known.at_edge, "settled": outcome.settled,
         "ended": found.ended, "evaluations": found.evaluations.len(),
         "failed": found.evaluations.iter().filter(|e| e.chi_squared.is_none()).count(),
         "step_not_small": step_not_small, "half_step_failed": half_step_failed, "random": tests.random, "tests": sets,
@@ -69,63 +96,51 @@ pub fn json(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> 
 }
 
 /// All points that were run, with the reason where one failed.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn evaluations(tests: &Tests, found: &Found, path: &Path) -> Result<(), RunsError> {
-    let fail = |e: &dyn std::fmt::Display| RunsError::write(path, e);
-    let mut out = csv::Writer::from_path(path).map_err(|e| fail(&e))?;
-    let mut heads = vec!["evaluation".to_owned(), "stage".to_owned()];
-    heads.extend(tests.bounds.parameters().iter().map(|p| p.name.clone()));
-    heads.extend(["seeds", "chi_squared", "reason"].map(str::to_owned));
-    let heads = heads.iter().map(|head| guarded(head));
-    out.write_record(heads).map_err(|e| fail(&e))?;
-    for (k, e) in found.evaluations.iter().enumerate() {
-        let mut row = vec![(k + 1).to_string(), e.stage.word()];
-        row.extend(e.values.iter().map(|v| format!("{v:e}")));
-        row.push(e.samples.len().to_string());
-        row.push(e.chi_squared.map_or(String::new(), |x| format!("{x:e}")));
-        let reason = e.samples.iter().find_map(|s| s.as_ref().err());
-        row.push(reason.map(|text| guarded(text)).unwrap_or_default());
-        out.write_record(&row).map_err(|e| fail(&e))?;
+fn evaluations(tests: &Tests, found: &Found) -> Table {
+    let all = &found.evaluations;
+    let mut columns = vec![
+        Column::whole("evaluation", (1..=all.len()).map(|k| Some(k as f64))),
+        Column::text("stage", all.iter().map(|e| e.stage.word())),
+    ];
+    for (k, p) in tests.bounds.parameters().iter().enumerate() {
+        columns.push(Column::real(
+            &p.name,
+            "",
+            all.iter().map(|e| Some(e.values[k])),
+        ));
     }
-    out.flush().map_err(|e| fail(&e))
+    let seeds = all.iter().map(|e| Some(e.samples.len() as f64));
+    let reasons = all.iter().map(|e| {
+        let reason = e.samples.iter().find_map(|s| s.as_ref().err());
+        reason.cloned().unwrap_or_default()
+    });
+    columns.extend([
+        Column::whole("seeds", seeds),
+        Column::real("chi_squared", "", all.iter().map(|e| e.chi_squared)),
+        Column::text("reason", reasons),
+    ]);
+    Table { columns }
 }
 
 /// Measured and fitted values side by side.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn curves(
-    tests: &Tests,
-    found: &Found,
-    outcome: &Outcome,
-    path: &Path,
-) -> Result<(), RunsError> {
-    let fail = |e: &dyn std::fmt::Display| RunsError::write(path, e);
-    let mut out = csv::Writer::from_path(path).map_err(|e| fail(&e))?;
-    let heads = ["test", "x", "measured", "sigma", "fitted", "scatter"];
-    out.write_record(heads).map_err(|e| fail(&e))?;
+fn curves(tests: &Tests, found: &Found, outcome: &Outcome) -> Table {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
-    let mut place = 0;
-    for test in tests.target.tests() {
-        for j in 0..test.x.len() {
-            let fitted = mean.get(place).map_or(String::new(), |v| format!("{v:e}"));
-            let scatter = deviation
-                .as_ref()
-                .and_then(|d| d.get(place))
-                .map_or(String::new(), |v| format!("{v:e}"));
-            let row = [
-                guarded(&test.name),
-                format!("{:e}", test.x[j]),
-                format!("{:e}", test.y[j]),
-                format!("{:e}", test.sigma[j]),
-                fitted,
-                scatter,
-            ];
-            out.write_record(&row).map_err(|e| fail(&e))?;
-            place += 1;
-        }
+    let target = &tests.target;
+    let count = target.measured().len();
+    let names = target.tests().iter();
+    let names = names.flat_map(|t| vec![t.name.clone(); t.x.len()]);
+    let x = target.tests().iter().flat_map(|t| &t.x);
+    let known = |values: &[f64]| -> Vec<Option<f64>> {
+        (0..count).map(|k| values.get(k).copied()).collect()
+    };
+    Table {
+        columns: vec![
+            Column::text("test", names),
+            Column::real("x", "", x.map(|x| Some(*x))),
+            Column::real("measured", "", known(&target.measured())),
+            Column::real("sigma", "", known(&target.sigma())),
+            Column::real("fitted", "", known(&mean)),
+            Column::real("scatter", "", known(&deviation.unwrap_or_default())),
+        ],
     }
-    out.flush().map_err(|e| fail(&e))
 }

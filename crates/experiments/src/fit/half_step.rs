@@ -4,9 +4,9 @@
 //! [`identify`](fretwork_study::fit::identify)). The sum of squares does not show such an error: the parameters follow it. For a
 //! method of first order the error of the step is twice the change, for one of second order four thirds of it.
 
-use super::FitError;
 use super::outcome::{HalfStep, Moved, Outcome, half_widths};
 use super::search::{Found, Search};
+use crate::Error;
 use fretwork_study::interval::Mean;
 use std::sync::atomic::Ordering;
 
@@ -22,7 +22,7 @@ pub fn half_step(
     search: &Search<'_>,
     found: &Found,
     outcome: &Outcome,
-) -> Result<Option<HalfStep>, FitError> {
+) -> Result<Option<HalfStep>, Error> {
     let best = &found.evaluations[outcome.best];
     let halved = search.with_half_step(best)?;
     if search.stop.load(Ordering::Relaxed) {

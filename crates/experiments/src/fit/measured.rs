@@ -1,52 +1,35 @@
 //! Measured curves from CSV files.
 
-use super::FitError;
 use super::branches::laid_out;
 use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
+use crate::Error;
+use crate::table::csv::{read, without_unit};
 use fretwork_scene::sample::table::number;
 use fretwork_study::fit::residuals::Measurement;
 use std::path::Path;
 
-fn open(path: &Path) -> csv::Result<csv::Reader<std::fs::File>> {
-    csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(path)
-}
-
-fn without_unit(heading: &str) -> &str {
-    heading.split(" [").next().unwrap_or(heading).trim()
-}
-
 /// The heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot be read.
 pub fn heading(path: &Path, column: &str) -> String {
-    let found = open(path).ok().and_then(|mut reader| {
-        let headings = reader.headers().ok()?;
-        let own = headings.iter().find(|h| without_unit(h) == column)?;
-        Some(own.to_owned())
-    });
-    found.unwrap_or_else(|| column.to_owned())
+    let mut headings = read(path).map_or(Vec::new(), |t| t.headings).into_iter();
+    let own = headings.find(|h| without_unit(h) == column);
+    own.unwrap_or_else(|| column.to_owned())
 }
 
-/// Reads a measured curve, and its largest distance from 0, which sets the distance of branches. Lines that begin with `#` are comments, headings may have a unit, `stress [MPa]`.
+/// Reads a measured curve, and its largest distance from 0, which sets the distance of branches.
 ///
 /// # Errors
 /// A file, column or number that is not there.
-pub fn read(
+pub fn curve(
     name: &str,
     spec: &MeasuredSpec,
     path: &Path,
     along: AlongSpec,
-) -> Result<(Measurement, f64), FitError> {
-    let fail = |why: String| FitError::Usage(format!("{}: {why}", path.display()));
-    let mut reader = open(path).map_err(|e| fail(e.to_string()))?;
-    let headings = reader.headers().map_err(|e| fail(e.to_string()))?;
-    let names: Vec<String> = headings
-        .iter()
-        .map(|h| without_unit(h).to_owned())
-        .collect();
+) -> Result<(Measurement, f64), Error> {
+    let fail = |why: String| Error::Usage(format!("{}: {why}", path.display()));
+    let texts = read(path)?;
+    let names: Vec<&str> = texts.headings.iter().map(|h| without_unit(h)).collect();
     let place = |column: &str| {
-        let place = names.iter().position(|n| n == column);
+        let place = names.iter().position(|n| *n == column);
         place.ok_or_else(|| {
             fail(format!(
                 "there is no column `{column}`; there are {}",
@@ -60,11 +43,10 @@ pub fn read(
         _ => None,
     };
     let mut rows: Vec<[f64; 3]> = Vec::new();
-    for (line, record) in reader.records().enumerate() {
-        let record = record.map_err(|e| fail(e.to_string()))?;
+    for (line, texts) in texts.rows.iter().enumerate() {
         let number = |k: usize| {
-            let text = record.get(k).unwrap_or_default();
-            number(text, &names[k]).map_err(|why| fail(format!("point {}: {why}", line + 1)))
+            let text = texts.get(k).map_or("", String::as_str);
+            number(text, names[k]).map_err(|why| fail(format!("point {}: {why}", line + 1)))
         };
         let row = [number(x)?, number(y)?, sigma.map_or(Ok(0.0), number)?];
         if spec
@@ -121,11 +103,11 @@ mod tests {
             sigma,
             within: Some((0.05, 1.0)),
         };
-        let of = |y: &str, sigma| read("shear", &spec(y, sigma), &path, AlongSpec::Abscissa);
-        let (curve, reach) = of("tau", SigmaSpec::Column("s".into())).unwrap();
+        let of = |y: &str, sigma| curve("shear", &spec(y, sigma), &path, AlongSpec::Abscissa);
+        let (tau, reach) = of("tau", SigmaSpec::Column("s".into())).unwrap();
         assert_eq!(reach, 0.2);
         assert_eq!(
-            (curve.x, curve.y, curve.sigma),
+            (tau.x, tau.y, tau.sigma),
             (vec![0.1, 0.2], vec![50.0, -80.0], vec![2.0, 3.0])
         );
         assert_eq!(

@@ -17,9 +17,7 @@ pub mod search;
 
 pub mod spec;
 
-use crate::runs::RunsError;
-use crate::runs::lock::Owner;
-use fretwork_scene::InputError;
+use crate::folder::Owner;
 
 /// The owner of folders of fits.
 pub const OWNER: Owner = Owner {
@@ -27,20 +25,3 @@ pub const OWNER: Owner = Owner {
     mark: "fit.lock",
     files: &["fit.json"],
 };
-
-/// Reason why a fit cannot be made.
-#[derive(Debug, thiserror::Error)]
-pub enum FitError {
-    /// The fit or a case is wrong, at a place of a file.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// A run cannot be made or kept, or a file cannot be written.
-    #[error(transparent)]
-    Runs(#[from] RunsError),
-    /// The measurements or the ranges do not allow it.
-    #[error("{0}")]
-    Usage(String),
-    /// It ran and found nothing.
-    #[error("{0}")]
-    Failed(String),
-}

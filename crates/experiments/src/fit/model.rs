@@ -2,7 +2,8 @@
 
 use super::branches::laid_out;
 use super::spec::{AlongSpec, ModelSpec, RowsSpec};
-use crate::runs::expression::Expression;
+use crate::expression::Expression;
+use crate::table::csv::without_unit;
 use std::path::Path;
 
 /// The name of the length of a step in expressions (s).
@@ -123,10 +124,7 @@ impl Model {
         let missing = |e: &dyn std::fmt::Display| format!("{}: {e}", statistics.display());
         let mut reader = csv::Reader::from_path(statistics).map_err(|e| missing(&e))?;
         let headings = reader.headers().map_err(|e| missing(&e))?;
-        let names: Vec<&str> = headings
-            .iter()
-            .map(|h| h.split(" [").next().unwrap_or(h))
-            .collect();
+        let names: Vec<&str> = headings.iter().map(without_unit).collect();
         let places: Vec<Option<usize>> = self
             .columns
             .iter()

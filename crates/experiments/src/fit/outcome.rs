@@ -1,7 +1,7 @@
 //! What the measurements say of the parameters: estimates with intervals, from runs around the best point.
 
-use super::FitError;
 use super::search::{Evaluation, Found, Search, Stage};
+use crate::Error;
 use fretwork_study::fit::identify::{self as mathematics, Data, Identification, Run};
 use fretwork_study::fit::residuals::over_seeds;
 use serde::Serialize;
@@ -73,7 +73,7 @@ impl Outcome {
 ///
 /// # Errors
 /// A run cannot be started, or too few of the runs around the best point succeed.
-pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome>, FitError> {
+pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome>, Error> {
     if found.best.is_none() {
         return Ok(None);
     }
@@ -92,8 +92,8 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
             Some(best) => found.evaluations[best].place.clone(),
             None => return Ok(None),
         };
-        let told = from_runs(search, &runs, &place)?;
-        let estimate: Vec<f64> = told.estimates.iter().map(|e| e.value).collect();
+        let known = from_runs(search, &runs, &place)?;
+        let estimate: Vec<f64> = known.estimates.iter().map(|e| e.value).collect();
         let first = found.evaluations.len();
         search.candidate(found, &estimate)?;
         if search.stop.load(std::sync::atomic::Ordering::Relaxed) {
@@ -109,13 +109,13 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
             found.best = Some(new);
             accepted = true;
         }
-        let wanted: Vec<f64> = half_widths(search, &told)
+        let wanted: Vec<f64> = half_widths(search, &known)
             .iter()
             .map(|w| w.clamp(NARROWEST, WIDEST))
             .collect();
         let alike = |(w, now): (&f64, &f64)| *w <= ALIKE * now && *now <= ALIKE * w;
-        settled = accepted && !told.at_edge && wanted.iter().zip(&widths).all(alike);
-        identification = Some(told);
+        settled = accepted && !known.at_edge && wanted.iter().zip(&widths).all(alike);
+        identification = Some(known);
         if settled {
             break;
         }
@@ -149,11 +149,7 @@ fn runs(evaluations: &[Evaluation]) -> Vec<Run> {
         .collect()
 }
 
-fn from_runs(
-    search: &Search<'_>,
-    runs: &[Run],
-    minimum: &[f64],
-) -> Result<Identification, FitError> {
+fn from_runs(search: &Search<'_>, runs: &[Run], minimum: &[f64]) -> Result<Identification, Error> {
     let target = &search.tests.target;
     let (measured, sigma, weights) = (target.measured(), target.sigma(), target.weights());
     let data = Data {
@@ -163,13 +159,13 @@ fn from_runs(
         specimen_scatters: search.tests.specimen_scatters,
     };
     mathematics::identify(&search.tests.bounds, runs, minimum, &data)
-        .map_err(|e| FitError::Failed(e.to_string()))
+        .map_err(|e| Error::Failed(e.to_string()))
 }
 
 /// Half-widths of the intervals in the unit cube.
-pub fn half_widths(search: &Search<'_>, told: &Identification) -> Vec<f64> {
-    let low: Vec<f64> = told.estimates.iter().map(|e| e.interval.low).collect();
-    let high: Vec<f64> = told.estimates.iter().map(|e| e.interval.high).collect();
+pub fn half_widths(search: &Search<'_>, known: &Identification) -> Vec<f64> {
+    let low: Vec<f64> = known.estimates.iter().map(|e| e.interval.low).collect();
+    let high: Vec<f64> = known.estimates.iter().map(|e| e.interval.high).collect();
     let places = (
         search.tests.bounds.point(&low),
         search.tests.bounds.point(&high),

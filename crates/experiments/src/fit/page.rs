@@ -4,7 +4,7 @@ use super::evaluate::Tests;
 use super::measured::heading;
 use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
-use super::spec::{ReadFit, TestSpec};
+use super::spec::{FitFile, TestSpec};
 use fretwork_observe::quantity::number;
 use fretwork_study::fit::identify::{End, Estimate};
 use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels};
@@ -16,7 +16,7 @@ use std::path::Path;
 const HIGH: f64 = 0.9;
 
 /// What a fit consists of.
-pub fn consists_of(read: &ReadFit, tests: &Tests) -> String {
+pub fn consists_of(read: &FitFile, tests: &Tests) -> String {
     let mut out = format!("{}: {}\n", read.path.display(), title(read));
     for test in tests.target.tests() {
         let values = if test.x.len() == 1 { "value" } else { "values" };
@@ -41,7 +41,7 @@ pub fn consists_of(read: &ReadFit, tests: &Tests) -> String {
     out
 }
 
-fn title(read: &ReadFit) -> String {
+fn title(read: &FitFile) -> String {
     read.spec
         .title
         .clone()
@@ -49,36 +49,31 @@ fn title(read: &ReadFit) -> String {
 }
 
 /// The sentences of the result, worst first.
-fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
-    let told = &outcome.identification;
-    let names: Vec<&str> = read
-        .spec
-        .parameters
-        .iter()
-        .map(|p| p.name.as_str())
-        .collect();
+fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
+    let known = &outcome.identification;
+    let names = read.spec.names();
     let mut out = Vec::new();
-    if !told.describes {
+    if !known.describes {
         out.push(format!(
             "NOT DESCRIBED: the curves differ from the measured ones by more than their errors (reduced sum of squares {}, probability {}); intervals are widened by {}, which holds only if the departures are as random as noise",
-            told.reduced.map_or("unknown".to_owned(), |r| number(r, 3)),
-            told.p.map_or("unknown".to_owned(), |p| number(p, 2)),
-            number(told.widened, 3)
+            known.reduced.map_or("unknown".to_owned(), |r| number(r, 3)),
+            known.p.map_or("unknown".to_owned(), |p| number(p, 2)),
+            number(known.widened, 3)
         ));
     }
-    if !outcome.settled && !told.at_edge {
+    if !outcome.settled && !known.at_edge {
         out.push("NOT SETTLED: the estimate fits worse than the best point, or the runs around it are not as wide as its intervals; take the intervals as rough, and look at evaluations.csv".to_owned());
     }
-    if told.at_edge {
+    if known.at_edge {
         out.push("NOT SETTLED: the least squares lie at the edge of the runs around the best point; more generations or points may find better values".to_owned());
     }
-    for direction in told.directions.iter().filter(|d| !d.determined) {
+    for direction in known.directions.iter().filter(|d| !d.determined) {
         out.push(format!(
             "NOT DETERMINED: the measurements do not tell {} (all at once, in shares of their ranges); measure something else too, or fix one of them",
             direction.words(&names)
         ));
     }
-    for e in &told.estimates {
+    for e in &known.estimates {
         if let Some(end) = e.at {
             let end = match end {
                 End::Lowest => "lower",
@@ -89,7 +84,7 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
     }
     for i in 0..names.len() {
         for j in i + 1..names.len() {
-            if let Some(r) = told.correlation[i][j].filter(|r| r.abs() > HIGH) {
+            if let Some(r) = known.correlation[i][j].filter(|r| r.abs() > HIGH) {
                 let way = if r > 0.0 { "the same" } else { "opposite" };
                 out.push(format!("{} and {} are hard to tell apart: their errors go {way} ways (correlation {r:.2})", names[i], names[j]));
             }
@@ -98,7 +93,7 @@ fn verdict(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<String> {
     match &outcome.half_step {
         Some(HalfStep::Moves { parameters, beyond }) => {
             for &i in beyond {
-                let e = &told.estimates[i];
+                let e = &known.estimates[i];
                 let unit = &read.spec.parameters[i].unit;
                 let half = parameters[i].map_or(String::new(), moved_text);
                 out.push(format!(
@@ -168,14 +163,14 @@ fn moved_text(moved: Moved) -> String {
 }
 
 /// The result for the terminal.
-pub fn answer(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> String {
-    let told = &outcome.identification;
+pub fn answer(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> String {
+    let known = &outcome.identification;
     let mut out = format!(
         "{} points, search ended: {}\n",
         found.evaluations.len(),
         found.ended
     );
-    for (e, p) in told.estimates.iter().zip(&read.spec.parameters) {
+    for (e, p) in known.estimates.iter().zip(&read.spec.parameters) {
         let _ = writeln!(out, "  {:<16} {}", e.name, value_text(e, &p.unit));
     }
     let _ = writeln!(
@@ -184,7 +179,7 @@ pub fn answer(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -
         number(
             found.evaluations[outcome.best]
                 .chi_squared
-                .unwrap_or(told.chi_squared),
+                .unwrap_or(known.chi_squared),
             4
         ),
         tests.target.measured().len()
@@ -196,7 +191,7 @@ pub fn answer(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -
 }
 
 /// Axes of a test: names of abscissae and values.
-fn axes(read: &ReadFit, test: usize) -> (String, String) {
+fn axes(read: &FitFile, test: usize) -> (String, String) {
     match &read.spec.tests[test] {
         TestSpec::Curve { measured, .. } => {
             let file = read.beside(&measured.file);
@@ -232,8 +227,8 @@ fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
 }
 
 /// The page of a fit.
-pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
-    let told = &outcome.identification;
+pub fn sheet(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
+    let known = &outcome.identification;
     let mut sections = vec![Section {
         title: "Parameters".to_owned(),
         blocks: parameter_blocks(read, found, outcome),
@@ -257,7 +252,10 @@ pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) ->
             Block::Code(text),
         ],
     });
-    let state = match (told.describes, told.directions.iter().all(|d| d.determined)) {
+    let state = match (
+        known.describes,
+        known.directions.iter().all(|d| d.determined),
+    ) {
         (true, true) => "The model describes the measurements, which determine all parameters.",
         (true, false) => {
             "The model describes the measurements, which do not determine all parameters."
@@ -272,15 +270,10 @@ pub fn sheet(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) ->
     }
 }
 
-fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Block> {
-    let told = &outcome.identification;
-    let names: Vec<String> = read
-        .spec
-        .parameters
-        .iter()
-        .map(|p| p.name.clone())
-        .collect();
-    let rows = told
+fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Block> {
+    let known = &outcome.identification;
+    let names = read.spec.names();
+    let rows = known
         .estimates
         .iter()
         .zip(&read.spec.parameters)
@@ -316,20 +309,19 @@ fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Blo
     }
     if names.len() > 1 {
         let cell = |r: &Option<f64>| r.map_or(String::new(), |r| format!("{r:.2}"));
-        let rows = names.iter().zip(&told.correlation).map(|(name, row)| {
-            std::iter::once(name.clone())
+        let rows = names.iter().zip(&known.correlation).map(|(name, row)| {
+            std::iter::once((*name).to_owned())
                 .chain(row.iter().map(cell))
                 .collect()
         });
         blocks.push(Block::Table(SheetTable {
             note: "Correlations of the errors of the parameters.".to_owned(),
             heads: std::iter::once(String::new())
-                .chain(names.iter().cloned())
+                .chain(names.iter().map(|n| (*n).to_owned()))
                 .collect(),
             rows: rows.collect(),
         }));
-        let words: Vec<&str> = names.iter().map(String::as_str).collect();
-        let rows = told.directions.iter().map(|d| {
+        let rows = known.directions.iter().map(|d| {
             let width = d.half_width.map_or("no limit".to_owned(), |h| {
                 format!("± {:.2} % of the range", 100.0 * h)
             });
@@ -338,7 +330,7 @@ fn parameter_blocks(read: &ReadFit, found: &Found, outcome: &Outcome) -> Vec<Blo
             } else {
                 "not determined"
             };
-            vec![d.words(&words), width, known.to_owned()]
+            vec![d.words(&names), width, known.to_owned()]
         });
         blocks.push(Block::Table(SheetTable {
             note: "Combinations of parameters, the best known first, in shares of their ranges."
@@ -416,7 +408,7 @@ fn charts(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Ve
 /// # Errors
 /// The file cannot be written.
 pub fn draw(
-    read: &ReadFit,
+    read: &FitFile,
     tests: &Tests,
     found: &Found,
     outcome: &Outcome,

@@ -4,9 +4,9 @@
 //! All choices follow from the seed of the search, and runs are kept by what determines them: the same command goes on after an
 //! interruption, and makes no run twice.
 
-use super::FitError;
 use super::evaluate::{Sample, Tests};
 use super::spec::SearchSpec;
+use crate::Error;
 use fretwork_study::design::latin_hypercube::maximin_latin_hypercube;
 use fretwork_study::fit::cma_es::{Cma, Limits};
 use fretwork_study::fit::residuals::over_seeds;
@@ -95,8 +95,8 @@ pub struct Search<'a> {
     pub jobs: usize,
     /// Whether it is to stop.
     pub stop: &'a AtomicBool,
-    /// Told what goes on.
-    pub told: &'a (dyn Fn(&Progress) + Sync),
+    /// Is told what goes on.
+    pub watch: &'a (dyn Fn(&Progress) + Sync),
 }
 
 impl std::fmt::Debug for Search<'_> {
@@ -123,7 +123,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A run cannot be started, or all of the region fails.
-    pub fn run(&self) -> Result<Found, FitError> {
+    pub fn run(&self) -> Result<Found, Error> {
         let count = self.tests.bounds.len();
         let mut found = Found::default();
         let (fewest, most) = self.seeds_of_points();
@@ -139,14 +139,14 @@ impl Search<'_> {
                 .iter()
                 .flat_map(|e| &e.samples)
                 .find_map(|s| s.as_ref().err());
-            return Err(FitError::Failed(format!(
+            return Err(Error::Failed(format!(
                 "no point of the region gave all curves; the first says: {}",
                 why.map_or("nothing", String::as_str)
             )));
         };
         // As far apart as the points of the hypercube are.
         let step = (0.5 * (points as f64).powf(-1.0 / count as f64)).clamp(0.05, 0.3);
-        let failed = |e: &dyn std::fmt::Display| FitError::Failed(e.to_string());
+        let failed = |e: &dyn std::fmt::Display| Error::Failed(e.to_string());
         let population = self.spec.population.map(|n| n as usize);
         let mut cma = Cma::new(
             &found.evaluations[start].place,
@@ -202,7 +202,7 @@ impl Search<'_> {
     }
 
     /// Runs the candidates with all seeds, and points around the best of them.
-    fn finish(&self, mut found: Found, cma: &Cma, most: usize) -> Result<Found, FitError> {
+    fn finish(&self, mut found: Found, cma: &Cma, most: usize) -> Result<Found, Error> {
         let mut candidates = vec![cma.mean().to_vec()];
         candidates.extend(cma.best().map(|(place, _)| place.to_vec()));
         candidates.extend(
@@ -224,7 +224,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A run cannot be started.
-    pub fn candidate(&self, found: &mut Found, values: &[f64]) -> Result<(), FitError> {
+    pub fn candidate(&self, found: &mut Found, values: &[f64]) -> Result<(), Error> {
         let place = self.tests.bounds.point(values);
         let (_, most) = self.seeds_of_points();
         self.evaluate(found, vec![place], 0..most as u64, Stage::Candidates)
@@ -239,7 +239,7 @@ impl Search<'_> {
         found: &mut Found,
         half_widths: &[f64],
         round: u64,
-    ) -> Result<Range<usize>, FitError> {
+    ) -> Result<Range<usize>, Error> {
         let first = found.evaluations.len();
         let Some(best) = found.best else {
             return Ok(first..first);
@@ -266,19 +266,19 @@ impl Search<'_> {
     pub fn with_half_step(
         &self,
         point: &Evaluation,
-    ) -> Result<Vec<Result<Vec<f64>, String>>, FitError> {
+    ) -> Result<Vec<Result<Vec<f64>, String>>, Error> {
         let runs = point.samples.len() * self.tests.target.tests().len();
-        (self.told)(&Progress::Begins(Stage::HalfStep, runs));
-        let told = || (self.told)(&Progress::Run);
+        (self.watch)(&Progress::Begins(Stage::HalfStep, runs));
+        let watch = || (self.watch)(&Progress::Run);
         let values = [point.values.clone()];
         let seeds = point.seeds.clone();
         let all = self
             .tests
-            .run(&values, seeds, 2, self.jobs, self.stop, &told)?;
+            .run(&values, seeds, 2, self.jobs, self.stop, &watch)?;
         let samples: Vec<_> = all.into_iter().flatten().flatten().collect();
         let samples: Vec<_> = samples.into_iter().map(|s| s.values).collect();
         let failed = samples.iter().filter(|s| s.is_err()).count();
-        (self.told)(&Progress::Ended(
+        (self.watch)(&Progress::Ended(
             Stage::HalfStep,
             self.chi_squared(&samples),
             failed,
@@ -309,16 +309,16 @@ impl Search<'_> {
         places: Vec<Vec<f64>>,
         seeds: Range<u64>,
         stage: Stage,
-    ) -> Result<(), FitError> {
+    ) -> Result<(), Error> {
         let bounds = &self.tests.bounds;
         let values: Vec<Vec<f64>> = places.iter().map(|p| bounds.values(p)).collect();
         let runs =
             places.len() * (seeds.end - seeds.start) as usize * self.tests.target.tests().len();
-        (self.told)(&Progress::Begins(stage, runs));
-        let told = || (self.told)(&Progress::Run);
+        (self.watch)(&Progress::Begins(stage, runs));
+        let watch = || (self.watch)(&Progress::Run);
         let all = self
             .tests
-            .run(&values, seeds.clone(), 1, self.jobs, self.stop, &told)?;
+            .run(&values, seeds.clone(), 1, self.jobs, self.stop, &watch)?;
         let mut failed = 0;
         for (values, samples) in values.into_iter().zip(all) {
             let samples: Option<Vec<Sample>> = samples.into_iter().collect();
@@ -339,7 +339,7 @@ impl Search<'_> {
         }
         let least = found.least(0..found.evaluations.len());
         let least = least.and_then(|k| found.evaluations[k].chi_squared);
-        (self.told)(&Progress::Ended(stage, least, failed));
+        (self.watch)(&Progress::Ended(stage, least, failed));
         Ok(())
     }
 

@@ -1,7 +1,9 @@
 //! The file of a fit.
 
-use crate::runs::expression::Derived;
-use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
+use crate::changes::Changes;
+use crate::factor::{Factor, Values};
+use crate::runs::stored::Limits;
+use crate::spec::{CaseKeys, RangeScale, Spec, SpecFile, check_runs, one, one_percent};
 use fretwork_scene::source::{InputError, Source};
 use fretwork_scene::unseen_fault;
 use serde::Deserialize;
@@ -204,6 +206,21 @@ pub struct ParameterSpec {
     pub unit: String,
 }
 
+impl ParameterSpec {
+    /// The factor that it is.
+    pub fn factor(&self) -> Factor {
+        Factor {
+            name: self.name.clone(),
+            keys: self.key.0.clone(),
+            unit: self.unit.clone(),
+            values: Values::Range {
+                scale: self.scale.between(self.low, self.high),
+                levels: None,
+            },
+        }
+    }
+}
+
 /// How the search goes.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -237,65 +254,48 @@ fn seeds() -> (u16, u16) {
     (3, 12)
 }
 
-/// A fit that was read, with the text for the places of errors.
-#[derive(Debug)]
-pub struct ReadFit {
-    /// The fit.
-    pub spec: FitSpec,
-    /// Its text.
-    pub source: Source,
-    /// Path of the file.
-    pub path: PathBuf,
+/// The file of a fit.
+pub type FitFile = SpecFile<FitSpec>;
+
+impl FitSpec {
+    /// Limits of accepted runs.
+    pub fn limits(&self) -> Limits {
+        Limits {
+            unconverged: self.unconverged,
+            residual: self.residual,
+        }
+    }
+
+    /// Names of the parameters.
+    pub fn names(&self) -> Vec<&str> {
+        self.parameters.iter().map(|p| p.name.as_str()).collect()
+    }
 }
 
-impl ReadFit {
-    /// Reads a fit and checks what can be checked without its cases.
-    ///
-    /// # Errors
-    /// At file, line and column.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let source = Source::read(path)?;
-        let spec: FitSpec = source.parse()?;
-        let read = Self {
-            spec,
-            source,
-            path: path.to_owned(),
-        };
-        read.check()?;
-        Ok(read)
-    }
-
-    /// A path of the fit, which is relative to its file.
-    pub fn beside(&self, path: &Path) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(path)
-    }
-
-    fn check(&self) -> Result<(), InputError> {
-        let spec = &self.spec;
-        let fail = |path: &str, text: &str| Err(self.source.error_at(path, text));
-        if spec.tests.is_empty() {
+impl Spec for FitSpec {
+    fn check(&self, source: &Source) -> Result<(), InputError> {
+        let fail = |path: &str, text: &str| Err(source.error_at(path, text));
+        if self.tests.is_empty() {
             return fail("tests", "a fit has one measurement or more");
         }
-        if spec.parameters.is_empty() {
+        if self.parameters.is_empty() {
             return fail("parameters", "a fit seeks one parameter or more");
         }
-        let names: Vec<&str> = spec.parameters.iter().map(|p| p.name.as_str()).collect();
+        let names = self.names();
         let mut used = vec![false; names.len()];
-        for (k, test) in spec.tests.iter().enumerate() {
-            for (i, set) in test.common().2.iter().enumerate() {
-                let derived = Derived::parse(set, &names)
-                    .map_err(|why| self.source.error_at(&format!("tests.{k}.set.{i}"), why))?;
-                for place in derived.needs() {
-                    used[place] = true;
-                }
+        for (k, test) in self.tests.iter().enumerate() {
+            let changes = Changes::parse(test.common().2, &names)
+                .map_err(|(i, why)| source.error_at(&format!("tests.{k}.set.{i}"), why))?;
+            for (place, used) in used.iter_mut().enumerate() {
+                *used |= changes.needs(place);
             }
         }
-        for (k, parameter) in spec.parameters.iter().enumerate() {
+        for (k, parameter) in self.parameters.iter().enumerate() {
             let path = format!("parameters.{k}.name");
             if let Some(fault) = unseen_fault(&parameter.name) {
                 return fail(&path, &fault);
             }
-            if spec.parameters[..k]
+            if self.parameters[..k]
                 .iter()
                 .any(|p| p.name == parameter.name)
             {
@@ -314,11 +314,11 @@ impl ReadFit {
                 );
             }
         }
-        for (k, test) in spec.tests.iter().enumerate() {
+        for (k, test) in self.tests.iter().enumerate() {
             if let Some(fault) = unseen_fault(test.common().0) {
                 return fail(&format!("tests.{k}.name"), &fault);
             }
-            if spec.tests[..k]
+            if self.tests[..k]
                 .iter()
                 .any(|t| t.common().0 == test.common().0)
             {
@@ -333,17 +333,17 @@ impl ReadFit {
                 );
             }
         }
-        if spec.seeds.0 == 0 || spec.seeds.0 > spec.seeds.1 {
+        if self.seeds.0 == 0 || self.seeds.0 > self.seeds.1 {
             return fail(
                 "seeds",
                 "the first number of seeds is 1 or more, the second not less",
             );
         }
-        check_runs(&self.source, spec.threads, spec.unconverged, spec.residual)?;
-        if spec.search.points == Some(0) {
+        check_runs(source, self.threads, self.limits())?;
+        if self.search.points == Some(0) {
             return fail("search.points", "the region has one point or more");
         }
-        if spec.search.population.is_some_and(|n| n < 4) {
+        if self.search.population.is_some_and(|n| n < 4) {
             return fail("search.population", "a generation has 4 points or more");
         }
         Ok(())

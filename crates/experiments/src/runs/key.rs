@@ -1,6 +1,6 @@
 //! The key of a run: a hash of the program, the plugins it may load, and the contents of its case.
 
-use super::RunsError;
+use crate::Error;
 use crate::load;
 use fretwork_core::program;
 use sha2::{Digest, Sha256};
@@ -22,9 +22,9 @@ impl Keys {
     ///
     /// # Errors
     /// The path of the program cannot be determined, or its file cannot be read.
-    pub fn new(plugins: &[String]) -> Result<Self, RunsError> {
+    pub fn new(plugins: &[String]) -> Result<Self, Error> {
         let unknown = |e: &dyn std::fmt::Display| {
-            RunsError::Usage(format!("the path of the program cannot be determined: {e}"))
+            Error::Usage(format!("the path of the program cannot be determined: {e}"))
         };
         program::command().map_err(|e| unknown(&e))?;
         let file = program::file().map_err(|e| unknown(&e))?;

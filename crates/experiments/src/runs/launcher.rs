@@ -1,19 +1,18 @@
-//! Runs of a case in separate processes, and their stored results, which are looked up by a key so that no
-//! run is repeated.
+//! Runs of a case in separate processes, and their stored results, which are looked up by a key so
+//! that no run is repeated.
 
-use super::RunsError;
 use super::key::Keys;
 use super::perturbation::Perturbation;
 use super::stored::{Finished, Limits, StoredRun, interrupted};
-use crate::load;
+use crate::{Error, Program, load};
 use fretwork_core::program;
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What the case would write besides numbers, and a study does not need.
+/// What the case would write besides numbers, and an experiment does not need.
 const NUMBERS_ONLY: [&str; 4] = [
     "output.frames=0",
     "output.views=0",
@@ -24,13 +23,31 @@ const NUMBERS_ONLY: [&str; 4] = [
 /// The file in the folder of a run that is locked while it is made.
 const LOCK: &str = "run.lock";
 
-/// How a run ended.
+/// A run of a case: what it changes, and its seed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Ended {
-    /// With a definite outcome.
-    Finished(Finished),
-    /// By its time limit or an interruption of the study; nothing is stored.
-    Interrupted,
+pub struct Run {
+    /// `key.path=value`, as `--set` takes them; the last of a key counts.
+    pub sets: Vec<String>,
+    /// Its seed.
+    pub seed: u64,
+}
+
+/// How long to wait for a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Patience<'a> {
+    /// When it is interrupted: nothing of it is stored.
+    pub deadline: Option<Instant>,
+    /// How long it may take: one that takes longer is stopped, and stored as too slow.
+    pub limit: Option<Duration>,
+    /// Interrupts it when it is set.
+    pub stop: &'a AtomicBool,
+}
+
+impl Patience<'_> {
+    /// Whether the run is to be interrupted.
+    fn is_over(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || self.deadline.is_some_and(|d| Instant::now() > d)
+    }
 }
 
 /// Which files of a run are kept.
@@ -73,21 +90,26 @@ impl Launcher {
     pub fn new(
         case: &Path,
         sets: &[String],
-        plugins: Vec<String>,
+        program: &Program,
         folder: &Path,
         limits: Limits,
-    ) -> Result<Self, RunsError> {
+    ) -> Result<Self, Error> {
         Ok(Self {
             case: case.to_owned(),
             sets: sets.to_vec(),
-            keys: Keys::new(&plugins)?,
-            plugins,
+            keys: Keys::new(&program.plugins)?,
+            plugins: program.plugins.clone(),
             folder: folder.to_owned(),
             limits,
             perturbation: None,
             keep: Keep::Numbers,
             threads: 1,
         })
+    }
+
+    /// Tells runs apart by their steps where the seed changes nothing, the first of which is this.
+    pub fn perturb_unless(&mut self, random: bool, first: u64) {
+        self.perturbation = (!random).then_some(Perturbation { first });
     }
 
     /// Key of the case as it is and the program.
@@ -101,14 +123,14 @@ impl Launcher {
     }
 
     /// Folder of a run.
-    pub fn place(&self, sets: &[String], seed: u64) -> PathBuf {
-        let key = self.keys.of_run(&self.case, &self.all_sets(sets, seed));
+    pub fn place(&self, run: &Run) -> PathBuf {
+        let key = self.keys.of_run(&self.case, &self.all_sets(run));
         self.folder.join(key)
     }
 
     /// Stored result of an earlier run, assessed by the current limits.
-    pub fn stored(&self, sets: &[String], seed: u64) -> Option<Finished> {
-        self.stored_in(&self.place(sets, seed))
+    pub fn stored(&self, run: &Run) -> Option<Finished> {
+        self.stored_in(&self.place(run))
     }
 
     /// Stored result of the run in a folder, unless a repetition may end differently.
@@ -123,54 +145,35 @@ impl Launcher {
         Some(run.assess(&self.limits))
     }
 
-    /// Runs to the end, to `deadline`, or for at most `bound`. If another process makes the same run, waits for it and takes its
-    /// result.
+    /// Makes a run; `None` if it was interrupted. If another process makes it, waits for that and
+    /// takes its result.
     ///
     /// # Errors
     /// The process cannot be started, or the folder cannot be written.
-    pub fn run(
-        &self,
-        sets: &[String],
-        seed: u64,
-        deadline: Instant,
-        bound: Option<Duration>,
-        stop: &AtomicBool,
-    ) -> Result<Ended, RunsError> {
-        let place = self.place(sets, seed);
-        let fail = |e: &dyn std::fmt::Display| RunsError::write(&place, e);
-        let Some(_lock) = self.lock(&place, deadline, stop)? else {
-            return Ok(Ended::Interrupted);
+    pub fn run(&self, run: &Run, patience: Patience<'_>) -> Result<Option<Finished>, Error> {
+        let place = self.place(run);
+        let fail = |e: std::io::Error| Error::write(&place, &e);
+        let Some(_lock) = lock(&place, patience)? else {
+            return Ok(None);
         };
-        if let Some(run) = self.stored_in(&place) {
-            return Ok(Ended::Finished(run));
+        if let Some(stored) = self.stored_in(&place) {
+            return Ok(Some(stored));
         }
-        clear(&place).map_err(|e| fail(&e))?;
-        let errors = File::create(place.join("stderr.txt")).map_err(|e| fail(&e))?;
+        clear(&place).map_err(fail)?;
+        let errors = File::create(place.join("stderr.txt")).map_err(fail)?;
         let started = Instant::now();
-        let unstarted = |e: &dyn std::fmt::Display| {
-            RunsError::Usage(format!(
-                "the program cannot be started for a run: {e}; was it moved or built again meanwhile?"
-            ))
-        };
-        let mut child = self
-            .command(sets, seed, &place)
-            .map_err(|e| unstarted(&e))?
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(errors)
-            .spawn()
-            .map_err(|e| unstarted(&e))?;
+        let mut child = self.start(run, &place, errors)?;
         let code = loop {
-            if let Some(code) = child.try_wait().map_err(|e| fail(&e))? {
+            if let Some(code) = child.try_wait().map_err(fail)? {
                 break Some(code);
             }
-            let slow = bound.is_some_and(|b| started.elapsed() > b);
-            if slow || Instant::now() > deadline || stop.load(Ordering::Relaxed) {
+            let slow = patience.limit.is_some_and(|l| started.elapsed() > l);
+            if slow || patience.is_over() {
                 // It may have ended by itself meanwhile.
                 let _ = child.kill();
                 let _ = child.wait();
-                if !slow || stop.load(Ordering::Relaxed) {
-                    return Ok(Ended::Interrupted);
+                if !slow || patience.stop.load(Ordering::Relaxed) {
+                    return Ok(None);
                 }
                 break None;
             }
@@ -178,91 +181,88 @@ impl Launcher {
             let nap = started.elapsed() / 50;
             std::thread::sleep(nap.clamp(Duration::from_millis(2), Duration::from_millis(100)));
         };
-        // Ctrl-C reaches the child process too, possibly before this program; the run then counts as
-        // interrupted.
+        // Ctrl-C reaches the child process too, possibly before this program; the run then counts
+        // as interrupted.
         let done = code.is_some_and(|c| c.success());
-        let signalled = || interrupted(&place);
-        if !done && (stop.load(Ordering::Relaxed) || signalled()) {
-            return Ok(Ended::Interrupted);
+        if !done && (patience.stop.load(Ordering::Relaxed) || interrupted(&place)) {
+            return Ok(None);
         }
         let elapsed = started.elapsed().as_secs_f64();
-        let left = StoredRun::read(&place, sets, seed, code.and_then(|c| c.code()), elapsed);
-        let left = match code {
-            Some(_) => left,
-            None => left.stopped(elapsed),
-        };
+        let exit = code.and_then(|c| c.code());
+        let mut left = StoredRun::read(&place, run, exit, elapsed);
+        if code.is_none() {
+            left = left.stopped(elapsed);
+        }
         let text = serde_json::to_string_pretty(&left).unwrap_or_default();
         let (draft, path) = (place.join("run.json.part"), place.join("run.json"));
         std::fs::write(&draft, text)
             .and_then(|()| std::fs::rename(&draft, &path))
-            .map_err(|e| fail(&e))?;
-        let finished = left.assess(&self.limits);
+            .map_err(fail)?;
         if self.keep == Keep::Numbers {
             remove_states(&place);
         }
-        Ok(Ended::Finished(finished))
+        Ok(Some(left.assess(&self.limits)))
     }
 
     /// The `--set` arguments of a run, all of them, the last of which counts.
-    fn all_sets(&self, sets: &[String], seed: u64) -> Vec<String> {
-        let mut all = [self.sets.as_slice(), sets].concat();
-        let perturbation = self.perturbation.filter(|p| p.of(seed));
+    fn all_sets(&self, run: &Run) -> Vec<String> {
+        let mut all = [self.sets.as_slice(), &run.sets].concat();
+        let perturbation = self.perturbation.filter(|p| p.of(run.seed));
         let perturbed_step = perturbation.and_then(|p| {
             let step = load(&self.case, &all).ok()?.case.time.step;
-            Some(p.step(step, seed))
+            Some(p.step(step, run.seed))
         });
         if self.keep == Keep::Numbers {
             all.extend(NUMBERS_ONLY.map(str::to_owned));
         }
-        all.push(format!("seed={seed}"));
+        all.push(format!("seed={}", run.seed));
         all.extend(perturbed_step.map(|step| format!("time.step={step:e}")));
         all
     }
 
-    /// The words after `fretwork` that make a run by hand.
-    pub fn words(&self, sets: &[String], seed: u64) -> Vec<String> {
-        let mut words = vec!["run".to_owned(), self.case.display().to_string()];
-        for set in self.all_sets(sets, seed) {
-            words.extend(["--set".to_owned(), set]);
-        }
-        words.extend(self.plugins.iter().cloned());
-        words
-    }
-
-    fn command(&self, sets: &[String], seed: u64, place: &Path) -> std::io::Result<Command> {
-        let mut command = program::command()?;
-        command.args(self.words(sets, seed)).arg("--json");
-        if self.keep == Keep::Numbers {
-            command.arg("--no-report");
-        }
-        command.arg("--out").arg(place);
-        command.args(["--threads", &self.threads.to_string()]);
-        Ok(command)
-    }
-
-    /// Waits until no other process makes the run in a folder; `None` if the wait was ended.
-    fn lock(
-        &self,
-        place: &Path,
-        deadline: Instant,
-        stop: &AtomicBool,
-    ) -> Result<Option<File>, RunsError> {
-        std::fs::create_dir_all(place).map_err(|e| RunsError::write(place, &e))?;
-        let path = place.join(LOCK);
-        let mut options = File::options();
-        let opened = options.create(true).append(true).open(&path);
-        let file = opened.map_err(|e| RunsError::write(&path, &e))?;
-        loop {
-            match file.try_lock() {
-                // Some file systems have no locks.
-                Ok(()) | Err(TryLockError::Error(_)) => return Ok(Some(file)),
-                Err(TryLockError::WouldBlock) => {}
+    fn start(&self, run: &Run, place: &Path, errors: File) -> Result<Child, Error> {
+        let child = program::command().and_then(|mut command: Command| {
+            command.arg("run").arg(&self.case);
+            for set in self.all_sets(run) {
+                command.args(["--set", &set]);
             }
-            if Instant::now() > deadline || stop.load(Ordering::Relaxed) {
-                return Ok(None);
+            command.args(&self.plugins).arg("--json");
+            if self.keep == Keep::Numbers {
+                command.arg("--no-report");
             }
-            std::thread::sleep(Duration::from_millis(50));
+            command.arg("--out").arg(place);
+            command.args(["--threads", &self.threads.to_string()]);
+            command
+                .stdin(Stdio::null())
+                .stdout(Stdio::null())
+                .stderr(errors);
+            command.spawn()
+        });
+        child.map_err(|e| {
+            Error::Usage(format!(
+                "the program cannot be started for a run: {e}; was it moved or built again meanwhile?"
+            ))
+        })
+    }
+}
+
+/// Waits until no other process makes the run in a folder; `None` if the wait was ended.
+fn lock(place: &Path, patience: Patience<'_>) -> Result<Option<File>, Error> {
+    std::fs::create_dir_all(place).map_err(|e| Error::write(place, &e))?;
+    let path = place.join(LOCK);
+    let mut options = File::options();
+    let opened = options.create(true).append(true).open(&path);
+    let file = opened.map_err(|e| Error::write(&path, &e))?;
+    loop {
+        match file.try_lock() {
+            // Some file systems have no locks.
+            Ok(()) | Err(TryLockError::Error(_)) => return Ok(Some(file)),
+            Err(TryLockError::WouldBlock) => {}
         }
+        if patience.is_over() {
+            return Ok(None);
+        }
+        std::thread::sleep(Duration::from_millis(50));
     }
 }
 

@@ -1,11 +1,22 @@
 //! Several runs at a time.
 
-use super::RunsError;
+use crate::Error;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Does work for each item with some workers, in the order of the items; results stand in that order too. Items that were not
-/// begun when `stop` was set, or after an error, have none.
+/// Does the same work on this thread and on `jobs` - 1 others, until all of them return.
+pub fn workers(jobs: usize, work: &(dyn Fn() + Sync)) {
+    std::thread::scope(|scope| {
+        for _ in 1..jobs {
+            // Fewer workers if the system provides no more threads.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
+    });
+}
+
+/// Does work for each item with some workers, in the order of the items; results stand in that
+/// order too. Items that were not begun when `stop` was set, or after an error, have none.
 ///
 /// # Errors
 /// The first error of the work.
@@ -13,11 +24,11 @@ pub fn each<T: Sync, R: Send>(
     items: &[T],
     jobs: usize,
     stop: &AtomicBool,
-    work: &(dyn Fn(&T) -> Result<R, RunsError> + Sync),
-) -> Result<Vec<Option<R>>, RunsError> {
+    work: &(dyn Fn(&T) -> Result<R, Error> + Sync),
+) -> Result<Vec<Option<R>>, Error> {
     let next = Mutex::new(0);
     let results: Mutex<Vec<Option<R>>> = Mutex::new(items.iter().map(|_| None).collect());
-    let failure: Mutex<Option<RunsError>> = Mutex::new(None);
+    let failure: Mutex<Option<Error>> = Mutex::new(None);
     let take = || {
         if stop.load(Ordering::Relaxed) {
             return None;
@@ -27,7 +38,7 @@ pub fn each<T: Sync, R: Send>(
         *next += 1;
         Some((k, items.get(k)?))
     };
-    let worker = || {
+    workers(jobs.min(items.len()), &|| {
         while let Some((k, item)) = take() {
             match work(item) {
                 Ok(result) => {
@@ -43,13 +54,6 @@ pub fn each<T: Sync, R: Send>(
                 }
             }
         }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..jobs.min(items.len()) {
-            // Fewer workers if the system provides no more threads.
-            let _ = std::thread::Builder::new().spawn_scoped(scope, worker);
-        }
-        worker();
     });
     match failure.into_inner() {
         Ok(Some(e)) => Err(e),
@@ -67,20 +71,13 @@ mod tests {
         let stop = AtomicBool::new(false);
         let double = |x: &u64| Ok(2 * x);
         let doubled = each(&items, 4, &stop, &double).unwrap();
-        assert!(
-            doubled
-                .iter()
-                .enumerate()
-                .all(|(k, r)| *r == Some(2 * k as u64))
-        );
+        assert!((0..50).all(|k| doubled[k] == Some(2 * k as u64)));
         let fails = |x: &u64| match x {
-            7 => Err(RunsError::Usage("seven".into())),
+            7 => Err(Error::Usage("seven".into())),
             x => Ok(*x),
         };
-        assert_eq!(
-            each(&items, 4, &stop, &fails).unwrap_err().to_string(),
-            "seven"
-        );
+        let said = each(&items, 4, &stop, &fails).unwrap_err().to_string();
+        assert_eq!(said, "seven");
         // What stands in the queue when the stop comes is left.
         let stops = |x: &u64| {
             stop.store(*x == 3, Ordering::Relaxed);

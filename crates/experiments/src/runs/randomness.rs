@@ -6,17 +6,13 @@ use fretwork_core::laws::SearchPath;
 use fretwork_scene::build::Built;
 use fretwork_scene::{Loaded, Scene};
 
-use super::RunsError;
+use crate::Error;
 
 /// Whether another seed gives another scene; it does if it gives none.
 ///
 /// # Errors
 /// The case does not take a seed.
-pub fn seed_matters(
-    loaded: &Loaded,
-    scene: &Scene,
-    search: &SearchPath,
-) -> Result<bool, RunsError> {
+pub fn seed_matters(loaded: &Loaded, scene: &Scene, search: &SearchPath) -> Result<bool, Error> {
     let other_seed = format!("seed={}", loaded.case.seed.wrapping_add(1));
     let sets = [loaded.source.sets(), &[other_seed]].concat();
     let other = load(&loaded.path, &sets)?;

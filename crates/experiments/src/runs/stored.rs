@@ -1,5 +1,6 @@
 //! How a run ended: what is stored of it, and what it is worth by given limits.
 
+use super::launcher::Run;
 use super::quantity::column;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -73,10 +74,8 @@ pub struct Finished {
     pub status: Status,
     /// Whether a failure may be temporary: the next study tries again.
     pub temporary: bool,
-    /// The `--set` arguments of the run.
-    pub sets: Vec<String>,
-    /// Seed of the run.
-    pub seed: u64,
+    /// What was run.
+    pub run: Run,
     /// Processor time of the steps (s).
     pub seconds: f64,
     /// Wall time of the whole run (s).
@@ -97,7 +96,7 @@ impl Finished {
 
 impl StoredRun {
     /// Reads what a run left in its folder; `exit` is `None` if it did not end by itself.
-    pub fn read(place: &Path, sets: &[String], seed: u64, exit: Option<i32>, elapsed: f64) -> Self {
+    pub fn read(place: &Path, run: &Run, exit: Option<i32>, elapsed: f64) -> Self {
         let summary = summary(place);
         let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
         let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
@@ -105,8 +104,8 @@ impl StoredRun {
         let doubts = reasons.filter_map(Value::as_str).map(words).collect();
         let first = said.lines().next().unwrap_or("no reason was given");
         Self {
-            sets: sets.to_vec(),
-            seed,
+            sets: run.sets.clone(),
+            seed: run.seed,
             exit: exit.unwrap_or(-1),
             said: first.trim_start_matches("error: ").to_owned(),
             steps: number("/steps"),
@@ -155,8 +154,10 @@ impl StoredRun {
         Finished {
             status,
             temporary,
-            sets: self.sets,
-            seed: self.seed,
+            run: Run {
+                sets: self.sets,
+                seed: self.seed,
+            },
             seconds: self.seconds,
             wall: self.wall,
             visits: self.visits,

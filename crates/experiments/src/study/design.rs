@@ -1,9 +1,9 @@
 //! The settings of a study: one value of each factor.
 
-use super::StudyError;
-use super::csv::read_points;
-use super::factor::{Factor, Value};
-use super::spec::{DesignSpec, ReadSpec};
+use super::spec::{DesignSpec, StudyFile};
+use crate::Error;
+use crate::factor::{Factor, Level};
+use crate::table::csv;
 use fretwork_scene::InputError;
 use fretwork_study::design::grid::full_factorial;
 use fretwork_study::design::latin_hypercube::latin_hypercube;
@@ -12,7 +12,7 @@ use fretwork_study::design::sobol::sobol;
 use std::collections::HashMap;
 
 /// One value of each factor.
-pub type Setting = Vec<Value>;
+pub type Setting = Vec<Level>;
 
 /// Settings of a design in their order; `own` is the value of a factor that the case has. Rows of a table may add factors: columns
 /// that are keys.
@@ -20,10 +20,10 @@ pub type Setting = Vec<Value>;
 /// # Errors
 /// A range without levels in a design of levels, more points than a design has, a table that does not fit.
 pub fn settings(
-    read: &ReadSpec,
+    read: &StudyFile,
     factors: &mut Vec<Factor>,
-    own: impl Fn(&Factor) -> Value,
-) -> Result<Vec<Setting>, StudyError> {
+    own: impl Fn(&Factor) -> Level,
+) -> Result<Vec<Setting>, Error> {
     let places = |rows: Vec<Vec<f64>>, factors: &[Factor]| -> Vec<Setting> {
         let row = |row: Vec<f64>| factors.iter().zip(row).map(|(f, x)| f.at(x)).collect();
         rows.into_iter().map(row).collect()
@@ -58,7 +58,7 @@ pub fn settings(
 }
 
 /// The levels of all factors.
-fn levels(read: &ReadSpec, factors: &[Factor]) -> Result<Vec<Vec<Value>>, InputError> {
+fn levels(read: &StudyFile, factors: &[Factor]) -> Result<Vec<Vec<Level>>, InputError> {
     let each = factors.iter().enumerate().map(|(k, factor)| {
         factor.levels().ok_or_else(|| {
             read.source.error_at(
@@ -71,7 +71,7 @@ fn levels(read: &ReadSpec, factors: &[Factor]) -> Result<Vec<Vec<Value>>, InputE
 }
 
 /// The case as it is, then each level of each factor alone.
-fn one_at_a_time(base: Setting, levels: &[Vec<Value>]) -> Vec<Setting> {
+fn one_at_a_time(base: Setting, levels: &[Vec<Level>]) -> Vec<Setting> {
     let mut all = vec![base.clone()];
     for (k, values) in levels.iter().enumerate() {
         for value in values {
@@ -84,9 +84,16 @@ fn one_at_a_time(base: Setting, levels: &[Vec<Value>]) -> Vec<Setting> {
 }
 
 /// The rows of a file: a column is a factor by its name, or a key.
-fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Setting>, StudyError> {
-    let (names, rows) = read_points(path)?;
-    let refused = |why: String| StudyError::Usage(format!("{}: {why}", path.display()));
+fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Setting>, Error> {
+    let csv::Texts {
+        headings: names,
+        rows,
+    } = csv::read(path)?;
+    let refused = |why: String| Error::Usage(format!("{}: {why}", path.display()));
+    if rows.is_empty() {
+        let why = "it has no points; expected a heading and one row for each point";
+        return Err(refused(why.to_owned()));
+    }
     if let Some(missing) = factors.iter().find(|f| !names.contains(&f.name)) {
         return Err(refused(format!(
             "there is no column `{}`, which is a factor of the study; there are {}",
@@ -110,7 +117,7 @@ fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Settin
     }
     let mut all = Vec::new();
     // Equal numbers of a column are one level, as the first of them is spelled.
-    let mut spelled: HashMap<(usize, u64), Value> = HashMap::new();
+    let mut spelled: HashMap<(usize, u64), Level> = HashMap::new();
     for (line, row) in rows.iter().enumerate() {
         let values = factors
             .iter()
@@ -126,7 +133,7 @@ fn table(path: &std::path::Path, factors: &mut Vec<Factor>) -> Result<Vec<Settin
                     None => value,
                 })
             });
-        all.push(values.collect::<Result<Setting, StudyError>>()?);
+        all.push(values.collect::<Result<Setting, Error>>()?);
     }
     Ok(all)
 }
@@ -139,7 +146,7 @@ mod tests {
     fn one_at_a_time_changes_one_factor_of_the_case() {
         let factor = |key| Factor::of_column(key, vec!["1".into(), "2".into()]);
         let levels = [factor("a"), factor("b")].map(|f| f.levels().unwrap());
-        let own = Value {
+        let own = Level {
             label: "3".into(),
             number: Some(3.0),
             sets: Vec::new(),

@@ -1,37 +1,26 @@
 //! The runs of a study on this machine.
 
-use super::StudyError;
 use super::plan::{Plan, Point};
-use crate::runs::launcher::Ended;
+use crate::Error;
+use crate::runs::launcher::Patience;
 use crate::runs::pool::each;
 use crate::runs::stored::Finished;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
-
-/// Event for a display of progress.
-#[derive(Debug)]
-pub enum Event<'a> {
-    /// A run begins.
-    Begins(&'a Point),
-    /// A run ended.
-    Ended(&'a Point, &'a Finished),
-}
-
-/// A time that no run reaches.
-const FOREVER: Duration = Duration::from_secs(100 * 365 * 86_400);
+use std::time::Duration;
 
 /// Runs that are still to be made, each once however many points need it.
-pub fn missing(plan: &Plan) -> Vec<(Point, PathBuf)> {
+pub fn missing(plan: &Plan) -> Vec<Point> {
     let mut seen = BTreeSet::new();
-    let all = plan.points().map(|p| (plan.place(&p), p));
-    let fresh = all.filter(|(place, _)| seen.insert(place.clone()));
-    let open = fresh.filter(|(place, _)| plan.launcher.stored_in(place).is_none());
-    open.map(|(place, point)| (point, place)).collect()
+    let open = plan.points().filter(|point| {
+        let place = plan.launcher.place(&point.run);
+        plan.launcher.stored_in(&place).is_none() && seen.insert(place)
+    });
+    open.collect()
 }
 
-/// Makes runs, several at a time; returns how many ended. It ends early, without an error, when `stop` is set.
+/// Makes runs, several at a time; returns how many ended, each of which `watch` is told of. It ends
+/// early, without an error, when `stop` is set.
 ///
 /// # Errors
 /// A run cannot be started.
@@ -41,18 +30,19 @@ pub fn execute(
     jobs: usize,
     limit: Option<Duration>,
     stop: &AtomicBool,
-    watch: &(dyn Fn(&Event<'_>) + Sync),
-) -> Result<usize, StudyError> {
-    let deadline = Instant::now() + FOREVER;
+    watch: &(dyn Fn(&Point, &Finished) + Sync),
+) -> Result<usize, Error> {
+    let patience = Patience {
+        deadline: None,
+        limit,
+        stop,
+    };
     let one = |point: &Point| {
-        watch(&Event::Begins(point));
-        let ended = plan
-            .launcher
-            .run(&point.sets, point.seed, deadline, limit, stop)?;
-        if let Ended::Finished(run) = &ended {
-            watch(&Event::Ended(point, run));
+        let ended = plan.launcher.run(&point.run, patience)?;
+        if let Some(run) = &ended {
+            watch(point, run);
         }
-        Ok(matches!(ended, Ended::Finished(_)))
+        Ok(ended.is_some())
     };
     let ended = each(&points, jobs, stop, &one)?;
     Ok(ended.into_iter().flatten().filter(|ended| *ended).count())

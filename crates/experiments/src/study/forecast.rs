@@ -1,14 +1,9 @@
 //! How long the runs of a study will take.
 
-use super::StudyError;
 use super::plan::{Plan, Point};
 use crate::load;
-use crate::runs::cost::{RunTime, Trial};
-use fretwork_core::geometry::space::Space;
+use crate::runs::trial::{RunTime, Trial};
 use fretwork_core::laws::SearchPath;
-use fretwork_scene::build::Built;
-use fretwork_scene::most_steps::most_steps;
-use fretwork_scene::{Loaded, Scene};
 
 /// What a run takes besides its steps: start, reading, files (s).
 const STARTING: f64 = 0.1;
@@ -30,74 +25,54 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// From the runs of the study that ended, or else from a few steps of the first, the middle and the last of these points.
-    ///
-    /// # Errors
-    /// A point that the case refuses does not count; none.
-    pub fn of(plan: &Plan, open: &[Point], search: &SearchPath) -> Result<Self, StudyError> {
+    /// From the runs of the study that ended, or else from a few steps of the first, the middle and
+    /// the last of these points; one that the case refuses does not count.
+    pub fn of(plan: &Plan, open: &[Point], search: &SearchPath) -> Self {
         if open.is_empty() {
-            return Ok(Self {
+            return Self {
                 about: Some(0.0),
                 measured: true,
                 ..Self::default()
-            });
+            };
         }
         let count = open.len() as f64;
-        let stored = plan
-            .points()
-            .filter_map(|p| plan.launcher.stored(&p.sets, p.seed));
+        let stored = plan.points().filter_map(|p| plan.launcher.stored(&p.run));
         let walls: Vec<f64> = stored.map(|run| run.wall).collect();
         if walls.len() >= TRIED {
             let mean = walls.iter().sum::<f64>() / walls.len() as f64;
             let least = walls.iter().copied().fold(f64::INFINITY, f64::min);
             let most = walls.iter().copied().fold(0.0, f64::max);
-            return Ok(Self {
+            return Self {
                 about: Some(mean * count),
                 least: least * count,
                 most: most * count,
                 measured: true,
-            });
+            };
         }
-        let mut tried: Vec<RunTime> = Vec::new();
         let mut places = vec![0, open.len() / 2, open.len() - 1];
         places.dedup();
-        for k in places {
-            let point = &open[k];
-            let sets = [
-                plan.base.source.sets(),
-                &point.sets,
-                &[format!("seed={}", point.seed)],
-            ]
-            .concat();
-            let time = load(&plan.base.path, &sets).ok().and_then(|loaded| {
-                let scene = loaded.build(search).ok()?;
-                match scene {
-                    Scene::Dim2(built) => trial(&loaded, *built),
-                    Scene::Dim3(built) => trial(&loaded, *built),
-                }
-            });
-            tried.extend(time);
-        }
+        let trial = |k: usize| {
+            let run = &open[k].run;
+            let seed = format!("seed={}", run.seed);
+            let sets = [plan.base.source.sets(), &run.sets, &[seed]].concat();
+            let loaded = load(&plan.base.path, &sets).ok()?;
+            Trial::of_scene(&loaded.case, loaded.build(search).ok()?).run_time()
+        };
+        let tried: Vec<RunTime> = places.into_iter().filter_map(trial).collect();
         if tried.is_empty() {
-            return Ok(Self {
+            return Self {
                 most: f64::INFINITY,
                 ..Self::default()
-            });
+            };
         }
         let mean =
             |f: &dyn Fn(&RunTime) -> f64| tried.iter().map(f).sum::<f64>() / tried.len() as f64;
         let about: Option<Vec<f64>> = tried.iter().map(|t| t.about).collect();
-        Ok(Self {
+        Self {
             about: about.map(|a| count * (STARTING + a.iter().sum::<f64>() / a.len() as f64)),
             least: count * mean(&|t| t.least),
             most: count * (STARTING + mean(&|t| t.most)),
             measured: false,
-        })
+        }
     }
-}
-
-fn trial<S: Space>(loaded: &Loaded, built: Built<S>) -> Option<RunTime> {
-    let steps = most_steps(&loaded.case);
-    let grains = built.simulation.state.bodies.grains().count();
-    Trial::of(built.simulation, steps).run_time(steps, grains, S::D)
 }

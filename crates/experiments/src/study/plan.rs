@@ -1,19 +1,14 @@
 //! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
 
-use super::StudyError;
 use super::design::{Setting, settings};
-use super::factor::{AS_IN_THE_CASE, Factor, Kind, Value};
-use super::spec::{DesignSpec, ReadSpec};
-use crate::Program;
-use crate::load;
-use crate::runs::RunsError;
-use crate::runs::expression::Derived;
-use crate::runs::launcher::Launcher;
+use super::rows::COLUMNS;
+use super::spec::{DesignSpec, StudyFile};
+use crate::changes::Changes;
+use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
+use crate::runs::launcher::{Launcher, Run};
 use crate::runs::offer::{Offer, measure_names};
-use crate::runs::perturbation::Perturbation;
 use crate::runs::quantity::Quantity;
-use crate::runs::randomness::seed_matters;
-use crate::runs::stored::Limits;
+use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
 use fretwork_scene::{InputError, Loaded, Scene};
@@ -30,10 +25,8 @@ pub struct Point {
     pub number: usize,
     /// Number of its setting, from 1.
     pub setting: usize,
-    /// Its seed.
-    pub seed: u64,
-    /// The changes of the case.
-    pub sets: Vec<String>,
+    /// What is run.
+    pub run: Run,
 }
 
 /// A study whose runs are known.
@@ -101,45 +94,37 @@ pub struct Place<'a> {
 }
 
 impl Plan {
-    /// Plans a study. What takes long is taken from `study.json` of its folder, if [`keep`](Self::keep) left it there.
+    /// Plans a study. What takes long is taken from `study.json` of its folder, if
+    /// [`keep`](Self::keep) left it there.
     ///
     /// # Errors
     /// The study, its case, an output or a level that the case refuses.
-    pub fn new(read: &ReadSpec, place: Place<'_>) -> Result<Self, StudyError> {
+    pub fn new(read: &StudyFile, place: Place<'_>) -> Result<Self, Error> {
         let spec = &read.spec;
         let case = read.beside(&spec.case);
-        let (derived, set): (Vec<String>, Vec<String>) =
-            spec.set.iter().cloned().partition(|s| Derived::is(s));
-        let base = load(&case, &set)?;
         let mut factors = Vec::new();
         for (k, factor) in spec.factors.iter().enumerate() {
-            factors.push(Factor::of(factor, read, &format!("factors.{k}"))?);
+            factors.push(factor.factor(&read.source, &format!("factors.{k}"))?);
         }
+        let fixed = spec.set.iter().filter(|set| !Changes::depends(set));
+        let base = load(&case, &fixed.cloned().collect::<Vec<_>>())?;
         let inputs = inputs::of(base.source.text()).unwrap_or_default();
         let own = |factor: &Factor| own_value(factor, &inputs);
         let settings = settings(read, &mut factors, own)?;
-        if let Some(k) = (1..factors.len()).find(|&k| {
-            factors[..k]
-                .iter()
-                .any(|other| other.name == factors[k].name)
-        }) {
-            let text = format!("two factors are named `{}`", factors[k].name);
-            return Err(read
-                .source
-                .error_at(&format!("factors.{k}.name"), text)
-                .into());
-        }
         let units = units(read, &factors, &inputs)?;
-        let derived = derive(read, &derived, &factors, &settings)?;
-        check_factors(read, &factors)?;
-        let limits = Limits {
-            unconverged: spec.unconverged,
-            residual: spec.residual,
-        };
+        let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+        let refused = |why: String| read.source.error_at("set", why);
+        let changes = Changes::parse(&spec.set, &names).map_err(|(_, why)| refused(why))?;
+        let derived = settings.iter().map(|setting| {
+            let numbers: Vec<Option<f64>> = setting.iter().map(|v| v.number).collect();
+            changes.derived(&numbers)
+        });
+        let derived: Vec<Vec<String>> = derived.collect::<Result<_, _>>().map_err(refused)?;
+        check_factors(read, &factors, &changes)?;
         let own = place.out.join("runs");
         let folder = place.cache.unwrap_or(&own);
-        let mut launcher =
-            Launcher::new(&case, &set, place.program.plugins.clone(), folder, limits)?;
+        let fixed = &changes.fixed;
+        let mut launcher = Launcher::new(&case, fixed, place.program, folder, spec.limits())?;
         launcher.keep = spec.keep;
         launcher.threads = spec.threads;
         let fingerprint = format!("{} {}", launcher.fingerprint(), read.source.text());
@@ -147,25 +132,21 @@ impl Plan {
         let known = match known.filter(|k| k.fingerprint == fingerprint) {
             Some(known) => known,
             None => {
-                let scene = base.build(&place.program.search)?;
-                (place.program.check_names)(&base, &scene)?;
-                let first = [
-                    settings[0].iter().flat_map(|v| v.sets.clone()).collect(),
-                    derived[0].clone(),
-                ]
-                .concat();
+                let (scene, random) = build(&base, place.program)?;
+                let first = sets_of(&settings[0], &derived[0]);
                 check_levels(read, &base, &factors, &first, &place.program.search)?;
                 let outputs = outputs(read, &base, &scene)?;
                 Known {
                     fingerprint,
-                    random: seed_matters(&base, &scene, &place.program.search)?,
+                    random,
                     outputs: outputs.iter().map(|o| o.name.clone()).collect(),
                 }
             }
         };
         let first = base.case.seed;
-        launcher.perturbation = (!known.random).then_some(Perturbation { first });
+        launcher.perturb_unless(known.random, first);
         let outputs = known.outputs.iter().map(|name| Quantity::parse(name));
+        let measures = measure_names(&base.case);
         Ok(Self {
             title: spec.title.clone().unwrap_or_else(|| base.case.name.clone()),
             file: read.path.clone(),
@@ -180,13 +161,8 @@ impl Plan {
                 .map(|k| first.wrapping_add(k))
                 .collect(),
             random: known.random,
-            outputs: outputs
-                .collect::<Result<_, _>>()
-                .map_err(StudyError::Usage)?,
-            measures: measure_names(&base.case)
-                .iter()
-                .map(|m| (*m).to_owned())
-                .collect(),
+            outputs: outputs.collect::<Result<_, _>>().map_err(Error::Usage)?,
+            measures: measures.into_iter().map(str::to_owned).collect(),
             launcher,
             base,
             known,
@@ -197,11 +173,11 @@ impl Plan {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn keep(&self) -> Result<(), RunsError> {
+    pub fn keep(&self) -> Result<(), Error> {
         let file = self.out.join(KNOWN);
         if self.out.is_dir() && Known::read(&file).as_ref() != Some(&self.known) {
             let text = serde_json::to_string_pretty(&self.known).unwrap_or_default();
-            std::fs::write(&file, text).map_err(|e| RunsError::write(&file, &e))?;
+            std::fs::write(&file, text).map_err(|e| Error::write(&file, &e))?;
         }
         Ok(())
     }
@@ -215,27 +191,19 @@ impl Plan {
     pub fn point(&self, number: usize) -> Option<Point> {
         let k = number.checked_sub(1).filter(|k| *k < self.count())?;
         let (setting, seed) = (k / self.seeds.len(), k % self.seeds.len());
-        let values = self.settings[setting].iter();
         Some(Point {
             number,
             setting: setting + 1,
-            seed: self.seeds[seed],
-            sets: values
-                .flat_map(|v| &v.sets)
-                .chain(&self.derived[setting])
-                .cloned()
-                .collect(),
+            run: Run {
+                sets: sets_of(&self.settings[setting], &self.derived[setting]),
+                seed: self.seeds[seed],
+            },
         })
     }
 
     /// All runs.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         (1..=self.count()).filter_map(|k| self.point(k))
-    }
-
-    /// Folder of a run.
-    pub fn place(&self, point: &Point) -> PathBuf {
-        self.launcher.place(&point.sets, point.seed)
     }
 
     /// SI unit of a factor, if the case has one for its key; empty otherwise.
@@ -250,37 +218,29 @@ impl Plan {
             .map(|(f, v)| format!("{} {}", f.name, v.label))
             .collect();
         if self.seeds.len() > 1 {
-            words.push(format!("seed {}", point.seed));
+            words.push(format!("seed {}", point.run.seed));
         }
         words.join(", ")
     }
 }
 
-/// Names of columns that the table of a study has itself.
-const COLUMNS: [&str; 11] = [
-    "point",
-    "setting",
-    "seed",
-    "status",
-    "reason",
-    "not_trustworthy",
-    "steps",
-    "cpu_seconds",
-    "wall_seconds",
-    "identity",
-    "folder",
-];
+/// The changes of a setting.
+fn sets_of(setting: &Setting, derived: &[String]) -> Vec<String> {
+    let own = setting.iter().flat_map(|level| &level.sets);
+    own.chain(derived).cloned().collect()
+}
 
-/// Refuses names that the table has itself, keys that a study sets, and factors that change nothing.
-fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> {
-    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
-    let mut used = vec![false; names.len()];
-    for set in &read.spec.set {
-        let derived =
-            Derived::parse(set, &names).map_err(|why| read.source.error_at("set", why))?;
-        for place in derived.needs() {
-            used[place] = true;
-        }
+/// Refuses two factors of one name, names that the table has itself, keys that a study sets, and
+/// factors that change nothing.
+fn check_factors(
+    read: &StudyFile,
+    factors: &[Factor],
+    changes: &Changes,
+) -> Result<(), InputError> {
+    let twice = |k: &usize| factors[..*k].iter().any(|f| f.name == factors[*k].name);
+    if let Some(k) = (1..factors.len()).find(twice) {
+        let text = format!("two factors are named `{}`", factors[k].name);
+        return Err(read.source.error_at(&format!("factors.{k}.name"), text));
     }
     for (k, factor) in factors.iter().enumerate() {
         let fail = |text: String| Err(read.source.error_at(&format!("factors.{k}"), text));
@@ -293,10 +253,10 @@ fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> 
                 "the table has a column `{name}` already; give the factor another `name`"
             ));
         }
-        let changes = factor
+        let sets = factor
             .levels()
             .is_none_or(|l| l.iter().any(|v| !v.sets.is_empty()));
-        if factor.keys.is_empty() && !changes && !used[k] {
+        if factor.keys.is_empty() && !sets && !changes.needs(k) {
             return fail(format!(
                 "`{name}` changes nothing: give it a `key`, or use it as `${{{name}}}` in `set`"
             ));
@@ -306,7 +266,11 @@ fn check_factors(read: &ReadSpec, factors: &[Factor]) -> Result<(), InputError> 
 }
 
 /// SI units of the factors: those of their keys, or what the study says where there is none.
-fn units(read: &ReadSpec, factors: &[Factor], inputs: &[Input]) -> Result<Vec<String>, InputError> {
+fn units(
+    read: &StudyFile,
+    factors: &[Factor],
+    inputs: &[Input],
+) -> Result<Vec<String>, InputError> {
     let of = |(k, factor): (usize, &Factor)| {
         let known = inputs.iter().find(|i| factor.keys.contains(&i.path));
         let known = known.map_or("", |i| i.unit);
@@ -322,34 +286,12 @@ fn units(read: &ReadSpec, factors: &[Factor], inputs: &[Input]) -> Result<Vec<St
     factors.iter().enumerate().map(of).collect()
 }
 
-/// What follows from the factors, for each setting.
-fn derive(
-    read: &ReadSpec,
-    texts: &[String],
-    factors: &[Factor],
-    settings: &[Setting],
-) -> Result<Vec<Vec<String>>, InputError> {
-    let refused = |why: String| read.source.error_at("set", why);
-    let names: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
-    let parsed = texts.iter().map(|text| Derived::parse(text, &names));
-    let parsed = parsed.collect::<Result<Vec<_>, _>>().map_err(refused)?;
-    let of = |setting: &Setting| {
-        let numbers: Vec<Option<f64>> = setting.iter().map(|v| v.number).collect();
-        parsed.iter().map(|d| d.set(&numbers)).collect()
-    };
-    settings
-        .iter()
-        .map(of)
-        .collect::<Result<_, _>>()
-        .map_err(refused)
-}
-
 /// The value of a factor that the case has: no changes.
-fn own_value(factor: &Factor, inputs: &[Input]) -> Value {
+fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
     let of_key = |key: &String| inputs.iter().find(|i| i.path == *key);
     let own = factor.keys.first().and_then(of_key);
     let text = own.map_or("", |i| i.value.trim_matches('"'));
-    Value {
+    Level {
         label: if text.is_empty() {
             AS_IN_THE_CASE.to_owned()
         } else {
@@ -361,7 +303,7 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Value {
 }
 
 /// The outputs that are asked for, or those that the case has.
-fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity>, StudyError> {
+fn outputs(read: &StudyFile, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity>, Error> {
     let offer = match scene {
         Scene::Dim2(built) => Offer::of(&base.case, built),
         Scene::Dim3(built) => Offer::of(&base.case, built),
@@ -370,7 +312,7 @@ fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity
     if asked.is_empty() {
         let usual: Result<Vec<Quantity>, String> =
             offer.usual().into_iter().map(Quantity::parse).collect();
-        let usual = usual.map_err(StudyError::Usage)?;
+        let usual = usual.map_err(Error::Usage)?;
         if usual.is_empty() {
             let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";
             return Err(read.source.error_at("outputs", text).into());
@@ -393,15 +335,15 @@ fn outputs(read: &ReadSpec, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity
 /// Builds the first setting, and reads, and builds if they are few, the case with each level alone, so that a wrong one is refused
 /// before any run.
 fn check_levels(
-    read: &ReadSpec,
+    read: &StudyFile,
     base: &Loaded,
     factors: &[Factor],
     first: &[String],
     search: &SearchPath,
 ) -> Result<(), InputError> {
-    let levels = |f: &Factor| match &f.kind {
-        Kind::Listed(values) => values.clone(),
-        Kind::Range { .. } => vec![f.at(0.0), f.at(1.0)],
+    let levels = |f: &Factor| match &f.values {
+        Values::Listed(values) => values.clone(),
+        Values::Range { .. } => vec![f.at(0.0), f.at(1.0)],
     };
     load(&base.path, &[base.source.sets(), first].concat())?.build(search)?;
     let built = factors.iter().map(|f| levels(f).len()).sum::<usize>() <= BUILT;

@@ -1,11 +1,12 @@
 //! The file of a study.
 
+use crate::factor::FactorSpec;
 use crate::runs::launcher::Keep;
-use crate::runs::spec::{CaseKeys, RangeScale, check_runs, one, one_percent};
+use crate::runs::stored::Limits;
+use crate::spec::{Spec, SpecFile, check_runs, one, one_percent};
 use fretwork_scene::source::{InputError, Source};
-use ron::value::RawValue;
 use serde::Deserialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A study as its file says it.
 ///
@@ -62,66 +63,6 @@ pub struct StudySpec {
     pub residual: f64,
 }
 
-/// A factor as the file says it.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum FactorSpec {
-    /// A key of the case with listed values.
-    Values {
-        /// Name in tables and figures; the key by default.
-        #[serde(default)]
-        name: Option<String>,
-        /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
-        #[serde(default)]
-        key: CaseKeys,
-        /// The values, as a case has them.
-        values: Vec<Box<RawValue>>,
-        /// SI unit of a factor without a key.
-        #[serde(default)]
-        unit: Option<String>,
-    },
-    /// A key of the case with a range of numbers.
-    Range {
-        /// Name in tables and figures; the key by default.
-        #[serde(default)]
-        name: Option<String>,
-        /// The key, or several that take the same value; none for a factor that is used by its name in `set`.
-        #[serde(default)]
-        key: CaseKeys,
-        /// Lower end.
-        low: f64,
-        /// Upper end.
-        high: f64,
-        /// How numbers are spread.
-        #[serde(default)]
-        scale: RangeScale,
-        /// How many of them, from end to end, where the design is made of levels.
-        #[serde(default)]
-        levels: Option<u16>,
-        /// SI unit of a factor without a key.
-        #[serde(default)]
-        unit: Option<String>,
-    },
-    /// Named sets of changes, such as laws with their parameters.
-    Options {
-        /// Name in tables and figures.
-        name: String,
-        /// The alternatives.
-        options: Vec<OptionSpec>,
-    },
-}
-
-/// One alternative.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OptionSpec {
-    /// Its name.
-    pub name: String,
-    /// `key.path=value`; none for the case as it is.
-    #[serde(default)]
-    pub set: Vec<String>,
-}
-
 /// At which points of its factors a case is run.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -162,47 +103,27 @@ pub enum DesignSpec {
     },
 }
 
-/// A study that was read, with the text for the places of errors.
-#[derive(Debug)]
-pub struct ReadSpec {
-    /// The study.
-    pub spec: StudySpec,
-    /// Its text.
-    pub source: Source,
-    /// Path of the file.
-    pub path: PathBuf,
+/// The file of a study.
+pub type StudyFile = SpecFile<StudySpec>;
+
+impl StudySpec {
+    /// Limits of accepted runs.
+    pub fn limits(&self) -> Limits {
+        Limits {
+            unconverged: self.unconverged,
+            residual: self.residual,
+        }
+    }
 }
 
-impl ReadSpec {
-    /// Reads a study and checks what can be checked without its case.
-    ///
-    /// # Errors
-    /// At file, line and column.
-    pub fn read(path: &Path) -> Result<Self, InputError> {
-        let source = Source::read(path)?;
-        let spec: StudySpec = source.parse()?;
-        let read = Self {
-            spec,
-            source,
-            path: path.to_owned(),
-        };
-        read.check()?;
-        Ok(read)
-    }
-
-    /// A path of the study, which is relative to its file.
-    pub fn beside(&self, path: &Path) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(path)
-    }
-
-    fn check(&self) -> Result<(), InputError> {
-        let spec = &self.spec;
-        let fail = |path: &str, text: &str| Err(self.source.error_at(path, text));
-        if spec.seeds == 0 {
+impl Spec for StudySpec {
+    fn check(&self, source: &Source) -> Result<(), InputError> {
+        let fail = |path: &str, text: &str| Err(source.error_at(path, text));
+        if self.seeds == 0 {
             return fail("seeds", "a point has one seed or more");
         }
-        check_runs(&self.source, spec.threads, spec.unconverged, spec.residual)?;
-        match spec.design {
+        check_runs(source, self.threads, self.limits())?;
+        match self.design {
             DesignSpec::LatinHypercube { points, .. }
             | DesignSpec::Sobol { points, .. }
             | DesignSpec::Sensitivity { points, .. }
@@ -211,7 +132,7 @@ impl ReadSpec {
                 fail("design", "the number of points is 1 to 1,000,000")
             }
             DesignSpec::Table { .. } => Ok(()),
-            _ if spec.factors.is_empty() => fail("factors", "a study varies one factor or more"),
+            _ if self.factors.is_empty() => fail("factors", "a study varies one factor or more"),
             _ => Ok(()),
         }
     }

@@ -5,11 +5,11 @@
 //! of two seeds do. Then runs whose steps are longer by k times 1e-10 take the place of seeds, and errors
 //! have intervals.
 
-use super::TradeError;
+use super::combination::Combination;
 use super::output::{Output, Wanted};
-use super::setting::Setting;
-use super::study::Study;
-use crate::runs::launcher::Ended;
+use super::plan::Trade;
+use crate::Error;
+use crate::runs::launcher::Patience;
 use crate::runs::perturbation::RELATIVE_PERTURBATION;
 use crate::runs::stored::{Status, summary};
 use std::path::Path;
@@ -21,41 +21,44 @@ const NOTICED: f64 = 0.01;
 /// Largest fraction of the budget for the two runs.
 const SHARE: f64 = 0.2;
 
-impl Study {
+impl Trade {
     /// Tests a case without random numbers for chaos; if it is chaotic, each setting gets `runs` perturbed runs.
     ///
     /// # Errors
     /// A run cannot be started.
-    pub fn test_for_chaos(&mut self, runs: u64, stop: &AtomicBool) -> Result<(), TradeError> {
+    pub fn test_for_chaos(&mut self, runs: u64, stop: &AtomicBool) -> Result<(), Error> {
         let first = self.seeds[0];
         if self.random || runs < 2 {
             return Ok(());
         }
-        let own = Setting::own(&self.parameters);
-        let sets = own.sets(&self.parameters);
-        let deadline = self.started + self.budget.mul_f64(SHARE);
+        let own = Combination::own(&self.parameters);
+        let patience = Patience {
+            deadline: Some(self.started + self.budget.mul_f64(SHARE)),
+            limit: None,
+            stop,
+        };
         let mut places = Vec::new();
         for seed in [first, first.wrapping_add(1)] {
-            let run = match self.launcher.stored(&sets, seed) {
-                Some(run) => run,
-                None => match self.launcher.run(&sets, seed, deadline, None, stop)? {
-                    Ended::Finished(run) => {
-                        self.done.insert((own.clone(), seed), run.clone());
-                        run
-                    }
-                    Ended::Interrupted => {
-                        self.notes.push(format!(
-                            "Whether contacts are chaotic was not tested: two runs take more than {:.0} % of the budget.",
-                            100.0 * SHARE
-                        ));
-                        return Ok(());
-                    }
-                },
+            let run = self.run_of(&own, seed);
+            places.push(self.launcher.place(&run));
+            if let Some(stored) = self.launcher.stored(&run) {
+                if stored.status != Status::Done {
+                    return Ok(());
+                }
+                continue;
+            }
+            let Some(finished) = self.launcher.run(&run, patience)? else {
+                self.notes.push(format!(
+                    "Whether contacts are chaotic was not tested: two runs take more than {:.0} % of the budget.",
+                    100.0 * SHARE
+                ));
+                return Ok(());
             };
-            if run.status != Status::Done {
+            let done = finished.status == Status::Done;
+            self.done.insert((own.clone(), seed), finished);
+            if !done {
                 return Ok(());
             }
-            places.push(self.launcher.place(&sets, seed));
         }
         self.fresh = self.done.len();
         let [one, other] = [&places[0], &places[1]];
@@ -68,11 +71,11 @@ impl Study {
                      by a hundredth of the error wanted: one run a setting, and errors without intervals."
                 ));
             }
-            Some(told) => {
+            Some(changed) => {
                 self.random = true;
                 self.seeds = (0..runs).map(|k| first.wrapping_add(k)).collect();
                 self.notes.push(format!(
-                    "Nothing in the case is drawn from its seed, but a relative change of the step by {RELATIVE_PERTURBATION:e} changes {told}: \
+                    "Nothing in the case is drawn from its seed, but a relative change of the step by {RELATIVE_PERTURBATION:e} changes {changed}: \
                      contacts are chaotic, and runs with steps longer by multiples of that take the place of seeds."
                 ));
             }

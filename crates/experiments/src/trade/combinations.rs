@@ -1,20 +1,20 @@
 //! Combinations of levels that were cheaper alone; first those predicted, from the single parameters, to meet
 //! the wanted error.
 
+use super::combination::Combination;
 use super::compare::Row;
 use super::frontier::frontier;
 use super::output::Wanted;
-use super::setting::Setting;
-use super::study::Study;
+use super::plan::Trade;
 
 /// Limit on the number of combinations.
 const COMBINATIONS: usize = 8;
 
-impl Study {
+impl Trade {
     /// Settings that change several parameters, composed of levels that were cheaper alone.
-    pub(super) fn combinations(&self) -> Vec<Setting> {
+    pub(super) fn combinations(&self) -> Vec<Combination> {
         let found = self.compare();
-        let own = Setting::own(&self.parameters);
+        let own = Combination::own(&self.parameters);
         let Some(base) = found
             .rows
             .iter()
@@ -55,7 +55,7 @@ impl Study {
             here.truncate(4);
             moves.push(here);
         }
-        let mut all: Vec<(Setting, f64, Vec<f64>)> =
+        let mut all: Vec<(Combination, f64, Vec<f64>)> =
             vec![(own.clone(), base.seconds, vec![0.0; start.len()])];
         for (k, levels) in moves.iter().enumerate() {
             all = all
@@ -69,7 +69,7 @@ impl Study {
                 .collect();
             all.truncate(20_000);
         }
-        let mut points: Vec<(Setting, f64, f64)> = all
+        let mut points: Vec<(Combination, f64, f64)> = all
             .into_iter()
             .filter(|(s, ..)| s.changed(&self.parameters).len() > 1)
             .map(|(s, cost, moved)| {
@@ -86,7 +86,7 @@ impl Study {
         points.retain(|_| kept.next().unwrap_or(false));
         // First those predicted to meet the wanted error, cheapest first; then the nearest to it.
         points.sort_by(|a, b| {
-            let key = |p: &(Setting, f64, f64)| if p.2 <= 1.0 { (0, p.1) } else { (1, p.2) };
+            let key = |p: &(Combination, f64, f64)| if p.2 <= 1.0 { (0, p.1) } else { (1, p.2) };
             let (x, y) = (key(a), key(b));
             x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
         });

@@ -1,14 +1,13 @@
 //! Comparison with the reference: errors seed by seed with confidence intervals, distinguished from the
 //! scatter among seeds.
 
+use super::combination::Combination;
 use super::frontier::frontier;
-use super::interval::Mean;
-use super::output::{Output, Wanted};
-use super::parameters::{Sense, StudyParameter};
-use super::setting::Setting;
-use super::study::Ledger;
-use crate::runs::launcher::Launcher;
+use super::output::Wanted;
+use super::plan::Trade;
+use super::varied::{Sense, Varied};
 use crate::runs::stored::{Finished, Status, summary};
+use fretwork_study::interval::Mean;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An output of a setting. Errors are fractions of the reference's value if the wanted error is relative,
@@ -42,7 +41,7 @@ pub struct OwnError {
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The setting.
-    pub setting: Setting,
+    pub setting: Combination,
     /// Its name.
     pub name: String,
     /// Number of seeds that ran.
@@ -74,22 +73,6 @@ pub struct Comparison {
     pub reference: Option<usize>,
 }
 
-/// Input of a comparison.
-pub struct Compared<'a> {
-    /// Varied parameters.
-    pub parameters: &'a [StudyParameter],
-    /// Compared outputs.
-    pub outputs: &'a [Output],
-    /// Whether the seed changes the scene.
-    pub random: bool,
-    /// Requested seeds.
-    pub seeds: &'a [u64],
-    /// Finished runs.
-    pub done: &'a Ledger,
-    /// Launcher, which knows their folders.
-    pub launcher: &'a Launcher,
-}
-
 impl Row {
     /// How many of its runs say that they are not trustworthy, and why; none where all are.
     pub fn doubt(&self) -> Option<String> {
@@ -103,18 +86,18 @@ impl Row {
     }
 }
 
-impl Compared<'_> {
+impl Trade {
     /// Compares every setting with the reference.
     pub fn compare(&self) -> Comparison {
-        let reference = Setting::reference(self.parameters);
-        let mut settings: Vec<&Setting> = self.done.keys().map(|(s, _)| s).collect();
+        let reference = Combination::reference(&self.parameters);
+        let mut settings: Vec<&Combination> = self.done.keys().map(|(s, _)| s).collect();
         settings.dedup();
-        let values: BTreeMap<(&Setting, usize), BTreeMap<u64, f64>> = settings
+        let values: BTreeMap<(&Combination, usize), BTreeMap<u64, f64>> = settings
             .iter()
             .flat_map(|s| (0..self.outputs.len()).map(move |o| (*s, o)))
             .map(|(s, o)| ((s, o), self.values(s, o)))
             .collect();
-        let of = |s: &Setting, o: usize| values.get(&(s, o)).cloned().unwrap_or_default();
+        let of = |s: &Combination, o: usize| values.get(&(s, o)).cloned().unwrap_or_default();
         let own: Vec<Option<OwnError>> = (0..self.outputs.len())
             .map(|o| self.own_error(o, &reference, &of))
             .collect();
@@ -156,17 +139,17 @@ impl Compared<'_> {
         }
     }
 
-    fn runs(&self, setting: &Setting) -> impl Iterator<Item = (u64, &Finished)> {
+    fn runs(&self, setting: &Combination) -> impl Iterator<Item = (u64, &Finished)> {
         let from = (setting.clone(), 0);
         let to = (setting.clone(), u64::MAX);
         self.done.range(from..=to).map(|((_, seed), r)| (*seed, r))
     }
 
     /// Values of an output by seed.
-    fn values(&self, setting: &Setting, output: usize) -> BTreeMap<u64, f64> {
+    fn values(&self, setting: &Combination, output: usize) -> BTreeMap<u64, f64> {
         let good = self.runs(setting).filter(|(_, r)| r.status == Status::Done);
         good.filter_map(|(seed, r)| {
-            let place = self.launcher.place(&r.sets, seed);
+            let place = self.launcher.place(&r.run);
             let value = self.outputs[output]
                 .quantity
                 .read(&summary(&place), &place)?;
@@ -217,8 +200,8 @@ impl Compared<'_> {
     fn own_error(
         &self,
         o: usize,
-        reference: &Setting,
-        of: &dyn Fn(&Setting, usize) -> BTreeMap<u64, f64>,
+        reference: &Combination,
+        of: &dyn Fn(&Combination, usize) -> BTreeMap<u64, f64>,
     ) -> Option<OwnError> {
         let base = of(reference, o);
         let all: Vec<f64> = base.values().copied().collect();
@@ -273,9 +256,9 @@ impl Compared<'_> {
 
     fn row(
         &self,
-        setting: &Setting,
-        reference: &Setting,
-        of: &dyn Fn(&Setting, usize) -> BTreeMap<u64, f64>,
+        setting: &Combination,
+        reference: &Combination,
+        of: &dyn Fn(&Combination, usize) -> BTreeMap<u64, f64>,
         own: &[Option<OwnError>],
     ) -> Row {
         let runs: Vec<(u64, &Finished)> = self.runs(setting).collect();
@@ -318,7 +301,7 @@ impl Compared<'_> {
             })
         });
         Row {
-            name: setting.name(self.parameters),
+            name: setting.name(&self.parameters),
             seeds: runs.len(),
             failed,
             doubted: runs.iter().filter(|r| !r.1.doubts.is_empty()).count(),
@@ -338,7 +321,7 @@ const NEAREST: f64 = 1.5;
 
 /// The level next to the reference's, of an ordered parameter: the first that is coarse enough for the
 /// estimate, otherwise the next one.
-pub fn neighbour(parameter: &StudyParameter) -> Option<usize> {
+pub fn neighbour(parameter: &Varied) -> Option<usize> {
     let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
     let mut coarser = parameter.reference + 1..parameter.levels.len();
     let next = coarser.clone().next().filter(|_| ordered)?;
@@ -348,7 +331,7 @@ pub fn neighbour(parameter: &StudyParameter) -> Option<usize> {
 }
 
 /// Ratio of a level to the reference's level.
-fn ratio(parameter: &StudyParameter, level: usize) -> Option<f64> {
+fn ratio(parameter: &Varied, level: usize) -> Option<f64> {
     Some(parameter.levels.get(level)?.number? / parameter.levels.get(parameter.reference)?.number?)
 }
 
@@ -396,8 +379,8 @@ pub fn share(x: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::parameters::Level;
     use super::*;
+    use crate::factor::Level;
 
     /// For a first-order error e = c h, the reported bound is never below the error.
     #[test]
@@ -415,19 +398,9 @@ mod tests {
 
     #[test]
     fn levels_too_near_are_passed_over() {
-        let level = |x: f64| Level {
-            label: x.to_string(),
-            sets: Vec::new(),
-            number: Some(x),
-        };
-        let mut parameter = StudyParameter {
-            name: "step".into(),
-            sense: Sense::Step,
-            levels: [1.0, 1.1, 2.0].map(level).into(),
-            own: 0,
-            reference: 0,
-            left_out: Vec::new(),
-        };
+        let level = |x: f64| Level::of(&[], &x.to_string());
+        let levels = [1.0, 1.1, 2.0].map(level).into();
+        let mut parameter = Varied::new("step", Sense::Step, levels, Some(0));
         assert_eq!(neighbour(&parameter), Some(2));
         parameter.levels.pop();
         assert_eq!(neighbour(&parameter), Some(1));

@@ -1,10 +1,11 @@
 //! Figure of error against cost, one panel per output.
 
+use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
 use super::output::{Output, Wanted};
-use super::parameters::{Level, Sense, StudyParameter};
-use super::setting::Setting;
-use super::study::Study;
+use super::plan::Trade;
+use super::varied::{Sense, Varied};
+use crate::factor::Level;
 use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels, quantity};
 use std::path::Path;
 
@@ -28,12 +29,7 @@ const COLOURS: [(u8, u8, u8); 8] = [
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn draw(
-    study: &Study,
-    found: &Comparison,
-    title: &str,
-    path: &Path,
-) -> Result<bool, DrawError> {
+pub fn draw(trade: &Trade, found: &Comparison, path: &Path) -> Result<bool, DrawError> {
     let known = |r: &Row| {
         let mut errors = r.errors.iter().flatten();
         r.failed.is_none() && errors.any(|e| e.at_most.is_finite())
@@ -41,8 +37,8 @@ pub fn draw(
     if !found.rows.iter().any(known) {
         return Ok(false);
     }
-    let charts: Vec<Chart> = (0..study.outputs.len())
-        .map(|o| panel(study, found, title, o))
+    let charts: Vec<Chart> = (0..trade.outputs.len())
+        .map(|o| panel(trade, found, o))
         .collect();
     draw_panels(&charts, charts.len().min(2), path)?;
     Ok(true)
@@ -53,9 +49,9 @@ type Points<'a> = Vec<(&'a Row, &'a OutputError)>;
 
 /// What a panel shows: the errors of one output.
 struct Panel<'a> {
-    study: &'a Study,
+    trade: &'a Trade,
     output: &'a Output,
-    reference: Setting,
+    reference: Combination,
     /// All settings with a finite error.
     good: Points<'a>,
     /// Those whose error is one from the reference or from the exact value.
@@ -66,8 +62,8 @@ struct Panel<'a> {
     floor: f64,
 }
 
-fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
-    let output = &study.outputs[o];
+fn panel(trade: &Trade, found: &Comparison, o: usize) -> Chart {
+    let output = &trade.outputs[o];
     let (Wanted::Relative(wanted) | Wanted::Absolute(wanted)) = output.wanted;
     let (factor, unit) = match output.wanted {
         Wanted::Relative(_) => (100.0, "%"),
@@ -76,9 +72,9 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
     let name = output.name().replace('_', " ");
     let y = Axis::new(format!("error of {name}"), unit).log();
     let x = Axis::new("processor time of a run", "s").log();
-    let mut chart = Chart::new(format!("{title}: {name}"), x, y);
-    chart.subtitle = Some(subtitle(study, output, found, o));
-    let reference = Setting::reference(&study.parameters);
+    let mut chart = Chart::new(format!("{}: {name}", trade.title), x, y);
+    chart.subtitle = Some(subtitle(trade, output, found, o));
+    let reference = Combination::reference(&trade.parameters);
     let ran = found.rows.iter().filter(|r| r.failed.is_none());
     let errors = ran.filter_map(|r| Some((r, r.errors[o].as_ref()?)));
     let good: Points<'_> = errors.filter(|(_, e)| e.at_most.is_finite()).collect();
@@ -90,7 +86,7 @@ fn panel(study: &Study, found: &Comparison, title: &str, o: usize) -> Chart {
         .chain([wanted]);
     let floor = sizes.filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min) / 3.0;
     let panel = Panel {
-        study,
+        trade,
         output,
         reference,
         good,
@@ -135,9 +131,9 @@ impl Panel<'_> {
         let mut groups: Vec<(String, Points<'_>)> = Vec::new();
         for &(row, e) in &self.others {
             let name = if each {
-                named(&self.study.parameters, &row.setting)
+                named(&self.trade.parameters, &row.setting)
             } else {
-                group(self.study, row)
+                group(self.trade, row)
             };
             match groups.iter_mut().find(|g| g.0 == name) {
                 Some(g) => g.1.push((row, e)),
@@ -173,7 +169,7 @@ impl Panel<'_> {
         })?;
         let name = format!(
             "own error of the reference: {}",
-            named(&self.study.parameters, &r.setting)
+            named(&self.trade.parameters, &r.setting)
         );
         let point = vec![(r.seconds, self.on_axis(e.bound))];
         let mut mark = Series::new(name, point).style(Style::Markers);
@@ -182,9 +178,9 @@ impl Panel<'_> {
     }
 }
 
-fn subtitle(study: &Study, output: &Output, found: &Comparison, o: usize) -> String {
-    let seeds = if study.random {
-        format!("intervals of 95 % over {} seeds", study.seeds.len())
+fn subtitle(trade: &Trade, output: &Output, found: &Comparison, o: usize) -> String {
+    let seeds = if trade.random {
+        format!("intervals of 95 % over {} seeds", trade.seeds.len())
     } else {
         "no randomness in the case".into()
     };
@@ -206,7 +202,7 @@ fn shown(x: f64) -> String {
 }
 
 /// A setting by the values of all parameters that vary: what stands in the case may change, a figure says what was run.
-fn named(parameters: &[StudyParameter], setting: &Setting) -> String {
+fn named(parameters: &[Varied], setting: &Combination) -> String {
     let varied = parameters
         .iter()
         .zip(&setting.0)
@@ -224,7 +220,7 @@ fn named(parameters: &[StudyParameter], setting: &Setting) -> String {
     parts.join(", ")
 }
 
-fn value(parameter: &StudyParameter, level: &Level) -> String {
+fn value(parameter: &Varied, level: &Level) -> String {
     match (parameter.sense, level.number) {
         (Sense::Step, Some(x)) => quantity(x, "s", 2),
         (Sense::Tolerance, Some(x)) => quantity(x, "", 1),
@@ -233,10 +229,10 @@ fn value(parameter: &StudyParameter, level: &Level) -> String {
 }
 
 /// Group of a setting among many: the case's own by its values, others by the parameter they change.
-fn group(study: &Study, row: &Row) -> String {
-    match row.setting.changed(&study.parameters).as_slice() {
-        [] => format!("as in the case: {}", named(&study.parameters, &row.setting)),
-        [k] => format!("other {}", study.parameters[*k].name),
+fn group(trade: &Trade, row: &Row) -> String {
+    match row.setting.changed(&trade.parameters).as_slice() {
+        [] => format!("as in the case: {}", named(&trade.parameters, &row.setting)),
+        [k] => format!("other {}", trade.parameters[*k].name),
         _ => "several changed".into(),
     }
 }
@@ -247,25 +243,16 @@ mod tests {
 
     #[test]
     fn settings_are_named_by_their_values_whatever_the_case_has() {
-        let level = |x: f64| Level {
-            label: format!("{x:e}"),
-            sets: Vec::new(),
-            number: Some(x),
-        };
-        let parameter = |name: &str, sense, own| StudyParameter {
-            name: name.to_owned(),
-            sense,
-            levels: vec![level(5e-5), level(1e-4)],
-            own,
-            reference: 0,
-            left_out: Vec::new(),
+        let level = |x: f64| Level::of(&[], &format!("{x:e}"));
+        let parameter = |name: &str, sense, own| {
+            Varied::new(name, sense, vec![level(5e-5), level(1e-4)], Some(own))
         };
         for own in [0, 1] {
             let parameters = [
                 parameter("time.step", Sense::Step, own),
                 parameter("solver.tolerance", Sense::Tolerance, own),
             ];
-            let name = named(&parameters, &Setting(vec![0, 1]));
+            let name = named(&parameters, &Combination(vec![0, 1]));
             assert_eq!(name, "step 50 µs, tolerance 1×10⁻⁴");
         }
     }

@@ -1,20 +1,46 @@
-//! Output files `trade.json` and `trade.csv`.
+//! Output files: `trade.json`, `trade.csv` and `trade.png`.
 
-use super::TradeError;
-use super::compare::Comparison;
-use super::interval::CONFIDENCE;
+use super::combination::Combination;
+use super::compare::{Comparison, OutputError, Row};
+use super::figure::draw;
 use super::output::Wanted;
-use super::setting::Setting;
-use super::study::Study;
+use super::plan::Answer;
+use super::plan::Trade;
 use super::verdict::Verdict;
-use crate::runs::cells::guarded;
+use crate::Error;
+use crate::table::{Column, Table, Type, csv};
+use fretwork_study::interval::CONFIDENCE;
 use serde_json::{Value, json};
+use std::path::Path;
 
-/// The whole study as JSON.
-pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: bool) -> Value {
-    let reference = Setting::reference(&study.parameters);
+/// Writes the files of a trade into its folder; returns its JSON, and whether there is a picture.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(trade: &Trade, answer: &Answer, out: &Path) -> Result<(String, bool), Error> {
+    let found = &answer.found;
+    let json = json(trade, found, &answer.verdicts, answer.complete);
+    let json = serde_json::to_string_pretty(&json).unwrap_or_default();
+    let path = out.join("trade.json");
+    std::fs::write(&path, format!("{json}\n")).map_err(|e| Error::write(&path, &e))?;
+    csv::write(
+        &settings(trade, found),
+        &out.join("trade.csv"),
+        csv::Numbers::Exponents,
+    )?;
+    let picture = out.join("trade.png");
+    let drawn = draw(trade, found, &picture)?;
+    if !drawn {
+        // A picture of an earlier trade would be mistaken for one of this.
+        let _ = std::fs::remove_file(&picture);
+    }
+    Ok((json, drawn))
+}
+
+fn json(trade: &Trade, found: &Comparison, verdicts: &[Verdict], complete: bool) -> Value {
+    let reference = Combination::reference(&trade.parameters);
     let number = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
-    let outputs: Vec<Value> = study
+    let outputs: Vec<Value> = trade
         .outputs
         .iter()
         .zip(&found.own)
@@ -35,23 +61,23 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
         .rows
         .iter()
         .map(|r| {
-            let errors: serde_json::Map<String, Value> = study
+            let errors: serde_json::Map<String, Value> = trade
                 .outputs
                 .iter()
                 .zip(&r.errors)
                 .map(|(o, e)| {
-                    let told = e.as_ref().map(|e| {
+                    let known = e.as_ref().map(|e| {
                         json!({
                             "value": e.value, "error": e.error, "at_most": number(e.at_most),
                             "at_most_with_reference": number(e.bound),
                             "distinguishable_from_zero": !e.error.may_be_zero(), "frontier": e.on_frontier,
                         })
                     });
-                    (o.name().to_owned(), json!(told))
+                    (o.name().to_owned(), json!(known))
                 })
                 .collect();
             json!({
-                "setting": r.name, "sets": r.setting.sets(&study.parameters), "reference": r.setting == reference,
+                "setting": r.name, "sets": r.setting.sets(&trade.parameters), "reference": r.setting == reference,
                 "seeds": r.seeds, "failed": r.failed, "not_trustworthy": r.doubted, "reasons": r.doubts, "seconds": r.seconds, "visits": r.visits,
                 "faster": r.faster.map(|f| f.0), "faster_interval": r.faster.and_then(|f| f.1), "outputs": errors,
             })
@@ -63,92 +89,62 @@ pub fn json(study: &Study, found: &Comparison, verdicts: &[Verdict], complete: b
             json!({
                 "wanted": v.wanted, "holds": v.holds, "text": v.text,
                 "setting": v.row.map(|k| found.rows[k].name.clone()),
-                "sets": v.row.map(|k| found.rows[k].setting.sets(&study.parameters)),
+                "sets": v.row.map(|k| found.rows[k].setting.sets(&trade.parameters)),
                 "faster": v.row.and_then(|k| found.rows[k].faster).map(|f| f.0),
             })
         })
         .collect();
     json!({
-        "case": study.launcher.case, "confidence": CONFIDENCE, "complete": complete, "seeds": study.seeds,
-        "random": study.random, "nudged": study.random && study.launcher.perturbation.is_some(), "outputs": outputs, "settings": settings, "cheapest": cheapest,
-        "forecast": study.forecast, "runs": {"fresh": study.fresh, "reused": study.reused},
-        "left_out": study.left_out.iter().map(|s| s.name(&study.parameters)).chain(study.dropped()).collect::<Vec<_>>(),
-        "wall_seconds": study.started.elapsed().as_secs_f64(), "notes": study.notes,
+        "case": trade.launcher.case, "confidence": CONFIDENCE, "complete": complete, "seeds": trade.seeds,
+        "random": trade.random, "nudged": trade.random && trade.launcher.perturbation.is_some(), "outputs": outputs, "settings": settings, "cheapest": cheapest,
+        "forecast": trade.cost, "runs": {"fresh": trade.fresh, "reused": trade.reused},
+        "left_out": trade.left_out.iter().map(|s| s.name(&trade.parameters)).chain(trade.dropped()).collect::<Vec<_>>(),
+        "wall_seconds": trade.started.elapsed().as_secs_f64(), "notes": trade.notes,
     })
 }
 
-/// Writes one line per setting; errors are fractions of the reference's value or in the output's unit, as requested.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn csv(study: &Study, found: &Comparison, path: &std::path::Path) -> Result<(), TradeError> {
-    let fail = |e: csv::Error| TradeError::write(path, &e);
-    let mut table = csv::Writer::from_path(path).map_err(fail)?;
-    let mut header: Vec<String> = [
-        "setting",
-        "reference",
-        "seeds",
-        "failed",
-        "not_trustworthy",
-        "seconds",
-        "visits",
-        "faster",
-        "faster_low",
-        "faster_high",
-    ]
-    .map(str::to_owned)
-    .into();
-    header.extend(study.parameters.iter().map(|k| k.name.clone()));
-    for o in &study.outputs {
-        let columns = [
-            "",
-            "_scatter",
-            "_error",
-            "_half_width",
-            "_at_most",
-            "_at_most_with_reference",
-            "_frontier",
-        ];
-        header.extend(columns.map(|c| format!("{}{c}", o.name())));
+/// One row per setting; errors are fractions of the reference's value or in the output's unit, as
+/// requested.
+fn settings(trade: &Trade, found: &Comparison) -> Table {
+    let rows = &found.rows;
+    let reference = Combination::reference(&trade.parameters);
+    let flag = |flag: bool| Some(f64::from(u8::from(flag)));
+    let of = |f: &dyn Fn(&Row) -> Option<f64>| rows.iter().map(f).collect::<Vec<_>>();
+    let text = |f: &dyn Fn(&Row) -> String| rows.iter().map(f).collect::<Vec<_>>();
+    let ends = |r: &Row| r.faster.and_then(|f| f.1);
+    let mut columns = vec![
+        Column::text("setting", text(&|r| r.name.clone())),
+        Column::whole("reference", of(&|r| flag(r.setting == reference))),
+        Column::whole("seeds", of(&|r| Some(r.seeds as f64))),
+        Column::text("failed", text(&|r| r.failed.clone().unwrap_or_default())),
+        Column::text("not_trustworthy", text(&|r| r.doubt().unwrap_or_default())),
+        Column::real("seconds", "", of(&|r| Some(r.seconds))),
+        Column::real("visits", "", of(&|r| Some(r.visits))),
+        Column::real("faster", "", of(&|r| r.faster.map(|f| f.0))),
+        Column::real("faster_low", "", of(&|r| ends(r).map(|e| e.0))),
+        Column::real("faster_high", "", of(&|r| ends(r).map(|e| e.1))),
+    ];
+    for (k, parameter) in trade.parameters.iter().enumerate() {
+        let label = |r: &Row| parameter.levels[r.setting.0[k]].label.clone();
+        columns.push(Column::text(&parameter.name, text(&label)));
     }
-    let header = header.iter().map(|heading| guarded(heading));
-    table.write_record(header).map_err(fail)?;
-    let reference = Setting::reference(&study.parameters);
-    let maybe = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:e}"));
-    for r in &found.rows {
-        let ends = r.faster.and_then(|f| f.1);
-        let mut row = vec![
-            guarded(&r.name),
-            u8::from(r.setting == reference).to_string(),
-            r.seeds.to_string(),
-            guarded(&r.failed.clone().unwrap_or_default()),
-            guarded(&r.doubt().unwrap_or_default()),
-            format!("{:e}", r.seconds),
-            format!("{:e}", r.visits),
-            maybe(r.faster.map(|f| f.0)),
-            maybe(ends.map(|e| e.0)),
-            maybe(ends.map(|e| e.1)),
-        ];
-        row.extend(
-            study
-                .parameters
-                .iter()
-                .zip(&r.setting.0)
-                .map(|(k, l)| guarded(&k.levels[*l].label)),
-        );
-        for e in &r.errors {
-            let e = e.as_ref();
-            row.extend([
-                maybe(e.map(|e| e.value.mean)),
-                maybe(e.and_then(|e| e.value.scatter)),
-                maybe(e.map(|e| e.error.mean)),
-                maybe(e.and_then(|e| e.error.half_width)),
-                maybe(e.map(|e| e.at_most)),
-                maybe(e.map(|e| e.bound)),
-                e.map_or(String::new(), |e| u8::from(e.on_frontier).to_string()),
-            ]);
-        }
-        table.write_record(&row).map_err(fail)?;
+    for (o, output) in trade.outputs.iter().enumerate() {
+        let of = |name: &str, f: &dyn Fn(&OutputError) -> Option<f64>| {
+            let name = format!("{}{name}", output.name());
+            Column::real(name, "", of(&|r| r.errors[o].as_ref().and_then(f)))
+        };
+        columns.extend([
+            of("", &|e| Some(e.value.mean)),
+            of("_scatter", &|e| e.value.scatter),
+            of("_error", &|e| Some(e.error.mean)),
+            of("_half_width", &|e| e.error.half_width),
+            of("_at_most", &|e| Some(e.at_most)),
+            of("_at_most_with_reference", &|e| Some(e.bound)),
+            Column {
+                kind: Type::Whole,
+                ..of("_frontier", &|e| flag(e.on_frontier))
+            },
+        ]);
     }
-    table.flush().map_err(|e| TradeError::write(path, &e))
+    Table { columns }
 }

@@ -1,64 +1,48 @@
-//! Studies of accuracy against cost: settings of a case are varied, and each is compared with a reference at
-//! the finest setting, over several seeds.
+//! Accuracy against cost: settings of a case are varied, and each is compared with a reference at the
+//! finest setting, over several seeds.
 //!
-//! [`parameters`] defines the varied parameters, [`rung`] and [`form`] those that change the model, [`study`] plans within a budget of [`runs`](crate::runs), [`output`] says which numbers are compared and how well, [`compare`] compares them
-//! with the reference, with Student [`interval`]s, [`frontier`] finds the non-dominated settings, [`verdict`]
-//! the cheapest one for a wanted error, and [`table`], [`files`] and [`figure`] report the result.
+//! A [`request`] is checked ([`refuse`]) and becomes a trade: [`presets`], [`listed`] and [`variant`]
+//! make the [`varied`] [`parameters`], [`ordered`] the levels of
+//! a step or a tolerance, [`deformability`] those that change what deforms. [`plan`] says which
+//! settings run, by their [`cost_law`], [`execute`] runs them, [`combinations`] adds what is
+//! promising together, [`chaos`] tells whether runs scatter where the seed changes nothing.
+//! [`output`] says which numbers are compared and how well, [`compare`] compares them with the
+//! reference, [`frontier`] finds the non-dominated settings, [`verdict`] the cheapest one for a
+//! wanted error, and [`table`], [`files`] and [`figure`] report the result.
 
-pub mod chaos;
+mod chaos;
+mod combination;
 mod combinations;
-pub mod compare;
-pub mod figure;
-pub mod files;
-pub mod forecast;
-pub mod form;
-pub mod frontier;
-pub mod output;
-pub mod parameters;
-pub mod rung;
-pub mod setting;
-pub mod study;
+mod compare;
+mod cost_law;
+mod deformability;
+mod execute;
+mod figure;
+mod files;
+mod frontier;
+mod listed;
+mod ordered;
+mod output;
+mod parameters;
+mod plan;
+mod presets;
+mod refuse;
+mod request;
 pub mod table;
-pub mod verdict;
+mod variant;
+mod varied;
+mod verdict;
 
-pub use fretwork_study::interval;
+pub use execute::Event;
+pub use files::write;
+pub use plan::{Answer, Trade};
+pub use request::Request;
 
-use crate::runs::RunsError;
-use crate::runs::lock::Owner;
-use fretwork_scene::InputError;
-use fretwork_view::DrawError;
-use std::path::Path;
+use crate::folder::Owner;
 
-/// The owner of folders of studies.
+/// The owner of folders of trades.
 pub const OWNER: Owner = Owner {
     command: "fretwork trade",
     mark: "trade.lock",
     files: &["plan.json", "trade.json"],
 };
-
-/// Reason why a study cannot be done.
-#[derive(Debug, thiserror::Error)]
-pub enum TradeError {
-    /// The case, or a value that a parameter gives it, is wrong.
-    #[error(transparent)]
-    Input(#[from] InputError),
-    /// The arguments are wrong.
-    #[error("{0}")]
-    Usage(String),
-    /// Every run of the reference failed.
-    #[error("{0}")]
-    Reference(String),
-    /// A run cannot be made or kept.
-    #[error(transparent)]
-    Runs(#[from] RunsError),
-    /// The figure cannot be drawn.
-    #[error(transparent)]
-    Figure(#[from] DrawError),
-}
-
-impl TradeError {
-    /// Error for a file that cannot be written.
-    pub(super) fn write(path: &Path, reason: &dyn std::fmt::Display) -> Self {
-        Self::Runs(RunsError::write(path, reason))
-    }
-}

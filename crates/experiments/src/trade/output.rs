@@ -1,6 +1,6 @@
 //! Outputs that a study compares, each with the error wanted.
 
-use super::TradeError;
+use crate::Error;
 use crate::runs::quantity::Quantity;
 
 /// The wanted error.
@@ -28,9 +28,9 @@ impl Output {
     ///
     /// # Errors
     /// A sentence.
-    pub fn parse(text: &str) -> Result<Self, TradeError> {
+    pub fn parse(text: &str) -> Result<Self, Error> {
         let wrong = |why: &str| {
-            TradeError::Usage(format!(
+            Error::Usage(format!(
                 "--output {text}: {why}; expected NAME=1% or NAME=0.003, such as friction_coefficient=1%"
             ))
         };
@@ -82,8 +82,8 @@ impl Output {
     }
 
     /// The error of a command line that names an output for which there is a reason to refuse it.
-    pub fn refused(&self, why: &str) -> TradeError {
-        TradeError::Usage(format!("--output {}: {why}", self.name()))
+    pub fn refused(&self, why: &str) -> Error {
+        Error::Usage(format!("--output {}: {why}", self.name()))
     }
 }
 

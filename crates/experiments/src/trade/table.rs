@@ -1,25 +1,26 @@
 //! Report of a study on a terminal.
 
+use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row, ShownError, share};
 use super::output::{Output, Wanted};
-use super::setting::Setting;
-use super::study::Study;
-use super::verdict::{Verdict, amount, three};
-use crate::runs::duration::seconds;
+use super::plan::{Answer, Trade};
+use super::verdict::{amount, three};
+use crate::duration::seconds;
+use crate::shell;
 use std::fmt::Write as _;
 
 /// Announcement before the study runs.
-pub fn forecast(study: &Study) -> String {
-    let (first, one_at_a_time) = (study.first(), study.one_at_a_time());
-    let seeds = study.seeds.len();
-    let all: Vec<Setting> = first.iter().chain(&one_at_a_time).cloned().collect();
+pub fn forecast(trade: &Trade) -> String {
+    let (first, one_at_a_time) = (trade.first(), trade.one_at_a_time());
+    let seeds = trade.seeds.len();
+    let all: Vec<Combination> = first.iter().chain(&one_at_a_time).cloned().collect();
     let count = |n: usize| {
         format!(
             "{n} settings x {seeds} seed{}",
             if seeds == 1 { "" } else { "s" }
         )
     };
-    let names: Vec<String> = study
+    let names: Vec<String> = trade
         .parameters
         .iter()
         .map(|k| {
@@ -33,7 +34,7 @@ pub fn forecast(study: &Study) -> String {
             )
         })
         .collect();
-    let left_out = study.parameters.iter().flat_map(|k| &k.left_out);
+    let left_out = trade.parameters.iter().flat_map(|k| &k.left_out);
     let left_out: String = left_out
         .map(|(level, why)| format!("\n  not offered    {level}: {why}"))
         .collect();
@@ -41,47 +42,63 @@ pub fn forecast(study: &Study) -> String {
         "varied\n{}{left_out}\nforecast, from short probes: the case's own setting {} a run, the reference {}; the reference and its neighbours {} ({}), \
          one parameter at a time {} more ({}), combinations as time allows; budget {}",
         names.join("\n"),
-        seconds(
-            study
-                .forecast
-                .law(&Setting::own(&study.parameters), &study.parameters)
-        ),
-        seconds(
-            study
-                .forecast
-                .law(&Setting::reference(&study.parameters), &study.parameters)
-        ),
-        seconds(study.work(&first)),
+        seconds(trade.cost_law(&Combination::own(&trade.parameters))),
+        seconds(trade.cost_law(&Combination::reference(&trade.parameters))),
+        seconds(trade.work(&first)),
         count(first.len()),
-        seconds(study.work(&all) - study.work(&first)),
+        seconds(trade.work(&all) - trade.work(&first)),
         count(one_at_a_time.len()),
-        seconds(study.budget.as_secs_f64()),
+        seconds(trade.budget.as_secs_f64()),
     )
 }
 
 /// The table of the settings and the verdicts.
-pub fn text(study: &Study, found: &Comparison, verdicts: &[Verdict]) -> String {
+pub fn text(trade: &Trade, answer: &Answer) -> String {
+    let found = &answer.found;
     let mut out = String::new();
-    push_settings(&mut out, study, found);
+    push_settings(&mut out, trade, found);
     out.push('\n');
-    push_outputs(&mut out, study, found);
+    push_outputs(&mut out, trade, found);
     out.push('\n');
-    for v in verdicts {
+    for v in &answer.verdicts {
         let _ = writeln!(out, "{}: {}", v.wanted, v.text);
         if let Some(row) = v.row {
-            let sets = found.rows[row].setting.sets(&study.parameters);
-            let _ = writeln!(out, "  {}", command(study, &sets));
+            let sets = found.rows[row].setting.sets(&trade.parameters);
+            let _ = writeln!(out, "  {}", command(trade, &sets));
         }
     }
-    for note in &study.notes {
+    for note in &trade.notes {
         let _ = writeln!(out, "{note}");
     }
     out
 }
 
+/// What a trade did not run, and why.
+pub fn incomplete(trade: &Trade, interrupted: bool) -> String {
+    let left_out = trade.left_out.iter();
+    let names: Vec<String> = left_out.map(|s| s.name(&trade.parameters)).collect();
+    let dropped = trade.dropped();
+    let why = match interrupted {
+        true => "interrupted",
+        false => "the budget is spent",
+    };
+    let mut what = String::new();
+    if !names.is_empty() {
+        what = format!(" Not run, or not over all seeds: {}.", names.join("; "));
+    }
+    if !dropped.is_empty() {
+        let _ = write!(
+            what,
+            " Finer than this budget allows the reference: {}; a larger --budget includes them.",
+            dropped.join("; ")
+        );
+    }
+    format!("INCOMPLETE, {why}.{what} The same command continues from here.")
+}
+
 /// One line for each setting: cost, and the errors of the outputs.
-fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
-    let reference = Setting::reference(&study.parameters);
+fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
+    let reference = Combination::reference(&trade.parameters);
     let label = |row: &Row| {
         let mark = if row.setting == reference {
             " (reference)"
@@ -97,7 +114,7 @@ fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
         "{:<width$}  {:>9}  {:>8}  {:>9}",
         "setting", "cpu s", "faster", "visits"
     );
-    for o in &study.outputs {
+    for o in &trade.outputs {
         let unit = match o.wanted {
             Wanted::Relative(_) => " (%)",
             Wanted::Absolute(_) => "",
@@ -117,15 +134,15 @@ fn push_settings(out: &mut String, study: &Study, found: &Comparison) {
             let _ = writeln!(out, "  NOT USED: {why}");
             continue;
         }
-        for (e, o) in row.errors.iter().zip(&study.outputs) {
+        for (e, o) in row.errors.iter().zip(&trade.outputs) {
             let cell = error_cell(e.as_ref(), o, row.setting == reference);
             let _ = write!(out, "  {cell:>24}");
         }
         if let Some(doubt) = row.doubt() {
             let _ = write!(out, "  ! {doubt}");
         }
-        if row.seeds < study.seeds.len() {
-            let _ = write!(out, "  {} of {} seeds", row.seeds, study.seeds.len());
+        if row.seeds < trade.seeds.len() {
+            let _ = write!(out, "  {} of {} seeds", row.seeds, trade.seeds.len());
         }
         out.push('\n');
     }
@@ -162,8 +179,8 @@ fn error_cell(error: Option<&OutputError>, output: &Output, of_reference: bool) 
 }
 
 /// The value of each output in the reference, and how far it may be off.
-fn push_outputs(out: &mut String, study: &Study, found: &Comparison) {
-    for (own, o) in found.own.iter().zip(&study.outputs) {
+fn push_outputs(out: &mut String, trade: &Trade, found: &Comparison) {
+    for (own, o) in found.own.iter().zip(&trade.outputs) {
         let Some(own) = own else {
             let _ = writeln!(out, "{}: no value in the reference", o.name());
             continue;
@@ -201,13 +218,14 @@ fn push_outputs(out: &mut String, study: &Study, found: &Comparison) {
 }
 
 /// The command that runs a setting.
-fn command(study: &Study, sets: &[String]) -> String {
-    let sets = study.launcher.sets.iter().chain(sets);
-    let sets: String = sets.map(|s| format!(" --set {}", quoted(s))).collect();
-    let words = study.launcher.plugins.iter();
-    let plugins: String = words.map(|w| format!(" {}", quoted(w))).collect();
-    let case = quoted(&study.launcher.case.display().to_string());
-    format!("fretwork run {case}{sets}{plugins} --threads 1")
+fn command(trade: &Trade, sets: &[String]) -> String {
+    let launcher = &trade.launcher;
+    let mut words = vec!["run".to_owned(), launcher.case.display().to_string()];
+    for set in launcher.sets.iter().chain(sets) {
+        words.extend(["--set".to_owned(), set.clone()]);
+    }
+    words.extend(launcher.plugins.iter().cloned());
+    format!("fretwork {} --threads 1", shell::command(&words))
 }
 
 /// A number with significant digits.
@@ -220,15 +238,5 @@ impl std::fmt::Display for Shown {
         } else {
             write!(f, "{:.5}", self.0)
         }
-    }
-}
-
-/// Quotes an argument for a shell.
-fn quoted(set: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "=._-+/:,@%".contains(c);
-    if set.is_empty() || !set.chars().all(plain) {
-        format!("'{}'", set.replace('\'', "'\\''"))
-    } else {
-        set.to_owned()
     }
 }

@@ -1,8 +1,8 @@
 //! The cheapest setting for a wanted error, and the confidence in it.
 
 use super::compare::{Comparison, OutputError, Row, share};
-use super::interval::{Mean, seeds_for};
 use super::output::{Output, Wanted};
+use fretwork_study::interval::{Mean, seeds_for};
 
 /// Verdict for a wanted error.
 #[derive(Clone, Debug)]

@@ -8,13 +8,13 @@ mod regimes;
 
 pub use comparisons::Comparison;
 pub use curves::{Curve, Response};
-pub use effects::{Change, Effects};
-pub use regimes::{RegimeMap, Regimes};
+pub use effects::Effects;
+pub use regimes::Regimes;
 
-use super::factor::{Factor, Kind};
 use super::plan::Plan;
+use super::rows::Rows;
 use super::spec::DesignSpec;
-use super::table::Table;
+use crate::factor::{Factor, Level, Values};
 use fretwork_study::interval::Mean;
 use std::collections::{HashMap, HashSet};
 
@@ -53,17 +53,18 @@ struct Data<'a> {
 }
 
 impl Analysis {
-    /// Analyses a table of a study with a design.
-    pub fn of(plan: &Plan, design: &DesignSpec, table: &Table) -> Self {
+    /// Analyses the runs of a study with a design.
+    pub fn of(plan: &Plan, design: &DesignSpec, rows: &Rows) -> Self {
         let outputs = plan.outputs.iter().map(|output| {
             let data = Data {
                 plan,
                 design,
-                values: table.trusted(&output.name),
+                values: rows.trusted(&output.name),
             };
             OutputAnalysis {
                 name: output.name.clone(),
-                unit: table
+                unit: rows
+                    .table
                     .column(&output.name)
                     .map_or(String::new(), |c| c.unit.clone()),
                 means: data.means(),
@@ -74,7 +75,7 @@ impl Analysis {
         });
         Self {
             outputs: outputs.collect(),
-            regimes: regimes::regimes(plan, table),
+            regimes: regimes::regimes(plan, rows),
         }
     }
 }
@@ -117,10 +118,9 @@ impl Data<'_> {
         let places: Vec<HashMap<&str, usize>> = (0..self.plan.factors.len())
             .map(|f| self.labels(f).into_iter().zip(0..).collect())
             .collect();
-        let row = |setting: &Vec<super::factor::Value>| {
-            let place = |(f, v): (usize, &super::factor::Value)| {
-                places[f].get(v.label.as_str()).copied().unwrap_or(0)
-            };
+        let row = |setting: &Vec<Level>| {
+            let place =
+                |(f, v): (usize, &Level)| places[f].get(v.label.as_str()).copied().unwrap_or(0);
             setting.iter().enumerate().map(place).collect()
         };
         let rows = self.plan.settings.iter().map(row).collect();
@@ -146,8 +146,8 @@ pub fn numeric(plan: &Plan, factor: usize) -> bool {
 /// Whether a factor is spread evenly in its logarithm.
 pub fn logarithmic(factor: &Factor) -> bool {
     matches!(
-        &factor.kind,
-        Kind::Range {
+        &factor.values,
+        Values::Range {
             scale: fretwork_study::design::scale::Scale::Logarithmic { .. },
             ..
         }
@@ -157,7 +157,7 @@ pub fn logarithmic(factor: &Factor) -> bool {
 /// Whether the values of a factor read better on a logarithmic axis: those of a range by its scale, listed ones if their ratios are
 /// more alike than their differences.
 pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
-    if matches!(plan.factors[factor].kind, Kind::Range { .. }) {
+    if matches!(plan.factors[factor].values, Values::Range { .. }) {
         return logarithmic(&plan.factors[factor]);
     }
     let mut numbers: Vec<f64> = plan

@@ -2,7 +2,7 @@
 
 use super::numeric;
 use crate::study::plan::Plan;
-use crate::study::table::{Cell, DONE, Table};
+use crate::study::rows::Rows;
 
 /// The regimes of all settings, by one text of the summary.
 #[derive(Clone, Debug)]
@@ -38,9 +38,9 @@ impl Regimes {
 }
 
 /// For each regime that is asked for what the settings show, with a map over the first two factors with numbers.
-pub(super) fn regimes(plan: &Plan, table: &Table) -> Vec<Regimes> {
+pub(super) fn regimes(plan: &Plan, rows: &Rows) -> Vec<Regimes> {
     let of = |name: &String| {
-        let shown = shown(plan, table, name);
+        let shown = shown(plan, rows, name);
         Regimes {
             name: name.clone(),
             map: map(plan, &shown),
@@ -50,35 +50,21 @@ pub(super) fn regimes(plan: &Plan, table: &Table) -> Vec<Regimes> {
     plan.regimes.iter().map(of).collect()
 }
 
-fn shown(plan: &Plan, table: &Table, name: &str) -> Vec<Vec<(String, usize)>> {
-    let cells = |name: &str| {
-        table
-            .column(name)
-            .map(|c| c.cells.as_slice())
-            .unwrap_or_default()
-    };
-    let (status, regimes) = (cells("status"), cells(name));
+fn shown(plan: &Plan, rows: &Rows, name: &str) -> Vec<Vec<(String, usize)>> {
     let seeds = plan.seeds.len();
-    let of = |setting: usize| {
-        let mut counts: Vec<(String, usize)> = Vec::new();
-        for run in setting * seeds..(setting + 1) * seeds {
-            let (Some(Cell::Text(status)), Some(Cell::Text(regime))) =
-                (status.get(run), regimes.get(run))
-            else {
-                continue;
-            };
-            if status != DONE {
-                continue;
-            }
-            match counts.iter_mut().find(|(name, _)| name == regime) {
-                Some(known) => known.1 += 1,
-                None => counts.push((regime.clone(), 1)),
-            }
+    let mut all: Vec<Vec<(String, usize)>> = vec![Vec::new(); plan.settings.len()];
+    for run in rows.done() {
+        let (regime, counts) = (rows.table.text(name, run), &mut all[run / seeds]);
+        match counts.iter_mut().find(|(name, _)| name == regime) {
+            _ if regime.is_empty() => {}
+            Some(known) => known.1 += 1,
+            None => counts.push((regime.to_owned(), 1)),
         }
+    }
+    for counts in &mut all {
         counts.sort_by_key(|(_, runs)| std::cmp::Reverse(*runs));
-        counts
-    };
-    (0..plan.settings.len()).map(of).collect()
+    }
+    all
 }
 
 fn map(plan: &Plan, shown: &[Vec<(String, usize)>]) -> Option<RegimeMap> {

@@ -1,11 +1,11 @@
 //! HyperQueue: a job file with one task for each chunk of runs.
 
-use super::super::StudyError;
 use super::jobs::range;
 use super::{Export, Written, absolute, quote, shell};
+use crate::Error;
 use std::fmt::Write as _;
 
-pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
+pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let logs = absolute(&export.logs()?);
     let mut text = format!(
         "# {} runs; written by fretwork study export --to hq.\nname = {}\nmax_fails = 1000000\n",

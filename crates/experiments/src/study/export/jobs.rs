@@ -1,9 +1,9 @@
 //! A list of commands.
 
-use super::super::StudyError;
 use super::{Export, Written, absolute, quote, shell};
+use crate::Error;
 
-pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
+pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let mut text = String::new();
     for (first, last) in export.tasks() {
         let range = range(first, last);

@@ -6,9 +6,9 @@ mod jobs;
 mod slurm;
 mod snakemake;
 
-use super::StudyError;
 use super::plan::Plan;
-use crate::runs::RunsError;
+use crate::Error;
+use crate::shell::{command as shell, quote};
 use fretwork_core::program;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -57,7 +57,7 @@ impl Export<'_> {
     ///
     /// # Errors
     /// A file cannot be written, or the path of the program is not known.
-    pub fn write(&self, engine: Engine) -> Result<Written, StudyError> {
+    pub fn write(&self, engine: Engine) -> Result<Written, Error> {
         self.check_texts(engine)?;
         match engine {
             Engine::Slurm => slurm::write(self),
@@ -68,11 +68,11 @@ impl Export<'_> {
     }
 
     /// Refuses texts that a script cannot hold: a line of it would end in them, or an engine would read more than a name.
-    fn check_texts(&self, engine: Engine) -> Result<(), StudyError> {
+    fn check_texts(&self, engine: Engine) -> Result<(), Error> {
         let plan = self.plan;
         for path in [&plan.file, &plan.out, &plan.launcher.case] {
             if path.to_str().is_none() {
-                return Err(StudyError::Usage(format!(
+                return Err(Error::Usage(format!(
                     "the name {path:?} is not UTF-8, and a script cannot hold it; rename it"
                 )));
             }
@@ -84,7 +84,7 @@ impl Export<'_> {
         let case = absolute(&plan.launcher.case);
         for text in texts.chain([case]) {
             if text.chars().any(char::is_control) {
-                return Err(StudyError::Usage(format!(
+                return Err(Error::Usage(format!(
                     "{text:?} has a control character, such as the end of a line, and a script would take what follows for a command; rename it"
                 )));
             }
@@ -96,22 +96,22 @@ impl Export<'_> {
         };
         let out = absolute(&plan.out);
         if engine == Engine::Hq && out.contains("%{") {
-            return Err(StudyError::Usage(format!(
+            return Err(Error::Usage(format!(
                 "the folder {out} has `%{{`, which HyperQueue takes for a word that it fills in; give another with --out"
             )));
         }
         match out.chars().find(|c| special.contains(*c)) {
             None => Ok(()),
-            Some(c) => Err(StudyError::Usage(format!(
+            Some(c) => Err(Error::Usage(format!(
                 "the folder {out} has a `{c}`, which the engine does not take as a part of a name; give another with --out"
             ))),
         }
     }
 
     /// Words of a call of the program, `study VERB FILE ...`, with paths from the root.
-    fn call(&self, verb: &str, middle: &[&str]) -> Result<Vec<String>, StudyError> {
+    fn call(&self, verb: &str, middle: &[&str]) -> Result<Vec<String>, Error> {
         let command = program::command().map_err(|e| {
-            StudyError::Usage(format!("the path of the program cannot be determined: {e}"))
+            Error::Usage(format!("the path of the program cannot be determined: {e}"))
         })?;
         let text = |s: &std::ffi::OsStr| s.to_string_lossy().into_owned();
         let mut words = vec![text(command.get_program())];
@@ -140,15 +140,15 @@ impl Export<'_> {
     }
 
     /// Makes the folder of what the tasks print.
-    fn logs(&self) -> Result<PathBuf, StudyError> {
+    fn logs(&self) -> Result<PathBuf, Error> {
         let logs = self.plan.out.join("logs");
-        std::fs::create_dir_all(&logs).map_err(|e| RunsError::write(&logs, &e))?;
+        std::fs::create_dir_all(&logs).map_err(|e| Error::write(&logs, &e))?;
         Ok(logs)
     }
 
-    fn put(&self, name: &str, text: &str) -> Result<PathBuf, StudyError> {
+    fn put(&self, name: &str, text: &str) -> Result<PathBuf, Error> {
         let path = self.plan.out.join(name);
-        std::fs::write(&path, text).map_err(|e| RunsError::write(&path, &e))?;
+        std::fs::write(&path, text).map_err(|e| Error::write(&path, &e))?;
         Ok(path)
     }
 
@@ -176,29 +176,11 @@ fn absolute(path: &Path) -> String {
     whole.display().to_string()
 }
 
-/// Words for a POSIX shell.
-fn shell(words: &[String]) -> String {
-    let quoted: Vec<String> = words.iter().map(|w| quote(w)).collect();
-    quoted.join(" ")
-}
-
 /// Words for a POSIX shell, of which one is a text that is one already.
 fn shell_with(words: &[String], marked: &str, text: &str) -> String {
-    let word = |w: &String| {
-        if w == marked {
-            text.to_owned()
-        } else {
-            quote(w)
-        }
+    let word = |w: &String| match w == marked {
+        true => text.to_owned(),
+        false => quote(w),
     };
     words.iter().map(word).collect::<Vec<_>>().join(" ")
-}
-
-/// A word for a POSIX shell.
-fn quote(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
 }

@@ -1,9 +1,9 @@
 //! Slurm: a job array, each task of which makes a chunk of the runs, and a job that collects when all have ended.
 
-use super::super::StudyError;
 use super::{Export, Written, absolute, quote, shell, shell_with};
+use crate::Error;
 
-pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
+pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let logs = absolute(&export.logs()?);
     let tasks = export.tasks().len();
     let (count, chunk) = (export.plan.count(), export.chunk);
@@ -14,10 +14,7 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
         .map(|line| format!("#SBATCH {line}\n"))
         .collect();
     let expected = export.task_seconds.map_or(String::new(), |s| {
-        format!(
-            "# A task takes about {}.\n",
-            crate::runs::duration::seconds(s)
-        )
+        format!("# A task takes about {}.\n", crate::duration::seconds(s))
     });
     // No other word of a call has a control character.
     let words = export.call("point", &["\u{1}"])?;

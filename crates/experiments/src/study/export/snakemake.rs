@@ -1,11 +1,11 @@
 //! Snakemake: a rule that makes a chunk of runs, and one that collects.
 
-use super::super::StudyError;
 use super::{Export, Written, absolute, quote, shell, shell_with};
+use crate::Error;
 use crate::study::spec::DesignSpec;
 use std::path::{Path, PathBuf};
 
-pub(super) fn write(export: &Export<'_>) -> Result<Written, StudyError> {
+pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     let out = absolute(&export.plan.out);
     let tasks = export.tasks().len();
     let (count, chunk) = (export.plan.count(), export.chunk);

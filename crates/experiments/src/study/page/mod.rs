@@ -5,7 +5,7 @@ mod effects;
 use super::analysis::{Analysis, OutputAnalysis};
 use super::figures::{regime_chart, response_chart};
 use super::plan::Plan;
-use super::table::{Cell, Table};
+use super::rows::{DONE, NOT_RUN, Rows};
 use effects::{comparison_table, effect_blocks, pair_table};
 use fretwork_observe::quantity::quantity;
 use fretwork_study::interval::Mean;
@@ -17,8 +17,8 @@ const LISTED: usize = 100;
 const FAILURES: usize = 30;
 
 /// The page of a study.
-pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
-    let counts = table.counts();
+pub fn sheet(plan: &Plan, rows: &Rows, analysis: &Analysis) -> Sheet {
+    let counts = rows.counts();
     let mut sections = Vec::new();
     for output in &analysis.outputs {
         sections.push(output_section(plan, output));
@@ -33,8 +33,8 @@ pub fn sheet(plan: &Plan, table: &Table, analysis: &Analysis) -> Sheet {
             blocks: maps,
         });
     }
-    sections.push(settings_section(plan, table, analysis));
-    sections.push(runs_section(table));
+    sections.push(settings_section(plan, rows, analysis));
+    sections.push(runs_section(rows));
     sections.push(inputs_section(plan));
     let mut lead = format!(
         "{} of {} runs are done: {} settings with {} seed{} of {}.",
@@ -96,7 +96,7 @@ pub(super) fn title_of(name: &str) -> String {
         .replace('_', " ")
 }
 
-fn settings_section(plan: &Plan, table: &Table, analysis: &Analysis) -> Section {
+fn settings_section(plan: &Plan, runs: &Rows, analysis: &Analysis) -> Section {
     let mut heads: Vec<String> = vec!["setting".to_owned()];
     heads.extend(plan.factors.iter().enumerate().map(
         |(f, factor)| match plan.unit_of(f).as_str() {
@@ -111,7 +111,7 @@ fn settings_section(plan: &Plan, table: &Table, analysis: &Analysis) -> Section 
         row.extend(setting.iter().map(|v| v.label.clone()));
         row.extend(analysis.outputs.iter().map(|o| match &o.means[k] {
             Some(mean) => mean_text(mean, &o.unit),
-            None => table.without_result(k, plan.seeds.len()),
+            None => runs.without_result(k, plan.seeds.len()),
         }));
         row.extend(analysis.regimes.iter().map(|r| r.words(k)));
         row
@@ -136,41 +136,25 @@ fn settings_section(plan: &Plan, table: &Table, analysis: &Analysis) -> Section 
     }
 }
 
-fn runs_section(table: &Table) -> Section {
-    let cells = |name: &str| {
-        table
-            .column(name)
-            .map(|c| c.cells.as_slice())
-            .unwrap_or_default()
-    };
-    let text = |c: Option<&Cell>| match c {
-        Some(Cell::Text(text)) => text.clone(),
-        Some(Cell::Number(x)) => format!("{x}"),
-        _ => String::new(),
-    };
+fn runs_section(runs: &Rows) -> Section {
     let mut rows = Vec::new();
     let mut left = 0;
-    for k in 0..table.rows() {
-        let (status, doubt) = (
-            text(cells("status").get(k)),
-            text(cells("not_trustworthy").get(k)),
-        );
-        if [super::table::DONE, super::table::NOT_RUN].contains(&status.as_str())
-            && doubt.is_empty()
-        {
+    for k in 0..runs.table.rows() {
+        let text = |name: &str| runs.table.text(name, k).to_owned();
+        let (status, doubt) = (text("status"), text("not_trustworthy"));
+        if [DONE, NOT_RUN].contains(&status.as_str()) && doubt.is_empty() {
             continue;
         }
         if rows.len() == FAILURES {
             left += 1;
             continue;
         }
-        let reason = text(cells("reason").get(k));
         rows.push(vec![
-            text(cells("point").get(k)),
+            (k + 1).to_string(),
             status,
-            reason,
+            text("reason"),
             doubt,
-            text(cells("folder").get(k)),
+            text("folder"),
         ]);
     }
     if rows.is_empty() {

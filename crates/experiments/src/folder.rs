@@ -1,6 +1,6 @@
-//! Lock on a folder of runs: one command at a time, and only in a folder that belongs to such commands.
+//! Folders of experiments: one command at a time, and only in a folder that belongs to such commands.
 
-use super::RunsError;
+use crate::Error;
 use fretwork_store::folder_lock::{FolderLock, LockError};
 use std::path::Path;
 
@@ -20,15 +20,15 @@ impl Owner {
     ///
     /// # Errors
     /// The command runs in it already, it holds other files, or it cannot be written.
-    pub fn take(&self, out: &Path) -> Result<FolderLock, RunsError> {
-        let fail = |e: &dyn std::fmt::Display| RunsError::write(out, e);
+    pub fn take(&self, out: &Path) -> Result<FolderLock, Error> {
+        let fail = |e: &dyn std::fmt::Display| Error::write(out, e);
         let ours = || {
             let mut known = [self.mark].into_iter().chain(self.files.iter().copied());
             known.any(|f| out.join(f).is_file())
         };
         let full = std::fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
         if full && !ours() {
-            return Err(RunsError::Usage(format!(
+            return Err(Error::Usage(format!(
                 "{} is not empty and holds no study of {}; give a new or empty folder with --out",
                 out.display(),
                 self.command
@@ -36,13 +36,13 @@ impl Owner {
         }
         std::fs::create_dir_all(out).map_err(|e| fail(&e))?;
         FolderLock::own(out, self.mark).map_err(|e| match e {
-            LockError::Held { .. } => RunsError::Usage(format!(
+            LockError::Held { .. } => Error::Usage(format!(
                 "another {} is running in {}; wait for its end, or give another folder with --out",
                 self.command,
                 out.display()
             )),
-            LockError::Write { path, reason } => RunsError::write(&path, &reason),
-            lost @ LockError::Lost { .. } => RunsError::Usage(lost.to_string()),
+            LockError::Write { path, reason } => Error::write(&path, &reason),
+            lost @ LockError::Lost { .. } => Error::Usage(lost.to_string()),
         })
     }
 }

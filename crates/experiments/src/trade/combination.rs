@@ -1,19 +1,19 @@
-//! A setting: one level for every varied parameter.
+//! A setting of a trade: one level for every varied parameter.
 
-use super::parameters::{Sense, StudyParameter};
+use super::varied::{Sense, Varied};
 
 /// Index of the level of every parameter, in the order of the parameters.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Setting(pub Vec<usize>);
+pub struct Combination(pub Vec<usize>);
 
-impl Setting {
+impl Combination {
     /// The setting of the case itself.
-    pub fn own(parameters: &[StudyParameter]) -> Self {
+    pub fn own(parameters: &[Varied]) -> Self {
         Self(parameters.iter().map(|k| k.own).collect())
     }
 
     /// The reference setting.
-    pub fn reference(parameters: &[StudyParameter]) -> Self {
+    pub fn reference(parameters: &[Varied]) -> Self {
         Self(parameters.iter().map(|k| k.reference).collect())
     }
 
@@ -25,32 +25,25 @@ impl Setting {
     }
 
     /// The parameters whose level is not the case's own.
-    pub fn changed(&self, parameters: &[StudyParameter]) -> Vec<usize> {
+    pub fn changed(&self, parameters: &[Varied]) -> Vec<usize> {
         (0..parameters.len())
             .filter(|&k| self.0[k] != parameters[k].own)
             .collect()
     }
 
     /// Name of the setting by its differences from the case: `step 5e-5, tolerance 1e-3`.
-    pub fn name(&self, parameters: &[StudyParameter]) -> String {
-        let parts: Vec<String> = self
-            .changed(parameters)
-            .into_iter()
-            .map(|k| {
-                format!(
-                    "{} {}",
-                    parameters[k].name, parameters[k].levels[self.0[k]].label
-                )
-            })
-            .collect();
+    pub fn name(&self, parameters: &[Varied]) -> String {
+        let named = |k: usize| {
+            let parameter = &parameters[k];
+            format!("{} {}", parameter.name, parameter.levels[self.0[k]].label)
+        };
+        let parts: Vec<String> = self.changed(parameters).into_iter().map(named).collect();
         if !parts.is_empty() {
             return parts.join(", ");
         }
         // Beside its other forms the case's own is named too.
-        let forms = parameters.iter().filter(|k| k.sense == Sense::Form);
-        let forms: Vec<String> = forms
-            .map(|k| format!("{} {}", k.name, k.levels[k.own].label))
-            .collect();
+        let forms = (0..parameters.len()).filter(|&k| parameters[k].sense == Sense::Form);
+        let forms: Vec<String> = forms.map(named).collect();
         match forms.is_empty() {
             true => "the case's own".to_owned(),
             false => format!("the case's own ({})", forms.join(", ")),
@@ -58,7 +51,7 @@ impl Setting {
     }
 
     /// The `--set` arguments for this setting.
-    pub fn sets(&self, parameters: &[StudyParameter]) -> Vec<String> {
+    pub fn sets(&self, parameters: &[Varied]) -> Vec<String> {
         let changed = self.changed(parameters);
         changed
             .iter()

@@ -1,11 +1,13 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
-use crate::experiments::runs::duration::seconds;
-use crate::experiments::runs::stored::summary;
-use crate::experiments::study::analysis::{labels, numeric};
-use crate::experiments::study::forecast::Forecast;
-use crate::experiments::study::plan::{Plan, Point};
-use crate::experiments::study::table::{Cell, DONE, Table};
+use super::analysis::{labels, numeric};
+use super::forecast::Forecast;
+use super::plan::{Plan, Point};
+use super::rows::Rows;
+use crate::duration::seconds;
+use crate::factor::Level;
+use crate::runs::stored::summary;
+use crate::table::Cell;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -15,14 +17,14 @@ pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: 
     for (k, factor) in plan.factors.iter().enumerate() {
         let values = match labels(plan, k).as_slice() {
             few if few.len() <= 8 => few.join(", "),
-            many => match ends(plan, k) {
-                Some((low, high)) => format!("{low} to {high} ({} values)", many.len()),
+            all => match ends(plan, k) {
+                Some((low, high)) => format!("{low} to {high} ({} values)", all.len()),
                 None => format!(
                     "{}, {}, ... {} ({} values)",
-                    many[0],
-                    many[1],
-                    many[many.len() - 1],
-                    many.len()
+                    all[0],
+                    all[1],
+                    all[all.len() - 1],
+                    all.len()
                 ),
             },
         };
@@ -77,9 +79,9 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
     if !numeric(plan, factor) {
         return None;
     }
-    let given = |v: &&crate::experiments::study::factor::Value| v.number.is_some();
+    let given = |v: &&Level| v.number.is_some();
     let values = || plan.settings.iter().map(|s| &s[factor]).filter(given);
-    let number = |v: &&crate::experiments::study::factor::Value| v.number.unwrap_or(f64::NAN);
+    let number = |v: &&Level| v.number.unwrap_or(f64::NAN);
     let low = values().min_by(|a, b| number(a).total_cmp(&number(b)))?;
     let high = values().max_by(|a, b| number(a).total_cmp(&number(b)))?;
     Some((&low.label, &high.label))
@@ -88,7 +90,7 @@ fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
 /// Each run with its changes of the case.
 pub fn points(plan: &Plan) -> String {
     let line = |p: Point| {
-        let sets: Vec<String> = p.sets.iter().map(|s| format!("--set '{s}'")).collect();
+        let sets: Vec<String> = p.run.sets.iter().map(|s| format!("--set '{s}'")).collect();
         format!("{:>6}  {}  {}", p.number, plan.words(&p), sets.join(" "))
     };
     plan.points().map(line).collect::<Vec<_>>().join("\n")
@@ -100,8 +102,7 @@ pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points:
         json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": labels(plan, k)})
     }).collect();
     let outputs: Vec<&str> = plan.outputs.iter().map(|o| o.name.as_str()).collect();
-    let point =
-        |p: Point| json!({"point": p.number, "setting": p.setting, "seed": p.seed, "set": p.sets});
+    let point = |p: Point| json!({"point": p.number, "setting": p.setting, "seed": p.run.seed, "set": p.run.sets});
     let mut whole = json!({
         "title": plan.title, "case": plan.launcher.case, "factors": factors, "outputs": outputs, "regimes": plan.regimes,
         "settings": plan.settings.len(), "seeds": plan.seeds, "seed_matters": plan.random,
@@ -118,8 +119,8 @@ pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points:
 }
 
 /// What a table holds and where it is, with a picture where one was drawn.
-pub fn collected(plan: &Plan, table: &Table, drawn: bool) -> String {
-    let counts = table.counts();
+pub fn collected(plan: &Plan, rows: &Rows, drawn: bool) -> String {
+    let counts = rows.counts();
     let mut out = format!("{} of {} runs done", counts.done, counts.all);
     if counts.failed > 0 {
         let _ = write!(
@@ -137,8 +138,8 @@ pub fn collected(plan: &Plan, table: &Table, drawn: bool) -> String {
     let folder = plan.out.display();
     let files: Vec<String> = names.map(|name| format!("{folder}/{name}")).collect();
     let _ = write!(out, "\n{}", files.join(", "));
-    for name in table.without_text(&plan.regimes) {
-        let texts = match first_texts(plan, table).join("`, `") {
+    for name in rows.without_text(&plan.regimes) {
+        let texts = match first_texts(plan, rows).join("`, `") {
             none if none.is_empty() => String::new(),
             texts => format!("; name one of `{texts}`"),
         };
@@ -151,14 +152,11 @@ pub fn collected(plan: &Plan, table: &Table, drawn: bool) -> String {
 }
 
 /// The names of the texts in the summary of the first run that is done, which `regimes` may name.
-fn first_texts(plan: &Plan, table: &Table) -> Vec<String> {
-    let cells = |name: &str| table.column(name).map_or(&[][..], |c| &c.cells);
-    let done = |status: &Cell| matches!(status, Cell::Text(text) if text == DONE);
-    let mut runs = cells("status").iter().zip(cells("folder"));
-    let Some((_, Cell::Text(folder))) = runs.find(|(status, _)| done(status)) else {
+fn first_texts(plan: &Plan, rows: &Rows) -> Vec<String> {
+    let Some(run) = rows.done().next() else {
         return Vec::new();
     };
-    let summary = summary(&plan.launcher.folder.join(folder));
+    let summary = summary(&plan.launcher.folder.join(rows.table.text("folder", run)));
     let mut names = Vec::new();
     for (key, value) in summary.as_object().into_iter().flatten() {
         match value {
@@ -174,9 +172,10 @@ fn first_texts(plan: &Plan, table: &Table) -> Vec<String> {
 }
 
 /// The table as JSON: columns with units, rows, and counts.
-pub fn json(plan: &Plan, table: &Table) -> String {
-    let counts = table.counts();
-    let columns: Map<String, Value> = table
+pub fn json(plan: &Plan, rows: &Rows) -> String {
+    let counts = rows.counts();
+    let columns: Map<String, Value> = rows
+        .table
         .columns
         .iter()
         .map(|c| {

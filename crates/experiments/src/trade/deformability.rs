@@ -1,11 +1,12 @@
-//! The knob `rung`: the forms of one case by what may deform in it, from rigid contacts to grains of finite elements.
+//! The preset `rung`: the forms of one case by what may deform in it, from rigid contacts to grains of finite elements.
 //!
 //! A level is a list of `--set` arguments. Numbers that a form needs are those of the scene: `mu` of its contact laws, properties of its
 //! materials. What would need others is not offered.
 
-use super::TradeError;
-use super::form::field;
-use super::parameters::{Level, Sense, StudyParameter};
+use super::variant::field;
+use super::varied::{Sense, Varied};
+use crate::Error;
+use crate::factor::Level;
 use fretwork_core::bodies::Dof;
 use fretwork_core::solve::error::Norm;
 use fretwork_observe::standard::Observed;
@@ -122,7 +123,7 @@ fn young(text: &str, name: &str) -> Result<f64, String> {
 ///
 /// # Errors
 /// There is one form only: a sentence that says why.
-pub fn rungs(case: &Case, scene: &Deformability) -> Result<StudyParameter, String> {
+pub fn forms(case: &Case, scene: &Deformability) -> Result<Varied, String> {
     let bodies_deform = !case.half_spaces.is_empty() || !case.elastic.is_empty();
     let springs = scene.contacts.iter().any(|c| c.compliant);
     let first_bodies = if case.elastic.is_empty() {
@@ -150,14 +151,7 @@ pub fn rungs(case: &Case, scene: &Deformability) -> Result<StudyParameter, Strin
     let every: Vec<usize> = (0..case.interfaces.len()).collect();
     forms.push(("compliant", below(compliant_contacts(case, scene))));
     forms.push(("rigid", below(rigid_contacts(case, scene, &every, true))));
-    let mut parameter = StudyParameter {
-        name: "rung".to_owned(),
-        sense: Sense::Form,
-        levels: Vec::new(),
-        own: 0,
-        reference: 0,
-        left_out: Vec::new(),
-    };
+    let mut parameter = Varied::new("rung", Sense::Form, Vec::new(), Some(0));
     for (label, form) in forms {
         let sets = match form {
             _ if label == own => {
@@ -170,18 +164,14 @@ pub fn rungs(case: &Case, scene: &Deformability) -> Result<StudyParameter, Strin
                 continue;
             }
         };
-        parameter.levels.push(Level {
-            label: label.to_owned(),
-            sets,
-            number: None,
-        });
+        parameter.levels.push(Level::named(label, sets));
     }
     several(&parameter)?;
     Ok(parameter)
 }
 
 /// Whether there is something to compare.
-fn several(parameter: &StudyParameter) -> Result<(), String> {
+fn several(parameter: &Varied) -> Result<(), String> {
     if parameter.levels.len() > 1 {
         return Ok(());
     }
@@ -199,9 +189,9 @@ fn several(parameter: &StudyParameter) -> Result<(), String> {
 /// # Errors
 /// None is left beside the case's own.
 pub fn keep_accepted(
-    parameter: &mut StudyParameter,
+    parameter: &mut Varied,
     accept: impl Fn(&[String]) -> Result<(), String>,
-) -> Result<(), TradeError> {
+) -> Result<(), Error> {
     let own = parameter.levels.get(parameter.own).cloned();
     for level in std::mem::take(&mut parameter.levels) {
         match accept(&level.sets) {
@@ -216,7 +206,7 @@ pub fn keep_accepted(
         .iter()
         .position(|l| Some(l) == own.as_ref());
     parameter.own = place.unwrap_or(0);
-    several(parameter).map_err(|why| TradeError::Usage(format!("--knob rung: {why}")))
+    several(parameter).map_err(|why| Error::Usage(format!("--knob rung: {why}")))
 }
 
 /// Where an interface is in the case, for `--set`.

@@ -1,10 +1,13 @@
 //! Estimate of the run time from a few steps of a copy of the scene, timed for a short while. No files are
 //! written.
 
-use super::duration::seconds;
+use crate::duration::seconds;
 use cpu_time::ThreadTime;
 use fretwork_core::geometry::space::Space;
-use fretwork_core::step::Simulation;
+use fretwork_scene::Scene;
+use fretwork_scene::build::Built;
+use fretwork_scene::case::Case;
+use fretwork_scene::most_steps::most_steps;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
@@ -33,6 +36,10 @@ struct Timed {
 /// Result of a short trial of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
+    /// Steps of the run.
+    steps: u64,
+    grains: usize,
+    dimension: usize,
     timed: Vec<Timed>,
     /// Wall time for which the unfinished step had run at the end (s); 0 if none was unfinished.
     pending: f64,
@@ -54,26 +61,33 @@ pub struct RunTime {
 impl Trial {
     /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the time is up,
     /// so that even the largest scene does not block the program.
-    pub fn of<S: Space>(mut simulation: Simulation<S>, steps: u64) -> Self {
+    pub fn of<S: Space>(case: &Case, built: Built<S>) -> Self {
+        let mut simulation = built.simulation;
+        let steps = most_steps(case);
+        let mut out = Self {
+            steps,
+            grains: simulation.state.bodies.grains().count(),
+            dimension: S::D,
+            ..Self::default()
+        };
         let (sender, receiver) = channel::<Result<Timed, String>>();
         let deformable = !simulation.state.systems.is_empty();
         let watched = steps.min(STEPS);
         let work = move || {
             for _ in 0..watched {
                 let clock = ThreadTime::now();
-                let told = simulation.step().map_err(|e| e.to_string());
-                let told = told.map(|report| Timed {
+                let stepped = simulation.step().map_err(|e| e.to_string());
+                let stepped = stepped.map(|report| Timed {
                     seconds: clock.elapsed().as_secs_f64(),
                     contacts: simulation.state.network.contacts.len(),
                     iterations: report.solver.iterations,
                 });
-                let failed = told.is_err();
-                if sender.send(told).is_err() || failed {
+                let failed = stepped.is_err();
+                if sender.send(stepped).is_err() || failed {
                     return;
                 }
             }
         };
-        let mut out = Self::default();
         let begun = Instant::now();
         let mut last = begun;
         if let Err(e) = std::thread::Builder::new().spawn(work) {
@@ -115,6 +129,14 @@ impl Trial {
         out
     }
 
+    /// The trial of a scene of either dimension.
+    pub fn of_scene(case: &Case, scene: Scene) -> Self {
+        match scene {
+            Scene::Dim2(built) => Self::of(case, *built),
+            Scene::Dim3(built) => Self::of(case, *built),
+        }
+    }
+
     /// The steps that are used: the first ones build neighbour lists and have no warm start.
     fn used(&self) -> &[Timed] {
         &self.timed[self.timed.len() / 2..]
@@ -142,34 +164,34 @@ impl Trial {
 
     /// Ratio of the contacts in a dense packing to the current ones: two per disk and three per sphere, half
     /// of the four and six neighbours of each.
-    fn growth(&self, grains: usize, dimension: usize) -> f64 {
-        let dense = (grains * dimension) as f64;
+    fn growth(&self) -> f64 {
+        let dense = (self.grains * self.dimension) as f64;
         (dense / self.mean(|t| t.contacts as f64).max(1.0)).max(1.0)
     }
 
-    /// Duration of a run of `steps` steps on one thread; `None` if a step failed.
-    pub fn run_time(&self, steps: u64, grains: usize, dimension: usize) -> Option<RunTime> {
+    /// Duration of the run on one thread; `None` if a step failed.
+    pub fn run_time(&self) -> Option<RunTime> {
         if self.failure.is_some() {
             return None;
         }
         if self.timed.is_empty() {
             return Some(RunTime {
                 about: None,
-                least: WATCHED.as_secs_f64() * steps as f64 / FACTOR,
+                least: WATCHED.as_secs_f64() * self.steps as f64 / FACTOR,
                 most: f64::INFINITY,
             });
         }
-        let whole = self.step() * steps as f64;
+        let whole = self.step() * self.steps as f64;
         Some(RunTime {
             about: Some(whole),
             least: whole / FACTOR,
-            most: whole * FACTOR * self.growth(grains, dimension),
+            most: whole * FACTOR * self.growth(),
         })
     }
 
     /// Report line.
-    pub fn text(&self, steps: u64, grains: usize, dimension: usize) -> String {
-        let Some(time) = self.run_time(steps, grains, dimension) else {
+    pub fn text(&self) -> String {
+        let Some(time) = self.run_time() else {
             return format!(
                 "not estimated: {}",
                 self.failure.as_deref().unwrap_or_default()
@@ -182,8 +204,8 @@ impl Trial {
                 amount(WATCHED.as_secs_f64())
             );
         };
-        let loose = if self.growth(grains, dimension) > 1.5 {
-            let dense = grains * dimension;
+        let loose = if self.growth() > 1.5 {
+            let dense = self.grains * self.dimension;
             format!("; grains are still loose, a packing has about {dense} contacts")
         } else {
             String::new()
@@ -230,17 +252,24 @@ mod tests {
         };
         // The first, expensive step is not used.
         let trial = Trial {
+            steps: 10_000,
+            grains: 100,
+            dimension: 2,
             timed: vec![step(1.0), step(2e-3), step(4e-3), step(4e-3)],
             ..Trial::default()
         };
-        let text = trial.text(10_000, 100, 2);
+        let text = trial.text();
         let begins = "about 40.0 s on one thread, between 13.3 s and 120 s";
         assert!(
             text.starts_with(begins) && !text.contains("loose"),
             "{text}"
         );
         // A tenth of the contacts of a packing: at most ten times as long.
-        let loose = trial.text(10_000, 1000, 2);
+        let loose = Trial {
+            grains: 1000,
+            ..trial.clone()
+        };
+        let loose = loose.text();
         assert!(
             loose.contains("and 20 min") && loose.contains("about 2000 contacts"),
             "{loose}"
@@ -250,17 +279,21 @@ mod tests {
             pending: 1.0,
             ..trial.clone()
         };
-        let stuck = stuck.text(10_000, 100, 2);
+        let stuck = stuck.text();
         assert!(
             stuck.starts_with("about 56 min") && stuck.contains("then one of more than 1.0 s"),
             "{stuck}"
         );
-        let none = Trial::default().text(1000, 1, 3);
+        let none = Trial {
+            steps: 1000,
+            ..Trial::default()
+        };
+        let none = none.text();
         assert!(none.starts_with("more than 167 s"), "{none}");
         let failed = Trial {
             failure: Some("no".into()),
             ..trial
         };
-        assert_eq!(failed.run_time(10, 1, 2), None);
+        assert_eq!(failed.run_time(), None);
     }
 }

@@ -1,7 +1,7 @@
 //! The table of a study as a Parquet file. Units stand in the metadata of the file, under `units` as JSON.
 
-use super::table::{Cell, Column, Table, Type as Kind};
-use crate::runs::RunsError;
+use super::{Cell, Column, Table, Type as Kind};
+use crate::Error;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -18,8 +18,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(table: &Table, path: &Path) -> Result<(), RunsError> {
-    let fail = |e: &dyn std::fmt::Display| RunsError::write(path, e);
+pub fn write(table: &Table, path: &Path) -> Result<(), Error> {
+    let fail = |e: &dyn std::fmt::Display| Error::write(path, e);
     let file = File::create(path).map_err(|e| fail(&e))?;
     write_to(table, file).map_err(|e| fail(&e))
 }
@@ -115,32 +115,11 @@ mod tests {
     /// What the reader of the same library gives back; tests/program/study reads files with another reader.
     #[test]
     fn a_table_comes_back_with_nulls_and_units() {
-        let column = |name: &str, unit: &str, kind, cells| Column {
-            name: name.into(),
-            unit: unit.into(),
-            kind,
-            cells,
-        };
         let table = Table {
             columns: vec![
-                column(
-                    "point",
-                    "",
-                    Kind::Whole,
-                    vec![Cell::Number(1.0), Cell::Number(2.0)],
-                ),
-                column(
-                    "wear.Qs",
-                    "kg/s",
-                    Kind::Real,
-                    vec![Cell::Number(0.1), Cell::Unknown],
-                ),
-                column(
-                    "law",
-                    "",
-                    Kind::Text,
-                    vec![Cell::Unknown, Cell::Text("µ".into())],
-                ),
+                Column::whole("point", [Some(1.0), Some(2.0)]),
+                Column::real("wear.Qs", "kg/s", [Some(0.1), None]),
+                Column::text("law", [String::new(), "µ".into()]),
             ],
         };
         let path = std::env::temp_dir().join(format!("fretwork-parquet-{}", std::process::id()));

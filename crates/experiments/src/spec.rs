@@ -1,7 +1,53 @@
-//! What files of studies and of fits have in common: keys of a case, how numbers of a range are spread, and which runs are accepted.
+//! What files of studies and of fits have in common: reading them, keys of a case, how numbers of a
+//! range are spread, and which runs are accepted.
 
+use crate::runs::stored::Limits;
 use fretwork_scene::source::{InputError, Source};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+
+/// The file of a study or a fit, with its text for the places of errors.
+#[derive(Debug)]
+pub struct SpecFile<T> {
+    /// What it says.
+    pub spec: T,
+    /// Its text.
+    pub source: Source,
+    /// Path of the file.
+    pub path: PathBuf,
+}
+
+/// What a file may say beyond its form.
+pub trait Spec: DeserializeOwned {
+    /// Checks what can be checked without a case.
+    ///
+    /// # Errors
+    /// At the key that is wrong.
+    fn check(&self, source: &Source) -> Result<(), InputError>;
+}
+
+impl<T: Spec> SpecFile<T> {
+    /// Reads a file and checks what can be checked without a case.
+    ///
+    /// # Errors
+    /// At file, line and column.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let source = Source::read(path)?;
+        let spec: T = source.parse()?;
+        spec.check(&source)?;
+        Ok(Self {
+            spec,
+            source,
+            path: path.to_owned(),
+        })
+    }
+
+    /// A path in the file, which is relative to it.
+    pub fn beside(&self, path: &Path) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(path)
+    }
+}
 
 /// One key of a case or several.
 #[derive(Debug, Default)]
@@ -52,16 +98,14 @@ pub enum RangeScale {
 ///
 /// # Errors
 /// At the key that is wrong.
-pub fn check_runs(
-    source: &Source,
-    threads: u16,
-    unconverged: f64,
-    residual: f64,
-) -> Result<(), InputError> {
+pub fn check_runs(source: &Source, threads: u16, limits: Limits) -> Result<(), InputError> {
     if threads == 0 {
         return Err(source.error_at("threads", "a run has one thread or more"));
     }
-    for (key, limit) in [("unconverged", unconverged), ("residual", residual)] {
+    for (key, limit) in [
+        ("unconverged", limits.unconverged),
+        ("residual", limits.residual),
+    ] {
         if !(0.0..=1.0).contains(&limit) {
             return Err(source.error_at(key, "a number from 0 to 1 is expected"));
         }

@@ -1,7 +1,8 @@
 //! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the coarsest.
 
-use super::TradeError;
-use super::parameters::{Level, Sense, StudyParameter};
+use super::varied::{Sense, Varied};
+use crate::Error;
+use crate::factor::Level;
 use crate::load;
 use fretwork_scene::case::Case;
 use fretwork_scene::source::{Source, Tree};
@@ -39,13 +40,10 @@ fn compared(case: &Case) -> Case {
 ///
 /// # Errors
 /// An argument is malformed or given twice, its file is wrong, lies elsewhere, or cannot be reached from the case by `--set`.
-pub fn variants(
-    loaded: &Loaded,
-    arguments: &[String],
-) -> Result<Option<StudyParameter>, TradeError> {
+pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>, Error> {
     let mut levels: Vec<Level> = Vec::new();
     for argument in arguments {
-        let wrong = |why: &str| TradeError::Usage(format!("--variant {argument}: {why}"));
+        let wrong = |why: &str| Error::Usage(format!("--variant {argument}: {why}"));
         let (name, file) = argument
             .split_once('=')
             .map(|(name, file)| (name.trim(), Path::new(file.trim())))
@@ -58,11 +56,8 @@ pub fn variants(
                 "the file is in another folder than the case, where other materials and tables may lie; put both into one folder",
             ));
         }
-        let level = Level {
-            label: name.to_owned(),
-            sets: difference(loaded, &other).map_err(|e| wrong(&e.in_a_sentence()))?,
-            number: None,
-        };
+        let sets = difference(loaded, &other).map_err(|e| wrong(&e.in_a_sentence()))?;
+        let level = Level::named(name, sets);
         if let Some(same) = levels
             .iter()
             .find(|l| l.label == name || l.sets == level.sets)
@@ -78,22 +73,7 @@ pub fn variants(
         return Ok(None);
     }
     let own = levels.iter().position(|l| l.sets.is_empty());
-    let own = own.unwrap_or_else(|| {
-        levels.push(Level {
-            label: "as in the case".to_owned(),
-            sets: Vec::new(),
-            number: None,
-        });
-        levels.len() - 1
-    });
-    Ok(Some(StudyParameter {
-        name: "variant".to_owned(),
-        sense: Sense::Form,
-        levels,
-        own,
-        reference: 0,
-        left_out: Vec::new(),
-    }))
+    Ok(Some(Varied::new("variant", Sense::Form, levels, own)))
 }
 
 /// The `--set` arguments that make another case of this one.

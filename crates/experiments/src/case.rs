@@ -1,0 +1,27 @@
+//! The case of an experiment.
+
+use crate::runs::randomness::seed_matters;
+use crate::{Error, Program};
+use fretwork_scene::{InputError, Loaded, Scene};
+use fretwork_store::results::state;
+use std::path::Path;
+
+/// Reads a case and applies the `--set` arguments; grains of another run are read from its
+/// `results.h5`.
+///
+/// # Errors
+/// At file, line and column.
+pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
+    Ok(fretwork_scene::load(path, sets)?.reading_records(state::read))
+}
+
+/// Builds a case as its runs will; returns the scene, and whether the seed changes it.
+///
+/// # Errors
+/// The case is refused.
+pub fn build(loaded: &Loaded, program: &Program) -> Result<(Scene, bool), Error> {
+    let scene = loaded.build(&program.search)?;
+    (program.check_names)(loaded, &scene)?;
+    let random = seed_matters(loaded, &scene, &program.search)?;
+    Ok((scene, random))
+}

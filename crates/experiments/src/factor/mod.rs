@@ -1,0 +1,238 @@
+//! What varies in an experiment: a factor turns a number of its range, or a level, into changes of
+//! the case.
+
+mod spec;
+
+pub use spec::FactorSpec;
+
+use crate::expression::number;
+use fretwork_study::design::scale::Scale;
+
+/// Label of the value that a case has, where its file does not give it.
+pub const AS_IN_THE_CASE: &str = "as in the case";
+
+/// A value that a factor takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// As it stands in tables.
+    pub label: String,
+    /// As a number, if it is one.
+    pub number: Option<f64>,
+    /// `key.path=value` for the case.
+    pub sets: Vec<String>,
+}
+
+impl Level {
+    /// The value of keys that a text says.
+    pub fn of(keys: &[String], text: &str) -> Self {
+        Self {
+            label: text.trim_matches('"').to_owned(),
+            number: text.parse().ok().filter(|x: &f64| x.is_finite()),
+            sets: keys.iter().map(|key| format!("{key}={text}")).collect(),
+        }
+    }
+
+    /// A named alternative, which is no number.
+    pub fn named(label: &str, sets: Vec<String>) -> Self {
+        Self {
+            label: label.to_owned(),
+            number: None,
+            sets,
+        }
+    }
+
+    /// Whether it is that of the case as it is, and the case does not tell it.
+    pub fn is_unknown(&self) -> bool {
+        self.label == AS_IN_THE_CASE && self.number.is_none() && self.sets.is_empty()
+    }
+
+    /// Whether it is the same number, or without numbers the same text.
+    pub fn equals(&self, other: &Self) -> bool {
+        match (self.number, other.number) {
+            (Some(a), Some(b)) => a == b,
+            _ => self.label == other.label,
+        }
+    }
+}
+
+/// Which values a factor takes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers of a range.
+    Range {
+        /// Its ends, and how they are spread.
+        scale: Scale,
+        /// How many there are in designs of levels.
+        levels: Option<u16>,
+    },
+    /// Listed values.
+    Listed(Vec<Level>),
+}
+
+/// A factor of an experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    /// Name in tables and figures.
+    pub name: String,
+    /// The keys that take its value; none for named alternatives.
+    pub keys: Vec<String>,
+    /// SI unit, where the file gives it, since no key has one.
+    pub unit: String,
+    /// Its values.
+    pub values: Values,
+}
+
+/// Digits of a number of a range: more would be noise of the last bit in tables.
+const DIGITS: usize = 10;
+
+impl Factor {
+    /// A column of a table of points: its name, or the key that it sets.
+    pub fn of_column(key: &str, values: Vec<String>) -> Self {
+        let keys = vec![key.to_owned()];
+        let listed = values.iter().map(|text| Level::of(&keys, text)).collect();
+        Self {
+            name: key.to_owned(),
+            keys,
+            unit: String::new(),
+            values: Values::Listed(listed),
+        }
+    }
+
+    /// Its levels; `None` for a range without a number of them.
+    pub fn levels(&self) -> Option<Vec<Level>> {
+        match &self.values {
+            Values::Listed(values) => Some(values.clone()),
+            Values::Range { scale, levels } => {
+                let numbers = scale.levels(usize::from((*levels)?));
+                Some(numbers.into_iter().map(|x| self.value(x)).collect())
+            }
+        }
+    }
+
+    /// The value at a place from 0 to 1: of a range by its scale, with both ends; of listed values in equal parts.
+    pub fn at(&self, place: f64) -> Level {
+        match &self.values {
+            Values::Listed(values) => {
+                let k = (place * values.len() as f64) as usize;
+                values[k.min(values.len() - 1)].clone()
+            }
+            Values::Range { scale, .. } => self.value(scale.at(place)),
+        }
+    }
+
+    /// The value of a table: a number of the range, a level by its label, or any value of its key.
+    ///
+    /// # Errors
+    /// The factor does not take it.
+    pub fn named(&self, text: &str) -> Result<Level, String> {
+        let name = &self.name;
+        let value = Level::of(&self.keys, text);
+        match &self.values {
+            Values::Range { scale, .. } => match (value.number, scale) {
+                (None, _) => Err(format!(
+                    "`{name}` is a range of numbers, and `{text}` is none"
+                )),
+                (Some(x), Scale::Logarithmic { .. }) if x <= 0.0 => Err(format!(
+                    "`{name}` has `scale: Log`, for which numbers are above zero, and {text} is not"
+                )),
+                (Some(x), Scale::Integer { .. }) if x.fract() != 0.0 => Err(format!(
+                    "`{name}` is a range of whole numbers, and {text} is none"
+                )),
+                _ => Ok(value),
+            },
+            Values::Listed(values) => {
+                // Equal numbers are one level, however they are spelled.
+                let known = values
+                    .iter()
+                    .find(|v| v.label == value.label)
+                    .or_else(|| values.iter().find(|v| v.equals(&value)));
+                match known {
+                    Some(known) => Ok(known.clone()),
+                    None if !self.keys.is_empty() => Ok(value),
+                    None => {
+                        let labels: Vec<&str> = values.iter().map(|v| v.label.as_str()).collect();
+                        let labels = labels.join(", ");
+                        Err(format!(
+                            "`{name}` has no option `{text}`; there are {labels}"
+                        ))
+                    }
+                }
+            }
+        }
+    }
+
+    /// The level of a number, to ten digits.
+    fn value(&self, x: f64) -> Level {
+        let rounded: f64 = format!("{x:.*e}", DIGITS - 1).parse().unwrap_or(x);
+        match &self.values {
+            Values::Range {
+                scale: Scale::Integer { .. },
+                ..
+            } => Level::of(&self.keys, &format!("{rounded:.0}")),
+            _ => self.exactly(rounded),
+        }
+    }
+
+    /// The level of a number, with all its digits.
+    pub fn exactly(&self, x: f64) -> Level {
+        // A field of floats takes a number with a point.
+        match number(x) {
+            text if text.contains(['.', 'e']) => Level::of(&self.keys, &text),
+            whole => Level::of(&self.keys, &format!("{whole}.0")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(scale: Scale, levels: u16) -> Factor {
+        Factor {
+            name: "x".into(),
+            keys: vec!["a".into(), "b".into()],
+            unit: String::new(),
+            values: Values::Range {
+                scale,
+                levels: Some(levels),
+            },
+        }
+    }
+
+    const LINEAR: Scale = Scale::Linear { from: 0.0, to: 1.0 };
+    const LOG: Scale = Scale::Logarithmic {
+        from: 1e-8,
+        to: 1e-6,
+    };
+    const WHOLE: Scale = Scale::Integer { from: 1, to: 3 };
+
+    #[test]
+    fn levels_go_from_end_to_end_in_the_scale_of_the_range() {
+        let labels = |f: &Factor| -> Vec<String> {
+            f.levels().unwrap().into_iter().map(|v| v.label).collect()
+        };
+        assert_eq!(labels(&range(LINEAR, 3)), ["0.0", "0.5", "1.0"]);
+        assert_eq!(labels(&range(LOG, 3)), ["1e-8", "1e-7", "1e-6"]);
+        assert_eq!(labels(&range(WHOLE, 5)), ["1", "2", "3"]);
+        let one = &range(LINEAR, 3).levels().unwrap()[1];
+        assert_eq!(one.sets, ["a=0.5", "b=0.5"]);
+        assert_eq!(one.number, Some(0.5));
+    }
+
+    /// Whole numbers and listed values have equal parts of the way from 0 to 1.
+    #[test]
+    fn places_are_shared_equally() {
+        let three = range(WHOLE, 3);
+        let at = |f: &Factor, x| f.at(x).label;
+        assert_eq!(
+            [0.0, 0.33, 0.34, 0.67, 1.0].map(|x| at(&three, x)),
+            ["1", "1", "2", "3", "3"]
+        );
+        let listed = Factor::of_column("law", vec!["\"mac\"".into(), "\"none\"".into()]);
+        assert_eq!(
+            [0.0, 0.49, 0.5, 1.0].map(|x| at(&listed, x)),
+            ["mac", "mac", "none", "none"]
+        );
+        assert_eq!(listed.at(0.0).sets, ["law=\"mac\""]);
+    }
+}

@@ -1,0 +1,52 @@
+//! The files of a study: tables of runs and settings, the page and the picture.
+
+use super::analysis::Analysis;
+use super::figures::draw;
+use super::page::sheet;
+use super::plan::Plan;
+use super::rows::{Rows, of_settings};
+use crate::Error;
+use crate::table::{csv, parquet};
+use std::collections::BTreeSet;
+
+/// Writes what the runs of a study say into its folder; returns whether there is a picture.
+///
+/// # Errors
+/// A file cannot be written, or all runs in the folder are of something else: tables are left as
+/// they are.
+pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
+    let others = other_runs(plan, rows);
+    if rows.counts().missing == plan.count() && others > 0 {
+        return Err(Error::Failed(format!(
+            "none of the {others} runs in {} is of this study by this program: its build, its laws, the case or a file that it names is another since; \
+             tables are left as they are, `fretwork study run` makes the runs again",
+            plan.launcher.folder.display()
+        )));
+    }
+    let path = |name: &str| plan.out.join(name);
+    csv::write(&rows.table, &path("table.csv"), csv::Numbers::Plain)?;
+    parquet::write(&rows.table, &path("table.parquet"))?;
+    let analysis = Analysis::of(plan, &plan.design, rows);
+    let settings = of_settings(plan, &analysis);
+    csv::write(&settings, &path("settings.csv"), csv::Numbers::Plain)?;
+    let page = sheet(plan, rows, &analysis).write(&path("study.html"));
+    page.map_err(|e| Error::Failed(e.to_string()))?;
+    let picture = path("study.png");
+    let drawn = draw(plan, &analysis, &picture)?;
+    if !drawn {
+        // A picture of an earlier state would be mistaken for one of this.
+        let _ = std::fs::remove_file(&picture);
+    }
+    Ok(drawn)
+}
+
+/// Number of runs in the folder that are no points of the study by this program.
+fn other_runs(plan: &Plan, rows: &Rows) -> usize {
+    let count = rows.table.rows();
+    let own: BTreeSet<&str> = (0..count).map(|k| rows.table.text("folder", k)).collect();
+    let folders = std::fs::read_dir(&plan.launcher.folder);
+    let runs = folders.into_iter().flatten().flatten();
+    runs.filter(|f| f.path().join("run.json").is_file())
+        .filter(|f| !own.contains(f.file_name().to_string_lossy().as_ref()))
+        .count()
+}

@@ -1,0 +1,257 @@
+//! The tables of a study: a row for each run, with what was asked, what came out and how it ended,
+//! failed runs too; and a row for each setting, with means over its runs.
+
+use super::analysis::{Analysis, numeric};
+use super::plan::Plan;
+use crate::factor::Level;
+use crate::runs::quantity::Quantity;
+use crate::runs::stored::{Finished, Status, summary};
+use crate::runs::unit::unit_of;
+use crate::table::{Cell, Column, Table, Type};
+use fretwork_study::interval::Mean;
+use serde_json::Value as Json;
+
+/// Status of a run that is done and trusted.
+pub const DONE: &str = "done";
+
+/// Status of a run that was not made.
+pub const NOT_RUN: &str = "not run";
+
+/// Names of columns that the table of runs has itself.
+pub const COLUMNS: [&str; 11] = [
+    "point",
+    "setting",
+    "seed",
+    "status",
+    "reason",
+    "not_trustworthy",
+    "steps",
+    "cpu_seconds",
+    "wall_seconds",
+    "identity",
+    "folder",
+];
+
+/// The table of the runs of a study, in the order of their numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// The table.
+    pub table: Table,
+    statuses: Vec<&'static str>,
+}
+
+/// How many runs ended in which way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Runs.
+    pub all: usize,
+    /// Done and trusted.
+    pub done: usize,
+    /// Refused, failed, or beyond the limits of the study.
+    pub failed: usize,
+    /// Not made yet.
+    pub missing: usize,
+}
+
+/// A run of the study as it is on disk.
+struct Row {
+    run: Option<Finished>,
+    summary: Json,
+    place: std::path::PathBuf,
+}
+
+impl Rows {
+    /// Gathers the runs of a study that are there.
+    pub fn of(plan: &Plan) -> Self {
+        let points: Vec<_> = plan.points().collect();
+        let row = |p: &super::plan::Point| {
+            let place = plan.launcher.place(&p.run);
+            let run = plan.launcher.ended_in(&place);
+            let summary = run.as_ref().map_or(Json::Null, |_| summary(&place));
+            Row {
+                run,
+                summary,
+                place,
+            }
+        };
+        let rows: Vec<Row> = points.iter().map(row).collect();
+        let mut columns = vec![
+            Column::whole("point", points.iter().map(|p| Some(p.number as f64))),
+            Column::whole("setting", points.iter().map(|p| Some(p.setting as f64))),
+            Column::whole("seed", points.iter().map(|p| Some(p.run.seed as f64))),
+        ];
+        for k in 0..plan.factors.len() {
+            let levels = points.iter().map(|p| &plan.settings[p.setting - 1][k]);
+            columns.push(factor_column(plan, k, levels));
+        }
+        for output in &plan.outputs {
+            let ended = rows.iter().find(|r| r.run.is_some());
+            let unit = ended.map(|r| unit_of(output, &r.summary, &r.place));
+            let unit = unit.unwrap_or_default();
+            let value = |r: &Row| r.run.as_ref().and(output.read(&r.summary, &r.place));
+            columns.push(Column::real(&output.name, &unit, rows.iter().map(value)));
+            let errors = rows.iter().map(|r| own_error(output, &r.summary));
+            let errors = Column::real(format!("{}_numerical_error", output.name), unit, errors);
+            if errors.cells.iter().any(|c| *c != Cell::Unknown) {
+                columns.push(errors);
+            }
+        }
+        let text = |name: &str, f: &dyn Fn(&Row) -> String| Column::text(name, rows.iter().map(f));
+        let of_run = |f: fn(&Finished) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
+        for regime in &plan.regimes {
+            columns.push(text(regime, &|r| regime_of(&r.summary, regime)));
+        }
+        columns.extend([
+            text("status", &|r| status(r.run.as_ref()).0.to_owned()),
+            text("reason", &|r| status(r.run.as_ref()).1),
+            text("not_trustworthy", &|r| {
+                let doubts = r.run.as_ref().map(|run| run.doubts.join("; "));
+                doubts.unwrap_or_default()
+            }),
+            Column::whole("steps", rows.iter().map(|r| r.summary["steps"].as_f64())),
+            Column::real("cpu_seconds", "s", of_run(|run| run.seconds)),
+            Column::real("wall_seconds", "s", of_run(|run| run.wall)),
+            text("identity", &|r| {
+                let identity = r.summary["identity"].as_str();
+                identity.unwrap_or_default().to_owned()
+            }),
+            text("folder", &|r| {
+                let name = r.place.file_name().unwrap_or_default();
+                name.to_string_lossy().into_owned()
+            }),
+        ]);
+        Self {
+            table: Table { columns },
+            statuses: rows.iter().map(|r| status(r.run.as_ref()).0).collect(),
+        }
+    }
+
+    /// How the runs ended.
+    pub fn counts(&self) -> Counts {
+        let count = |word: &str| self.statuses.iter().filter(|s| **s == word).count();
+        let (all, done, missing) = (self.statuses.len(), count(DONE), count(NOT_RUN));
+        Counts {
+            all,
+            done,
+            failed: all - done - missing,
+            missing,
+        }
+    }
+
+    /// Whether a run is done and trusted.
+    pub fn is_done(&self, run: usize) -> bool {
+        self.statuses.get(run) == Some(&DONE)
+    }
+
+    /// Numbers of the runs that are done and trusted, from 0.
+    pub fn done(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.statuses.len()).filter(|k| self.is_done(*k))
+    }
+
+    /// Those of some columns in which no run that is done has anything.
+    pub fn without_text<'a>(&self, names: &'a [String]) -> Vec<&'a str> {
+        let empty = |name: &&str| self.done().all(|run| self.table.text(name, run).is_empty());
+        match self.counts().done {
+            0 => Vec::new(),
+            _ => names.iter().map(String::as_str).filter(empty).collect(),
+        }
+    }
+
+    /// In place of a mean of a setting none of whose runs is done: how they ended.
+    pub fn without_result(&self, setting: usize, seeds: usize) -> String {
+        let mut words: Vec<&str> = Vec::new();
+        for word in &self.statuses[setting * seeds..(setting + 1) * seeds] {
+            if !words.contains(word) {
+                words.push(word);
+            }
+        }
+        words.join(", ")
+    }
+
+    /// The values of an output by run; `None` where there is no run that is done and trusted.
+    pub fn trusted(&self, name: &str) -> Vec<Option<f64>> {
+        let cells = self.table.column(name).map_or(&[][..], |c| &c.cells);
+        let value = |(k, cell): (usize, &Cell)| match cell {
+            Cell::Number(x) if self.is_done(k) => Some(*x),
+            _ => None,
+        };
+        cells.iter().enumerate().map(value).collect()
+    }
+}
+
+/// The table of settings: values of the factors, and means over the seeds with half-widths of 95 %,
+/// scatter and counts.
+pub fn of_settings(plan: &Plan, analysis: &Analysis) -> Table {
+    let count = plan.settings.len();
+    let numbers = (1..=count).map(|k| Some(k as f64));
+    let mut columns = vec![Column::whole("setting", numbers)];
+    for k in 0..plan.factors.len() {
+        columns.push(factor_column(plan, k, plan.settings.iter().map(|s| &s[k])));
+    }
+    for output in &analysis.outputs {
+        let (name, unit) = (&output.name, &output.unit);
+        let of = |f: fn(&Mean) -> Option<f64>| {
+            let means = output.means.iter();
+            means.map(move |m| m.as_ref().and_then(f))
+        };
+        columns.extend([
+            Column::real(name, unit, of(|m| Some(m.mean))),
+            Column::real(format!("{name}_half_width"), unit, of(|m| m.half_width)),
+            Column::real(format!("{name}_scatter"), unit, of(|m| m.scatter)),
+            Column::whole(format!("{name}_runs"), of(|m| Some(m.count as f64))),
+        ]);
+    }
+    for regimes in &analysis.regimes {
+        let words = (0..count).map(|k| regimes.words(k));
+        columns.push(Column::text(&regimes.name, words));
+    }
+    Table { columns }
+}
+
+/// Values of a factor as numbers, if all are, otherwise as texts.
+fn factor_column<'a>(
+    plan: &Plan,
+    factor: usize,
+    levels: impl Iterator<Item = &'a Level>,
+) -> Column {
+    let name = &plan.factors[factor].name;
+    match numeric(plan, factor) {
+        true => Column::real(name, plan.unit_of(factor), levels.map(|l| l.number)),
+        false => Column {
+            name: name.clone(),
+            unit: plan.unit_of(factor),
+            kind: Type::Text,
+            cells: levels.map(|l| Cell::Text(l.label.clone())).collect(),
+        },
+    }
+}
+
+/// A text of a summary, up to the first sign that ends a name.
+fn regime_of(summary: &Json, name: &str) -> String {
+    let found = name.split('.').try_fold(summary, |v, part| v.get(part));
+    let text = found.and_then(Json::as_str).unwrap_or_default();
+    let end = text.find([':', ',', ';', '(']).unwrap_or(text.len());
+    text[..end].trim().to_owned()
+}
+
+/// Status of a run and its reason.
+pub fn status(run: Option<&Finished>) -> (&'static str, String) {
+    let Some(run) = run else {
+        return (NOT_RUN, String::new());
+    };
+    match &run.status {
+        Status::Done => (DONE, String::new()),
+        Status::Slow(s) => ("stopped", format!("it took more than {s:.0} s")),
+        Status::Refused(why) => ("refused", why.clone()),
+        Status::Failed(why) => ("failed", why.clone()),
+        Status::Rejected(why) => ("rejected", why.clone()),
+    }
+}
+
+/// Half-width of the error of step, tolerance and coupling that a run estimates of an output.
+fn own_error(output: &Quantity, summary: &Json) -> Option<f64> {
+    let own = &summary["uncertainty"][output.name.as_str()];
+    let parts = ["step", "tolerance", "coupling"].map(|key| own[key].as_f64());
+    let known: Vec<f64> = parts.into_iter().flatten().collect();
+    (!known.is_empty()).then(|| known.iter().sum())
+}

@@ -1,0 +1,79 @@
+//! CSV files: tables that are written, points and measured curves that are read.
+
+use super::cells::{guarded, unguarded};
+use super::{Cell, Table, Type};
+use crate::Error;
+use std::path::Path;
+
+/// How numbers that are not whole are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Numbers {
+    /// As short as they read back: `0.001`.
+    Plain,
+    /// With exponents: `1e-3`.
+    Exponents,
+}
+
+/// Writes a table; headings have units, `wear.Qs [kg/s]`, and what is not known is empty.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> {
+    let text = || -> csv::Result<()> {
+        let mut out = csv::Writer::from_path(path)?;
+        out.write_record(table.columns.iter().map(|c| match c.unit.as_str() {
+            "" => guarded(&c.name),
+            unit => guarded(&format!("{} [{unit}]", c.name)),
+        }))?;
+        for k in 0..table.rows() {
+            out.write_record(table.columns.iter().map(|c| match &c.cells[k] {
+                Cell::Number(x) if numbers == Numbers::Exponents && c.kind == Type::Real => {
+                    format!("{x:e}")
+                }
+                Cell::Number(x) => format!("{x}"),
+                Cell::Text(text) => guarded(text),
+                Cell::Unknown => String::new(),
+            }))?;
+        }
+        Ok(out.flush()?)
+    };
+    text().map_err(|e| Error::write(path, &e))
+}
+
+/// A file that was read.
+#[derive(Debug)]
+pub struct Texts {
+    /// Headings as they stand, `stress [MPa]`.
+    pub headings: Vec<String>,
+    /// Rows, with a text for each column.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A heading without its unit.
+pub fn without_unit(heading: &str) -> &str {
+    heading.split(" [").next().unwrap_or(heading).trim()
+}
+
+/// Reads a file with headings, in which lines that begin with `#` are comments.
+///
+/// # Errors
+/// The file cannot be read, or has rows of different lengths.
+pub fn read(path: &Path) -> Result<Texts, Error> {
+    let row = |record: &csv::StringRecord| -> Vec<String> {
+        let cells = record.iter().map(unguarded);
+        cells.map(str::to_owned).collect()
+    };
+    let texts = || -> csv::Result<Texts> {
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_path(path)?;
+        let headings = row(reader.headers()?);
+        let rows = reader.records().map(|record| Ok(row(&record?)));
+        Ok(Texts {
+            headings,
+            rows: rows.collect::<csv::Result<_>>()?,
+        })
+    };
+    texts().map_err(|e| Error::Usage(format!("{}: {e}", path.display())))
+}

@@ -1,0 +1,111 @@
+//! Tables: columns of numbers or texts, a row for each run, setting or point.
+
+pub mod cells;
+pub mod csv;
+pub mod parquet;
+
+/// A value of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+    /// Nothing: not run, or the run has no such value.
+    Unknown,
+}
+
+/// What the cells of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Type {
+    /// Numbers.
+    Real,
+    /// Whole numbers.
+    Whole,
+    /// Texts.
+    Text,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// SI unit; empty for pure numbers and texts.
+    pub unit: String,
+    /// What its cells are.
+    pub kind: Type,
+    /// One cell for each row.
+    pub cells: Vec<Cell>,
+}
+
+impl Column {
+    /// Numbers in a unit; `None` is not known.
+    pub fn real(
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        values: impl IntoIterator<Item = Option<f64>>,
+    ) -> Self {
+        let cell = |x: Option<f64>| x.map_or(Cell::Unknown, Cell::Number);
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            kind: Type::Real,
+            cells: values.into_iter().map(cell).collect(),
+        }
+    }
+
+    /// Whole numbers; `None` is not known.
+    pub fn whole(name: impl Into<String>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
+        Self {
+            kind: Type::Whole,
+            ..Self::real(name, "", values)
+        }
+    }
+
+    /// Texts; an empty one is not known.
+    pub fn text(name: impl Into<String>, texts: impl IntoIterator<Item = String>) -> Self {
+        let cell = |text: String| match text.is_empty() {
+            true => Cell::Unknown,
+            false => Cell::Text(text),
+        };
+        Self {
+            name: name.into(),
+            unit: String::new(),
+            kind: Type::Text,
+            cells: texts.into_iter().map(cell).collect(),
+        }
+    }
+
+    /// The text of a row; of what is no text nothing.
+    pub fn text_of(&self, row: usize) -> &str {
+        match self.cells.get(row) {
+            Some(Cell::Text(text)) => text,
+            _ => "",
+        }
+    }
+}
+
+/// Columns of one length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Its columns.
+    pub columns: Vec<Column>,
+}
+
+impl Table {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |c| c.cells.len())
+    }
+
+    /// The column of a name.
+    pub fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|c| c.name == name)
+    }
+
+    /// The text of a row in the column of a name; nothing where there is none.
+    pub fn text(&self, name: &str, row: usize) -> &str {
+        self.column(name).map_or("", |c| c.text_of(row))
+    }
+}

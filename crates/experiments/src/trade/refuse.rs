@@ -1,0 +1,126 @@
+//! Checks of a trade before it runs: outputs that the case does not have, and a budget below one run.
+
+use super::output::Output;
+use super::plan::Trade;
+use super::request::Request;
+use crate::Error;
+use crate::duration::seconds;
+use crate::runs::launcher::{Patience, Run};
+use crate::runs::offer::{Offer, measure_names};
+use crate::runs::stored::summary;
+use crate::runs::trial::Trial;
+use fretwork_scene::Scene;
+use fretwork_scene::case::Case;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// The requested outputs, or the default ones, with their exact values where given; an error if the case does
+/// not have one.
+///
+/// # Errors
+/// An output or an exact value is wrong.
+pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
+    let asked = request.outputs.iter().map(|t| Output::parse(t));
+    let usual = offer.usual().into_iter().map(Output::parse);
+    let mut outputs: Vec<Output> = match request.outputs.is_empty() {
+        true => usual.collect::<Result<_, _>>()?,
+        false => asked.collect::<Result<_, _>>()?,
+    };
+    if outputs.is_empty() {
+        return Err(Error::Usage(
+            "the case has no friction test, damage or wear to compare; name an output, such as --output energy.kinetic=1%".into(),
+        ));
+    }
+    for (k, output) in outputs.iter().enumerate() {
+        if outputs[..k].iter().any(|o| o.name() == output.name()) {
+            return Err(Error::Usage(format!(
+                "--output {} is given twice; name it once, with the error wanted",
+                output.name()
+            )));
+        }
+        offer
+            .check(&output.quantity)
+            .map_err(|why| output.refused(&why))?;
+    }
+    for text in &request.exact {
+        let wrong = |why: &str| {
+            Error::Usage(format!(
+                "--exact {text}: {why}; expected NAME=VALUE of one of the outputs"
+            ))
+        };
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("there is no `=`"))?;
+        let value: f64 = value
+            .trim()
+            .parse()
+            .ok()
+            .filter(|v: &f64| v.is_finite())
+            .ok_or_else(|| wrong("the value is not a number"))?;
+        let found = outputs.iter_mut().find(|o| o.name() == name.trim());
+        found
+            .ok_or_else(|| wrong("no --output has this name"))?
+            .exact = Some(value);
+    }
+    Ok(outputs)
+}
+
+/// Rejects a budget smaller than one run of the case, as estimated by a short trial: a trade takes
+/// many runs. A case that phases or jumps may end early is not checked.
+///
+/// # Errors
+/// The budget is too small.
+pub fn budget(request: &Request, case: &Case, scene: Scene) -> Result<(), Error> {
+    let early = case.jump.is_some() || case.phases.last().is_some_and(|p| p.until.is_some());
+    if early {
+        return Ok(());
+    }
+    let trial = Trial::of_scene(case, scene);
+    let budget = request.budget.as_secs_f64();
+    let Some(run) = trial.run_time() else {
+        // A failing step is reported by the run itself.
+        return Ok(());
+    };
+    let one = run.about.unwrap_or(run.least);
+    if one <= budget {
+        return Ok(());
+    }
+    // The case's own setting, a reference and two neighbours at half the step, over all seeds.
+    let usual = one * 8.0 * f64::from(request.seeds);
+    Err(Error::Usage(format!(
+        "--budget {}: one run of the case as it is takes {}; give --budget {:.0}m or more, or a shorter case (--set time.end=...)",
+        seconds(budget),
+        trial.text(),
+        (usual / 60.0).ceil()
+    )))
+}
+
+/// Checks names in groups that only a run fills against a run of two steps, if the case allows one so
+/// short.
+///
+/// # Errors
+/// An output that the run does not have.
+pub fn after_two_steps(trade: &Trade, case: &Case, stop: &AtomicBool) -> Result<(), Error> {
+    let short = Run {
+        sets: vec![format!("time.end={:e}", 2.0 * case.time.step)],
+        seed: case.seed,
+    };
+    let patience = Patience {
+        deadline: Some(Instant::now() + Duration::from_secs(60).min(trade.budget)),
+        limit: None,
+        stop,
+    };
+    let launcher = &trade.launcher;
+    if launcher.stored(&short).is_none() && launcher.run(&short, patience)?.is_none() {
+        return Ok(());
+    }
+    let place = launcher.place(&short);
+    let summary = summary(&place);
+    for output in trade.outputs.iter().filter(|_| summary.is_object()) {
+        output
+            .quantity
+            .check(&summary, &place, &measure_names(case))
+            .map_err(|why| output.refused(&why))?;
+    }
+    Ok(())
+}

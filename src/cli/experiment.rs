@@ -1,0 +1,83 @@
+//! What `study`, `fit` and `trade` have in common on a terminal.
+
+use super::output::report;
+use super::{Failure, again};
+use crate::experiments::Error;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+impl From<Error> for Failure {
+    fn from(e: Error) -> Self {
+        match e {
+            Error::Input(e) => Self::Input(e),
+            Error::Usage(text) => Self::Usage(text),
+            other => Self::Failed(other.to_string()),
+        }
+    }
+}
+
+/// The folder of the results; results/<command>/<file> by default.
+pub fn results(out: Option<&Path>, command: &str, file: &Path) -> PathBuf {
+    let default = || {
+        let name = file.file_stem().unwrap_or_default();
+        Path::new("results").join(command).join(name)
+    };
+    out.map_or_else(default, Path::to_owned)
+}
+
+/// The end of a command that was asked to stop.
+pub fn interrupted() -> Failure {
+    Failure::Failed(format!(
+        "interrupted: finished runs are kept; to continue from there:\n  {}",
+        again::command(&[])
+    ))
+}
+
+/// A bar over runs on a terminal; nothing elsewhere.
+#[derive(Debug, Default)]
+pub struct RunsBar(Option<ProgressBar>);
+
+impl RunsBar {
+    /// A bar over `count` runs, named where there are several.
+    pub fn new(count: usize, name: &str) -> Self {
+        let terminal =
+            std::io::stderr().is_terminal() && std::env::var_os("FRETWORK_QUIET").is_none();
+        Self((terminal && count > 0).then(|| {
+            let template = match name {
+                "" => "{bar:40} {pos}/{len} runs  {elapsed} of about {duration}",
+                _ => "{msg:16} {bar:30} {pos}/{len} runs  {elapsed} of about {duration}",
+            };
+            let style = ProgressStyle::with_template(template);
+            let bar = ProgressBar::new(count as u64).with_message(name.to_owned());
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.enable_steady_tick(Duration::from_secs(1));
+            bar
+        }))
+    }
+
+    /// Counts a run.
+    pub fn run(&self) {
+        if let Some(bar) = &self.0 {
+            bar.inc(1);
+        }
+    }
+
+    /// Prints a line above the bar if it must be seen, or where there is no bar.
+    pub fn line(&self, text: &str, must: bool) {
+        match &self.0 {
+            Some(bar) if must => bar.println(text),
+            Some(_) => {}
+            None => report(text),
+        }
+    }
+}
+
+impl Drop for RunsBar {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
