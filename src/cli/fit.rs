@@ -21,7 +21,8 @@ use std::time::Duration;
 pub struct FitArgs {
     /// The file of the fit (RON)
     fit: PathBuf,
-    /// Folder of the results, in which an interrupted fit also continues; results/fit/<fit> by default
+    /// Folder of the results, in which an interrupted fit also continues; results/fit/<fit> by
+    /// default
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Folder of the runs, which several fits may share; <out>/runs by default

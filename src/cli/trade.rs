@@ -19,26 +19,28 @@ use std::time::{Duration, Instant};
 pub struct TradeArgs {
     #[command(flatten)]
     case: CaseArgs,
-    /// An output and its wanted error: a name of summary.json (wear.Qs) or statistics.COLUMN (mean of the
-    /// last half; :max, :min, :last), =1% or =0.003 in its unit; by default friction, damage ratio and wear
-    /// at 1 %
+    /// An output and its wanted error: a name of summary.json (wear.Qs) or statistics.COLUMN (mean
+    /// of the last half; :max, :min, :last), =1% or =0.003 in its unit; by default friction, damage
+    /// ratio and wear at 1 %
     #[arg(long = "output", value_name = "NAME=ERROR")]
     outputs: Vec<String>,
-    /// Exact value of an output, for example from a closed form; errors are then measured against it
+    /// Exact value of an output, for example from a closed form; errors are then measured against
+    /// it
     #[arg(long = "exact", value_name = "NAME=VALUE")]
     exact: Vec<String>,
-    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction; and, only where named,
-    /// accuracy, grains, rung (what deforms)
+    /// Parameter to vary: step, tolerance, solver, test_every, coupling, correction; and, only
+    /// where named, accuracy, grains, rung (what deforms)
     #[arg(long = "knob", value_name = "NAME")]
     parameters: Vec<String>,
     /// Vary any value of the case; the first value is that of the reference
     #[arg(long = "vary", value_name = "KEY.PATH=A,B,C")]
     vary: Vec<String>,
-    /// Compare another file as a form of the case, the finest first; the case itself may be one of them
+    /// Compare another file as a form of the case, the finest first; the case itself may be one of
+    /// them
     #[arg(long = "variant", value_name = "NAME=FILE")]
     variants: Vec<String>,
-    /// Seeds per setting, from the case's own upwards; one run if nothing is random and contacts are not
-    /// chaotic
+    /// Seeds per setting, from the case's own upwards; one run if nothing is random and contacts
+    /// are not chaotic
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     seeds: u16,
     /// Time budget of the study: 90s, 10m, 2h
@@ -47,7 +49,8 @@ pub struct TradeArgs {
     /// Parallel runs; they disturb each other's timing, so 1 times best
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Folder of the results, in which an interrupted study also continues; by default results/trade/<case>
+    /// Folder of the results, in which an interrupted study also continues; by default
+    /// results/trade/<case>
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Largest fraction of steps that may miss the tolerance in an accepted run

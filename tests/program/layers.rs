@@ -18,12 +18,11 @@ const BESIDE_NUMBERS: [&str; 7] = [
 
 /// Each layer, the layers it may name, and libraries that neither it nor what it stands on may
 /// bring.
-const LAYERS: [(&str, &[&str], &[&str]); 10] = [
-    ("diffusion", &[], &BESIDE_NUMBERS),
-    ("study", &[], &BESIDE_NUMBERS),
+const LAYERS: [(&str, &[&str], &[&str]); 9] = [
+    ("math", &[], &BESIDE_NUMBERS),
     (
         "core",
-        &["diffusion"],
+        &["math"],
         &[
             "rust-hdf5",
             "clap",
@@ -66,7 +65,7 @@ const LAYERS: [(&str, &[&str], &[&str]); 10] = [
     (
         "experiments",
         &[
-            "core", "elastic", "observe", "scene", "store", "study", "view",
+            "core", "elastic", "math", "observe", "scene", "store", "view",
         ],
         &["clap", "indicatif"],
     ),

@@ -1,6 +1,6 @@
 //! Means over seeds with their intervals, and straight lines through them.
 
-use fretwork_study::interval::Mean;
+use fretwork_math::statistics::interval::Mean;
 
 /// A number with the half-width of its 95 % interval; infinite for a mean of one seed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,5 @@
-//! Expressions in names: changes of a case that follow from several values, and columns that are made
-//! of others.
+//! Expressions in names: changes of a case that follow from several values, and columns that are
+//! made of others.
 
 use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, literal_matcher_from_pattern};
 
@@ -20,7 +20,8 @@ pub struct Expression {
 }
 
 impl Expression {
-    /// Parses an expression whose variables are among `names`: `+ - * / ^`, `sqrt`, `abs`, `exp`, `ln`, `sin` and others, `PI`.
+    /// Parses an expression whose variables are among `names`: `+ - * / ^`, `sqrt`, `abs`, `exp`,
+    /// `ln`, `sin` and others, `PI`.
     ///
     /// # Errors
     /// What is wrong with it, as a sentence.
@@ -42,7 +43,8 @@ impl Expression {
         Ok(Self { expression, places })
     }
 
-    /// Its value where the names have these values; `None` if one that it needs has none, or if it is not finite.
+    /// Its value where the names have these values; `None` if one that it needs has none, or if it
+    /// is not finite.
     pub fn value(&self, values: &[Option<f64>]) -> Option<f64> {
         let own: Option<Vec<f64>> = self.places.iter().map(|&p| values[p]).collect();
         let value = self.expression.eval(&own?).ok()?;

@@ -1,4 +1,5 @@
-//! Folders of experiments: one command at a time, and only in a folder that belongs to such commands.
+//! Folders of experiments: one command at a time, and only in a folder that belongs to such
+//! commands.
 
 use crate::Error;
 use fretwork_store::folder_lock::{FolderLock, LockError};

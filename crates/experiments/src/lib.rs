@@ -18,7 +18,7 @@
 //!
 //! [`study`] varies the values of a case, [`fit`] finds those for which it gives measured curves,
 //! [`trade`] compares accuracy with cost, [`contact_patch`] goes from a patch in closed form to the
-//! runs of a window of it. The mathematics is that of [`fretwork_study`].
+//! runs of a window of it. The mathematics is that of [`fretwork_math`].
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
@@ -31,6 +31,7 @@ mod expression;
 pub mod factor;
 pub mod fit;
 pub mod folder;
+mod page;
 pub mod runs;
 pub mod shell;
 pub mod spec;

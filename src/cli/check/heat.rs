@@ -16,7 +16,7 @@ use fretwork_observe::heat::without_heat;
 const UNIFORM: f64 = 0.1;
 
 /// D h/w^2 from which on the steps along the depth and along the surface, one after another, are not those of all at once: a band source is then
-/// off by more than 1 % (crates/diffusion/tests/columns.rs).
+/// off by more than 1 % (crates/math/tests/diffusion_columns.rs).
 const SPLIT: f64 = 0.5;
 
 /// The lines.

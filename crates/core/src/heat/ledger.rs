@@ -1,6 +1,6 @@
 //! The account of heat.
 
-use fretwork_diffusion::Balance;
+use fretwork_math::diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
 /// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings - expansion = stored + fixed + pending + residual.

@@ -1,6 +1,6 @@
 //! Thermal and electrical properties of a material.
 
-use fretwork_diffusion::Conductor;
+use fretwork_math::diffusion::Conductor;
 
 /// What heat and current need to know of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]

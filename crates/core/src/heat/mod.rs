@@ -7,7 +7,7 @@
 //! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i
 //! ```
 //!
-//! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of depth; `fretwork-diffusion` solves it,
+//! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of depth; `fretwork-math` solves it,
 //! implicitly in time. Electric potentials follow from the electrical conductances of the same contacts, and Joule's heat of each contact is
 //! added to its sources. Laws are given the temperatures at the start of the step.
 
@@ -21,7 +21,7 @@ pub mod state;
 
 pub use circuit::{Circuit, CircuitState, Supply};
 pub use expansion::{ExpandingSystem, Expansion};
-pub use fretwork_diffusion::{
+pub use fretwork_math::diffusion::{
     Columns, Conductor, DiffusionError, Edge, Grid, HalfSpace, Node, Store,
 };
 pub use ledger::HeatLedger;

@@ -5,7 +5,7 @@ use super::material::ThermalMaterial;
 use super::pieces::Pieces;
 use crate::contact::{ContactDissipation, MaterialPair};
 use crate::geometry::space::Space;
-use fretwork_diffusion::{Columns, Edge};
+use fretwork_math::diffusion::{Columns, Edge};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;

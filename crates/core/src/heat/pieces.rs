@@ -1,7 +1,7 @@
 //! Pieces of the surface of a first body: strips along one axis, or rectangles along two, in the axes of the body.
 
 use crate::geometry::space::{Space, VectorLike};
-use fretwork_diffusion::{ColumnAxis, Columns};
+use fretwork_math::diffusion::{ColumnAxis, Columns};
 
 /// The strips along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

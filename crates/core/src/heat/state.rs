@@ -2,7 +2,7 @@
 
 use super::circuit::CircuitState;
 use super::ledger::HeatLedger;
-use fretwork_diffusion::Node;
+use fretwork_math::diffusion::Node;
 use serde::{Deserialize, Serialize};
 
 /// Temperatures, the account of heat, and the circuit.

@@ -8,7 +8,7 @@ use crate::contact::{Bond, Contact, ContactHeat, ContactTemperature, HeatSide};
 use crate::geometry::space::{Space, VectorLike};
 use crate::heat::{BodyNodes, CircuitState, DiffusionError, Heat, HeatState, Imposed, Store};
 use crate::threads::{fill, pays};
-use fretwork_diffusion::{Edge, Graph, steady, step_with_columns};
+use fretwork_math::diffusion::{Edge, Graph, steady, step_with_columns};
 use std::sync::Arc;
 
 /// Of a node that is of no first body.
@@ -438,7 +438,7 @@ fn nodes_of_first_bodies(heat: &Heat, nodes: usize) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::geometry::space::Dim2;
-    use fretwork_diffusion::Node;
+    use fretwork_math::diffusion::Node;
 
     /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where there is nothing else.
     #[test]

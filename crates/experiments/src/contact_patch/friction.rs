@@ -3,7 +3,7 @@
 use super::question::{Question, range};
 use super::range::Range;
 use super::runs;
-use fretwork_study::interval::Mean;
+use fretwork_math::statistics::interval::Mean;
 use serde::Serialize;
 
 /// A friction coefficient with its interval.
@@ -13,7 +13,8 @@ pub struct Friction {
     pub coefficient: Range,
     /// Number of runs that it is from; 0 if it was given.
     pub runs: usize,
-    /// Half-width of the 95 % interval of the mean over runs (Student), or over the cycles of a single run.
+    /// Half-width of the 95 % interval of the mean over runs (Student), or over the cycles of a
+    /// single run.
     pub scatter: Option<f64>,
     /// Largest half-width of the runs' own estimates of the error by step, tolerance and coupling.
     pub numerical: Option<f64>,
@@ -97,7 +98,8 @@ mod tests {
         assert!(body == "rail" && (rate.value / 0.32e-13 - 1.0).abs() < 1e-12);
         let high = 0.32 + 12.706_205 * 0.02 + 0.032;
         assert!((rate.high / (high * 1e-13) - 1.0).abs() < 1e-6, "{rate:?}");
-        // Two values 0.04 apart: s/sqrt(2) = 0.02, Student's t with one degree of freedom is 12.706.
+        // Two values 0.04 apart: s/sqrt(2) = 0.02, Student's t with one degree of freedom is
+        // 12.706.
         assert!((got.scatter.unwrap() / (12.706_205 * 0.02) - 1.0).abs() < 1e-6);
         assert!((got.numerical.unwrap() - 0.025).abs() < 1e-15);
         assert!((got.coefficient.value - 0.32).abs() < 1e-15);

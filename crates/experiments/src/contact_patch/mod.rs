@@ -1,5 +1,5 @@
-//! From load, radii and moduli to the contact patch: its pressure and size, where gross slip begins, friction and wear against
-//! creepage, and what a window of a third body in it should have.
+//! From load, radii and moduli to the contact patch: its pressure and size, where gross slip
+//! begins, friction and wear against creepage, and what a window of a third body in it should have.
 //!
 //! ```
 //! use fretwork_experiments::contact_patch::{Question, answer};
@@ -77,7 +77,8 @@ pub struct Patch {
     pub semi_axis_across: Option<f64>,
     /// Area (m²); none of a line.
     pub area: Option<f64>,
-    /// Approach of distant points (m); of a line it depends on the form of the bodies at a distance.
+    /// Approach of distant points (m); of a line it depends on the form of the bodies at a
+    /// distance.
     pub approach: Option<f64>,
 }
 
@@ -88,10 +89,12 @@ pub struct Strength {
     pub yield_stress: f64,
     /// Whether it is estimated from the hardness, H/2.8 (D. Tabor, The Hardness of Metals, 1951).
     pub estimated: bool,
-    /// Largest pressure at which nothing yields (Pa): 1.6 Y of a point, 1.79 Y of a line (Johnson, 6.2).
+    /// Largest pressure at which nothing yields (Pa): 1.6 Y of a point, 1.79 Y of a line (Johnson,
+    /// 6.2).
     pub first_yield: f64,
-    /// Largest pressure to which the steel shakes down elastically in rolling (Pa), with k = Y/sqrt(3): 4 k of a line without
-    /// friction, 4.7 k of a point, and k/mu of full slip (Johnson, 9.2).
+    /// Largest pressure to which the steel shakes down elastically in rolling (Pa), with k =
+    /// Y/sqrt(3): 4 k of a line without friction, 4.7 k of a point, and k/mu of full slip (Johnson,
+    /// 9.2).
     pub shakedown: f64,
     /// Hardness (Pa).
     pub hardness: Option<f64>,

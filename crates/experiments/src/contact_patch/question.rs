@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 pub struct Question {
     /// Load: a force, or a force per length for a line contact.
     pub load: String,
-    /// Radii of the two bodies in the direction of motion: `flat` for a plane, negative where concave; one alone is against a plane.
+    /// Radii of the two bodies in the direction of motion: `flat` for a plane, negative where
+    /// concave; one alone is against a plane.
     pub radius: Vec<String>,
     /// Radii across it; those of `radius` without any.
     pub across: Vec<String>,

@@ -1,7 +1,8 @@
 //! What the summaries of runs of a window say: friction, and the wear of its first bodies.
 
 use super::range::Range;
-use fretwork_study::interval::Mean;
+use crate::runs::stored::numerical_error;
+use fretwork_math::statistics::interval::Mean;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -49,9 +50,8 @@ fn of(folder: &Path) -> Result<Run, String> {
             folder.display()
         )
     })?;
-    let of_friction = &summary["uncertainty"]["friction_coefficient"];
-    let of_wear = &summary["uncertainty"]["wear"];
-    let worn = of_wear["value"].as_f64().filter(|v| *v > 0.0);
+    let uncertainty = &summary["uncertainty"];
+    let worn = uncertainty["wear"]["value"].as_f64().filter(|v| *v > 0.0);
     let bodies = summary["wear"]["bodies"].as_array();
     let rate = |body: &Value| {
         let rate = body["specific_rate"].as_f64()?;
@@ -59,20 +59,13 @@ fn of(folder: &Path) -> Result<Run, String> {
     };
     Ok(Run {
         friction: value.abs(),
-        scatter: of_friction["scatter"].as_f64(),
-        numerical: numerical(of_friction),
+        scatter: uncertainty["friction_coefficient"]["scatter"].as_f64(),
+        numerical: numerical_error(&summary, "friction_coefficient"),
         wear: bodies.into_iter().flatten().filter_map(rate).collect(),
-        wear_error: numerical(of_wear).zip(worn).map(|(e, v)| e / v),
+        wear_error: numerical_error(&summary, "wear")
+            .zip(worn)
+            .map(|(e, v)| e / v),
     })
-}
-
-/// The sum of the half-widths by step, tolerance and coupling, as far as the run estimated them.
-fn numerical(of: &Value) -> Option<f64> {
-    let parts = ["step", "tolerance", "coupling"].map(|name| of[name].as_f64());
-    match parts {
-        [None, None, None] => None,
-        parts => Some(parts.into_iter().flatten().sum()),
-    }
 }
 
 /// The largest of a number that all runs have.
@@ -80,9 +73,9 @@ pub(super) fn largest(runs: &[Run], of: impl Fn(&Run) -> Option<f64>) -> Option<
     runs.iter().map(of).try_fold(0.0f64, |a, b| Some(a.max(b?)))
 }
 
-/// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over the runs, with Student's 95 %
-/// interval and the numerical error; of a single run with the latter alone. Which body wears may differ from sample to sample where
-/// the sum does not.
+/// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over
+/// the runs, with Student's 95 % interval and the numerical error; of a single run with the latter
+/// alone. Which body wears may differ from sample to sample where the sum does not.
 pub(super) fn wear_rates(runs: &[Run]) -> Vec<(String, Range)> {
     let Some(first) = runs.first() else {
         return Vec::new();

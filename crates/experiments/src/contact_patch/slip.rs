@@ -1,4 +1,5 @@
-//! Slip of the patch: under a tangential force or displacement, in rolling, and in the window of a third body.
+//! Slip of the patch: under a tangential force or displacement, in rolling, and in the window of a
+//! third body.
 
 use super::question::{Question, number, positive};
 use super::range::Range;
@@ -11,13 +12,15 @@ use serde::Serialize;
 pub struct Tangential {
     /// Force at which gross slip begins (N; N/m), mu P.
     pub slip_force: Range,
-    /// Displacement of distant points at which it begins (m); of a line it depends on the form of the bodies at a distance.
+    /// Displacement of distant points at which it begins (m); of a line it depends on the form of
+    /// the bodies at a distance.
     pub slip_displacement: Option<Range>,
     /// Under the force or displacement that was asked for: Q/(mu P), 1 in gross slip.
     pub share: Option<Range>,
     /// Semi-axis of the part that sticks over that of the patch; 0 in gross slip.
     pub stuck: Option<Range>,
-    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was asked for: 0 in partial slip.
+    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was asked
+    /// for: 0 in partial slip.
     pub local_slip: Option<Range>,
 }
 
@@ -152,7 +155,8 @@ impl Rolling {
     }
 }
 
-/// A window of a third body in the middle of the patch: periodic along the motion, under the largest pressure.
+/// A window of a third body in the middle of the patch: periodic along the motion, under the
+/// largest pressure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Window {
     /// Width along the motion (m).
@@ -165,7 +169,8 @@ pub struct Window {
     pub pressure_drop: f64,
     /// By how much the gap of the undeformed bodies grows from the middle to its edges (m).
     pub gap: f64,
-    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; none where neither was asked for.
+    /// Slip (m): the amplitude in fretting, or that of one passage in rolling; none where neither
+    /// was asked for.
     pub slip: Option<Range>,
 }
 

@@ -2,7 +2,8 @@
 
 use super::{Answer, Contact, Question};
 
-/// Largest semi-axis over a radius: beyond it the parabola of Hertz' theory is off by more than about a percent.
+/// Largest semi-axis over a radius: beyond it the parabola of Hertz' theory is off by more than
+/// about a percent.
 const FLAT: f64 = 0.1;
 
 pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec<String> {
@@ -52,7 +53,8 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
         }
     }
     let [one, other] = contact.solids();
-    // Dundurs' second constant: tangential displacements under pressure, which the theories here leave out.
+    // Dundurs' second constant: tangential displacements under pressure, which the theories here
+    // leave out.
     let soft = |s: &fretwork_elastic::patch::Solid| (1.0 - 2.0 * s.poisson) / s.shear();
     let stiff = |s: &fretwork_elastic::patch::Solid| 2.0 * (1.0 - s.poisson) / s.shear();
     let beta = (soft(&one) - soft(&other)) / (stiff(&one) + stiff(&other));

@@ -1,4 +1,5 @@
-//! Wear of rolling bodies: Archard's law with K and the hardness of each body, and the map over T gamma/A.
+//! Wear of rolling bodies: Archard's law with K and the hardness of each body, and the map over T
+//! gamma/A.
 
 use super::question::{Question, range};
 use super::range::Range;
@@ -14,7 +15,8 @@ pub struct Wear {
     pub archard: Vec<BodyWear>,
     /// By the map of the law `t-gamma`; none of a line contact, which has no area.
     pub energy_map: Option<EnergyMap>,
-    /// Of each first body of the runs from which the friction coefficient is, by its specific wear rate there.
+    /// Of each first body of the runs from which the friction coefficient is, by its specific wear
+    /// rate there.
     pub window: Vec<WindowWear>,
 }
 
@@ -27,7 +29,8 @@ pub struct WindowWear {
     pub specific_rate: Range,
     /// Volume per metre rolled (m³/m; m³/m² of a line).
     pub volume: Range,
-    /// Depth (m) by which a point wears as it passes the patch, the mean over the width of the patch.
+    /// Depth (m) by which a point wears as it passes the patch, the mean over the width of the
+    /// patch.
     pub depth_per_passage: Range,
 }
 
@@ -40,7 +43,8 @@ pub struct BodyWear {
     pub coefficient: Range,
     /// Volume per metre rolled (m³/m; m³/m² of a line).
     pub volume: Range,
-    /// Depth (m): of a body that turns, per metre that it rolls, the mean over the width of the patch.
+    /// Depth (m): of a body that turns, per metre that it rolls, the mean over the width of the
+    /// patch.
     pub depth_per_metre: Option<Range>,
     /// Depth (m) of a straight body per passage, the mean over the width of the patch.
     pub depth_per_passage: Option<Range>,
@@ -81,7 +85,8 @@ impl Wear {
         if let Some(k) = k.filter(|k| k.high > 1.0) {
             return Err(format!("wear: K = {} is above 1", k.high));
         }
-        // Within the interval of the friction coefficient, the energy over it: the load times the slip.
+        // Within the interval of the friction coefficient, the energy over it: the load times the
+        // slip.
         let slipped = Range {
             low: energy.high / friction.coefficient.high,
             value: energy.value / friction.coefficient.value,
@@ -215,7 +220,8 @@ mod tests {
     use super::*;
     use fretwork_core::laws::BuiltInLaws;
 
-    /// The regimes by hand, in N/mm² and ug/(m mm²): R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J 218 (2004) 467-478.
+    /// The regimes by hand, in N/mm² and ug/(m mm²): R. Lewis, R. S. Dwyer-Joyce, Proc. IMechE J
+    /// 218 (2004) 467-478.
     #[test]
     fn the_map_is_that_of_the_law() {
         // SAFETY: the crate compiles the shipped laws with `plugin_table!` of this workspace.

@@ -6,7 +6,7 @@ mod spec;
 pub use spec::FactorSpec;
 
 use crate::expression::number;
-use fretwork_study::design::scale::Scale;
+use fretwork_math::design::scale::Scale;
 
 /// Label of the value that a case has, where its file does not give it.
 pub const AS_IN_THE_CASE: &str = "as in the case";
@@ -109,7 +109,8 @@ impl Factor {
         }
     }
 
-    /// The value at a place from 0 to 1: of a range by its scale, with both ends; of listed values in equal parts.
+    /// The value at a place from 0 to 1: of a range by its scale, with both ends; of listed values
+    /// in equal parts.
     pub fn at(&self, place: f64) -> Level {
         match &self.values {
             Values::Listed(values) => {

@@ -2,9 +2,9 @@
 
 use super::{Factor, Level, Values};
 use crate::spec::{CaseKeys, RangeScale};
+use fretwork_math::design::scale::Scale;
 use fretwork_scene::source::Source;
 use fretwork_scene::{InputError, unseen_fault};
-use fretwork_study::design::scale::Scale;
 use ron::value::RawValue;
 use serde::Deserialize;
 

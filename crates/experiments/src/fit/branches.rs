@@ -1,7 +1,9 @@
-//! Curves that turn back, as loops do: their branches laid one behind the other, so that abscissae increase.
+//! Curves that turn back, as loops do: their branches laid one behind the other, so that abscissae
+//! increase.
 //!
-//! Points of a measured and of a simulated loop belong together if they lie on the same branch at the same abscissa. The way along
-//! the loop would not do: measured points seldom lie at the turns, and the way between them leaves these out.
+//! Points of a measured and of a simulated loop belong together if they lie on the same branch at
+//! the same abscissa. The way along the loop would not do: measured points seldom lie at the turns,
+//! and the way between them leaves these out.
 
 /// Share of the reach of a loop by which it must move back until it counts as turned.
 const TURNED: f64 = 0.05;
@@ -9,8 +11,8 @@ const TURNED: f64 = 0.05;
 /// Distance of branches over the reach of the loop.
 const DISTANCE: f64 = 4.0;
 
-/// The abscissae of a loop laid out, with the number of the branch of each point: branch k, from 0, has `4 k reach + x` where x
-/// rises along it and `4 k reach - x` where it falls.
+/// The abscissae of a loop laid out, with the number of the branch of each point: branch k, from 0,
+/// has `4 k reach + x` where x rises along it and `4 k reach - x` where it falls.
 pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
     let rises = x
         .iter()
@@ -43,7 +45,8 @@ pub(super) fn laid_out(x: &[f64], reach: f64) -> (Vec<f64>, Vec<usize>) {
 mod tests {
     use super::*;
 
-    /// A loop told by points that leave out its turns stands at the same places as one told by many.
+    /// A loop told by points that leave out its turns stands at the same places as one told by
+    /// many.
     #[test]
     fn branches_stand_one_behind_the_other() {
         let x = [0.0, 0.6, 1.0, 0.98, 0.3, -0.9, -1.0, 0.2];

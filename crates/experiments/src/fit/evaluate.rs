@@ -1,4 +1,5 @@
-//! Values of all tests at points of the parameters: runs of their cases, over seeds, several at a time.
+//! Values of all tests at points of the parameters: runs of their cases, over seeds, several at a
+//! time.
 
 use super::measured;
 use super::model::Model;
@@ -12,9 +13,9 @@ use crate::runs::quantity::Quantity;
 use crate::runs::stored::{Status, summary};
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
+use fretwork_math::fit::bounds::{Bounds, Parameter};
+use fretwork_math::fit::residuals::{Curve, Measurement, Target};
 use fretwork_scene::{InputError, Scene};
-use fretwork_study::fit::bounds::{Bounds, Parameter};
-use fretwork_study::fit::residuals::{Curve, Measurement, Target};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -26,22 +27,22 @@ struct Test {
     /// Its first seed.
     seed: u64,
     changes: Changes,
-    output: Output,
+    simulated: Simulated,
 }
 
 /// What is taken of a run.
 #[derive(Debug)]
-enum Output {
+enum Simulated {
     Curve(Box<Model>),
     Value(Quantity),
 }
 
-/// A point of the parameters with one seed of all tests.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    /// Simulated values at all measured places, or why there are none.
-    pub values: Result<Vec<f64>, String>,
-}
+/// A point of the parameters with one seed of all tests: simulated values at all measured places,
+/// or why there are none.
+pub type Sample = Result<Vec<f64>, String>;
+
+/// A curve, or why a run gave none.
+type RunCurve = Result<(Vec<f64>, Vec<f64>), String>;
 
 /// The tests of a fit.
 #[derive(Debug)]
@@ -85,7 +86,7 @@ impl Tests {
             let (scene, matters) = build(&loaded, program)?;
             random |= matters;
             launcher.perturb_unless(matters, loaded.case.seed);
-            let (output, measurement) = match test {
+            let (simulated, measurement) = match test {
                 TestSpec::Curve {
                     measured: from,
                     model,
@@ -96,7 +97,7 @@ impl Tests {
                         .map_err(|(key, why)| at(&format!(".model.{key}"), why))?;
                     let (curve, reach) =
                         measured::curve(name, from, &read.beside(&from.file), model.along)?;
-                    (Output::Curve(Box::new(made.reaching(reach))), curve)
+                    (Simulated::Curve(Box::new(made.reaching(reach))), curve)
                 }
                 TestSpec::Value {
                     output,
@@ -117,7 +118,7 @@ impl Tests {
                         sigma: vec![*sigma],
                         weight: 1.0,
                     };
-                    (Output::Value(quantity), single)
+                    (Simulated::Value(quantity), single)
                 }
             };
             measurements.push(measurement);
@@ -125,7 +126,7 @@ impl Tests {
                 launcher,
                 seed: loaded.case.seed,
                 changes,
-                output,
+                simulated,
             });
         }
         let target = Target::new(measurements).map_err(|e| Error::Usage(e.to_string()))?;
@@ -146,16 +147,17 @@ impl Tests {
     }
 
     /// Refuses a range whose ends a case does not take.
-    fn check_ends(&self, read: &FitFile, search: &SearchPath) -> Result<(), InputError> {
+    fn check_ends(&self, read: &FitFile, search: &SearchPath) -> Result<(), Error> {
         for (p, factor) in self.factors.iter().enumerate() {
             for end in [0.0, 1.0] {
                 let mut place = vec![0.5; self.factors.len()];
                 place[p] = end;
                 let values = self.bounds.values(&place);
-                for test in 0..self.tests.len() {
-                    let built = load(self.case(test), &self.sets(test, &values))
-                        .and_then(|loaded| loaded.build(search));
-                    built.map_err(|e| {
+                for test in &self.tests {
+                    let sets = sets_of(&self.factors, &test.changes, &values);
+                    let sets = [test.launcher.sets.clone(), sets.map_err(Error::Usage)?].concat();
+                    let built = load(&test.launcher.case, &sets);
+                    built.and_then(|loaded| loaded.build(search)).map_err(|e| {
                         e.note(format!(
                             "with `{}` at an end of its range in {}",
                             factor.name,
@@ -168,8 +170,9 @@ impl Tests {
         Ok(())
     }
 
-    /// Runs points of parameter values, each with these seeds, and with the step of the cases over `finer`; a row of samples per
-    /// point. None is left out, except those that `stop` prevents, which have no sample.
+    /// Runs points of parameter values, each with these seeds, and with the step of the cases over
+    /// `finer`; a row of samples per point. None is left out, except those that `stop` prevents,
+    /// which have no sample.
     ///
     /// # Errors
     /// A run cannot be started, or nothing can be written.
@@ -191,7 +194,7 @@ impl Tests {
             }
         }
         let work = |(point, seed, test): &(&Vec<f64>, u64, &Test)| {
-            let curve = test.run(&self.factors, point, *seed, finer, self.limit, stop)?;
+            let curve = self.run_test(test, point, *seed, finer, stop)?;
             watch();
             Ok(curve)
         };
@@ -211,16 +214,11 @@ impl Tests {
         for one in runs {
             match one.as_ref()?.as_ref()? {
                 Ok(curve) => curves.push(curve),
-                Err(why) => {
-                    return Some(Sample {
-                        values: Err(why.clone()),
-                    });
-                }
+                Err(why) => return Some(Err(why.clone())),
             }
         }
         let curves: Vec<Curve<'_>> = curves.iter().map(|c| Curve { x: &c.0, y: &c.1 }).collect();
-        let values = self.target.simulated(&curves).map_err(|e| e.to_string());
-        Some(Sample { values })
+        Some(self.target.simulated(&curves).map_err(|e| e.to_string()))
     }
 
     /// The `--set` arguments of a test for values of the parameters.
@@ -234,28 +232,24 @@ impl Tests {
     pub fn case(&self, test: usize) -> &Path {
         &self.tests[test].launcher.case
     }
-}
 
-/// A curve, or why a run gave none.
-type RunCurve = Result<(Vec<f64>, Vec<f64>), String>;
-
-impl Test {
-    /// One run, with its step over `finer` and rows at the same times; `None` if it was interrupted.
-    fn run(
+    /// One run, with its step over `finer` and rows at the same times; `None` if it was
+    /// interrupted.
+    fn run_test(
         &self,
-        factors: &[Factor],
+        test: &Test,
         values: &[f64],
         seed: u64,
         finer: u32,
-        limit: Option<Duration>,
         stop: &AtomicBool,
     ) -> Result<Option<RunCurve>, Error> {
-        let mut sets = match sets_of(factors, &self.changes, values) {
+        let launcher = &test.launcher;
+        let mut sets = match sets_of(&self.factors, &test.changes, values) {
             Ok(sets) => sets,
             Err(why) => return Ok(Some(Err(why))),
         };
-        let whole = [self.launcher.sets.clone(), sets.clone()].concat();
-        let case = match load(&self.launcher.case, &whole) {
+        let whole = [launcher.sets.clone(), sets.clone()].concat();
+        let case = match load(&launcher.case, &whole) {
             Ok(loaded) => loaded.case,
             Err(why) => return Ok(Some(Err(why.to_string()))),
         };
@@ -267,14 +261,14 @@ impl Test {
         }
         let run = Run {
             sets,
-            seed: self.seed.wrapping_add(seed),
+            seed: test.seed.wrapping_add(seed),
         };
         let patience = Patience {
             deadline: None,
-            limit: limit.map(|l| l * finer),
+            limit: self.limit.map(|l| l * finer),
             stop,
         };
-        let Some(ended) = self.launcher.run(&run, patience)? else {
+        let Some(ended) = launcher.run(&run, patience)? else {
             return Ok(None);
         };
         if let Status::Slow(s) = ended.status {
@@ -283,10 +277,10 @@ impl Test {
         if let Some(why) = ended.status.failure() {
             return Ok(Some(Err(why)));
         }
-        let place = self.launcher.place(&run);
-        Ok(Some(match &self.output {
-            Output::Curve(model) => model.curve(&place.join("statistics.csv"), step),
-            Output::Value(quantity) => match quantity.read(&summary(&place), &place) {
+        let place = launcher.place(&run);
+        Ok(Some(match &test.simulated {
+            Simulated::Curve(model) => model.curve(&place.join("statistics.csv"), step),
+            Simulated::Value(quantity) => match quantity.read(&summary(&place), &place) {
                 Some(value) => Ok((vec![0.0], vec![value])),
                 None => Err(format!("it has no value of {}", quantity.name)),
             },

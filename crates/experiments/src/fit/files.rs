@@ -90,7 +90,7 @@ fn json(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Valu
         "chi_squared": best.chi_squared.map(number), "values": tests.target.measured().len(),
         "reduced": known.reduced.map(number), "p": known.p, "describes": known.describes, "widened": number(known.widened), "at_edge": known.at_edge, "settled": outcome.settled,
         "ended": found.ended, "evaluations": found.evaluations.len(),
-        "failed": found.evaluations.iter().filter(|e| e.chi_squared.is_none()).count(),
+        "failed": found.failed(),
         "step_not_small": step_not_small, "half_step_failed": half_step_failed, "random": tests.random, "tests": sets,
     })
 }

@@ -1,17 +1,19 @@
 //! What the step of the runs does to a fit: the runs at the estimate again, with half the step.
 //!
 //! If simulated values change by d, the estimate changes to first order by -H^-1 J^T W d (see
-//! [`identify`](fretwork_study::fit::identify)). The sum of squares does not show such an error: the parameters follow it. For a
-//! method of first order the error of the step is twice the change, for one of second order four thirds of it.
+//! [`identify`](fretwork_math::fit::identify)). The sum of squares does not show such an error: the
+//! parameters follow it. For a method of first order the error of the step is twice the change, for
+//! one of second order four thirds of it.
 
 use super::outcome::{HalfStep, Moved, Outcome, half_widths};
 use super::search::{Found, Search};
 use crate::Error;
-use fretwork_study::interval::Mean;
+use fretwork_math::statistics::interval::Mean;
 use std::sync::atomic::Ordering;
 
-/// Share of the half-width of its interval by which a parameter may move: with a method of first order it is then wrong by a quarter of the
-/// half-width, and an interval of 95 % holds the truth in 92 %.
+/// Share of the half-width of its interval by which a parameter may move: with a method of first
+/// order it is then wrong by a quarter of the half-width, and an interval of 95 % holds the truth
+/// in 92 %.
 const SMALL: f64 = 0.125;
 
 /// Repeats the runs at the estimate with half their step; `None` if it was interrupted.

@@ -4,11 +4,12 @@ use super::branches::laid_out;
 use super::spec::{AlongSpec, MeasuredSpec, SigmaSpec};
 use crate::Error;
 use crate::table::csv::{read, without_unit};
+use fretwork_math::fit::residuals::Measurement;
 use fretwork_scene::sample::table::number;
-use fretwork_study::fit::residuals::Measurement;
 use std::path::Path;
 
-/// The heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot be read.
+/// The heading of a column with its unit, `stress [MPa]`; the name alone if the file cannot be
+/// read.
 pub fn heading(path: &Path, column: &str) -> String {
     let mut headings = read(path).map_or(Vec::new(), |t| t.headings).into_iter();
     let own = headings.find(|h| without_unit(h) == column);

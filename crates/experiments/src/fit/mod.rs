@@ -1,8 +1,9 @@
 //! Fits: parameters of a case, such as those of a law, for which its runs give measured curves.
 //!
-//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a run, [`branches`] lays loops out, [`evaluate`] runs points of
-//! the parameters over their seeds, [`search`] looks for the best one, [`outcome`] says how well the measurements determine it, and [`half_step`] what the step does to it.
-//! [`page`] and [`files`] tell it.
+//! [`spec`] is the file, [`measured`] reads a measured curve, [`model`] makes the same curve of a
+//! run, [`branches`] lays loops out, [`evaluate`] runs points of the parameters over their seeds,
+//! [`search`] looks for the best one, [`outcome`] says how well the measurements determine it, and
+//! [`half_step`] what the step does to it. [`page`] and [`files`] tell it.
 
 mod branches;
 pub mod evaluate;

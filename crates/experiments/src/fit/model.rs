@@ -63,7 +63,8 @@ impl Model {
         Self { reach, ..self }
     }
 
-    /// Abscissae that increase, and values, from the table of statistics of a run with this step (s).
+    /// Abscissae that increase, and values, from the table of statistics of a run with this step
+    /// (s).
     ///
     /// # Errors
     /// Why there is none, as a sentence.
@@ -161,7 +162,8 @@ impl Model {
     }
 }
 
-/// Continues a list at both ends by the distance of its last two: rows stand between the ends of a run, a row apart.
+/// Continues a list at both ends by the distance of its last two: rows stand between the ends of a
+/// run, a row apart.
 fn continue_ends(list: &mut Vec<f64>) {
     if let [first, second, ..] = list[..] {
         list.insert(0, 2.0 * first - second);

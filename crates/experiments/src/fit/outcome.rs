@@ -1,9 +1,10 @@
-//! What the measurements say of the parameters: estimates with intervals, from runs around the best point.
+//! What the measurements say of the parameters: estimates with intervals, from runs around the best
+//! point.
 
 use super::search::{Evaluation, Found, Search, Stage};
 use crate::Error;
-use fretwork_study::fit::identify::{self as mathematics, Data, Identification, Run};
-use fretwork_study::fit::residuals::over_seeds;
+use fretwork_math::fit::identify::{self as mathematics, Data, Identification, Run};
+use fretwork_math::fit::residuals::over_seeds;
 use serde::Serialize;
 
 /// Half-width of the first neighbourhood, of the range of each parameter.
@@ -24,9 +25,11 @@ const ROUNDS: u64 = 4;
 pub struct Outcome {
     /// Estimates, intervals, correlations, directions.
     pub identification: Identification,
-    /// Number of the evaluation at the estimate; of the best point if the estimate fits worse or its runs fail.
+    /// Number of the evaluation at the estimate; of the best point if the estimate fits worse or
+    /// its runs fail.
     pub best: usize,
-    /// Whether the runs at the estimate fit as well as the best point, and the runs around it are as wide as the intervals.
+    /// Whether the runs at the estimate fit as well as the best point, and the runs around it are
+    /// as wide as the intervals.
     pub settled: bool,
     /// What half the step does to the estimates, if the fit asks.
     pub half_step: Option<HalfStep>,
@@ -37,9 +40,11 @@ pub struct Outcome {
 pub enum HalfStep {
     /// The estimates move.
     Moves {
-        /// Parameters with half the step; `None` for one at an end of its range, and for one that is not determined.
+        /// Parameters with half the step; `None` for one at an end of its range, and for one that
+        /// is not determined.
         parameters: Vec<Option<Moved>>,
-        /// Parameters that move by more than an eighth of the half-width of their intervals, and more than runs scatter.
+        /// Parameters that move by more than an eighth of the half-width of their intervals, and
+        /// more than runs scatter.
         beyond: Vec<usize>,
     },
     /// A run with half the step failed, for this reason.
@@ -68,8 +73,9 @@ impl Outcome {
     }
 }
 
-/// Runs points around the best one, in a neighbourhood as wide as the intervals that follow from them, and says what the
-/// measurements determine; `None` if no point gave all curves, or if it was interrupted.
+/// Runs points around the best one, in a neighbourhood as wide as the intervals that follow from
+/// them, and says what the measurements determine; `None` if no point gave all curves, or if it was
+/// interrupted.
 ///
 /// # Errors
 /// A run cannot be started, or too few of the runs around the best point succeed.
@@ -99,7 +105,8 @@ pub fn identify(search: &Search<'_>, found: &mut Found) -> Result<Option<Outcome
         if search.stop.load(std::sync::atomic::Ordering::Relaxed) {
             return Ok(None);
         }
-        // The estimate is where the runs around say that the least squares are; it may not be if these are too far around.
+        // The estimate is where the runs around say that the least squares are; it may not be if
+        // these are too far around.
         let better = found.least(first..found.evaluations.len());
         let squares = |k: usize| found.evaluations[k].chi_squared.unwrap_or(f64::INFINITY);
         let mut accepted = false;
@@ -178,7 +185,8 @@ pub fn half_widths(search: &Search<'_>, known: &Identification) -> Vec<f64> {
         .collect()
 }
 
-/// Mean over the seeds of an evaluation, and the standard deviation of one run where there are several.
+/// Mean over the seeds of an evaluation, and the standard deviation of one run where there are
+/// several.
 pub fn mean_of(evaluation: &Evaluation) -> Option<(Vec<f64>, Option<Vec<f64>>)> {
     let rows: Vec<Vec<f64>> = evaluation
         .samples

@@ -5,10 +5,10 @@ use super::measured::heading;
 use super::outcome::{HalfStep, Moved, Outcome, mean_of};
 use super::search::Found;
 use super::spec::{FitFile, TestSpec};
+use crate::page::{section, table};
+use fretwork_math::fit::identify::{End, Estimate};
 use fretwork_observe::quantity::number;
-use fretwork_study::fit::identify::{End, Estimate};
-use fretwork_view::{Axis, Chart, DrawError, Series, Style, draw_panels};
-use fretwork_view::{Block, Section, Sheet, SheetTable};
+use fretwork_view::{Axis, Block, Chart, DrawError, Series, Sheet, Style, draw_panels};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -107,11 +107,7 @@ fn verdict(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<String> {
         )),
         None => {}
     }
-    let failed = found
-        .evaluations
-        .iter()
-        .filter(|e| e.chi_squared.is_none())
-        .count();
+    let failed = found.failed();
     if failed > 0 {
         out.push(format!(
             "{failed} of {} points failed; evaluations.csv has the reasons",
@@ -202,13 +198,14 @@ fn axes(read: &FitFile, test: usize) -> (String, String) {
     }
 }
 
-/// Measured and fitted points of a test: places, measured, standard deviations, fitted, scatter of one run.
+/// Measured and fitted points of a test: places, measured, standard deviations, fitted, scatter of
+/// one run.
 type Points = Vec<(f64, f64, f64, f64, f64)>;
 
 fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
     let (mean, deviation) = mean_of(&found.evaluations[outcome.best]).unwrap_or_default();
     let mut place = 0;
-    let of = |test: &fretwork_study::fit::residuals::Measurement| {
+    let of = |test: &fretwork_math::fit::residuals::Measurement| {
         let mut points: Points = Vec::new();
         for j in 0..test.x.len() {
             let fitted = mean.get(place).copied().unwrap_or(f64::NAN);
@@ -229,29 +226,16 @@ fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
 /// The page of a fit.
 pub fn sheet(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
     let known = &outcome.identification;
-    let mut sections = vec![Section {
-        title: "Parameters".to_owned(),
-        blocks: parameter_blocks(read, found, outcome),
-    }];
-    sections.push(Section {
-        title: "Curves".to_owned(),
-        blocks: charts(read, tests, found, outcome)
-            .into_iter()
-            .map(Block::Figure)
-            .collect(),
-    });
-    sections.push(Section {
-        title: "Search".to_owned(),
-        blocks: search_blocks(found),
-    });
+    let figures = charts(read, tests, found, outcome).into_iter();
+    let figures = figures.map(Block::Figure);
+    let made = format!("Made by fretwork {}.", env!("CARGO_PKG_VERSION"));
     let text = read.source.text().to_owned();
-    sections.push(Section {
-        title: "The fit".to_owned(),
-        blocks: vec![
-            Block::Text(format!("Made by fretwork {}.", env!("CARGO_PKG_VERSION"))),
-            Block::Code(text),
-        ],
-    });
+    let sections = vec![
+        section("Parameters", parameter_blocks(read, found, outcome)),
+        section("Curves", figures.collect()),
+        section("Search", search_blocks(found)),
+        section("The fit", vec![Block::Text(made), Block::Code(text)]),
+    ];
     let state = match (
         known.describes,
         known.directions.iter().all(|d| d.determined),
@@ -298,11 +282,15 @@ fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Blo
                 format!("{} to {} {}", p.low, p.high, p.unit),
             ]
         });
-    let mut blocks = vec![Block::Table(SheetTable {
-        note: "Values with intervals of 95 % for each parameter alone, and such that all of them hold at once in 95 %.".to_owned(),
-        heads: ["parameter", "value", "all at once", "with half the step", "range of the search"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-    })];
+    let note = "Values with intervals of 95 % for each parameter alone, and such that all of them hold at once in 95 %.";
+    let heads = [
+        "parameter",
+        "value",
+        "all at once",
+        "with half the step",
+        "range of the search",
+    ];
+    let mut blocks = vec![table(note, heads, rows.collect())];
     let said = verdict(read, found, outcome);
     if !said.is_empty() {
         blocks.push(Block::List(said));
@@ -314,13 +302,9 @@ fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Blo
                 .chain(row.iter().map(cell))
                 .collect()
         });
-        blocks.push(Block::Table(SheetTable {
-            note: "Correlations of the errors of the parameters.".to_owned(),
-            heads: std::iter::once(String::new())
-                .chain(names.iter().map(|n| (*n).to_owned()))
-                .collect(),
-            rows: rows.collect(),
-        }));
+        let heads = std::iter::once("").chain(names.iter().copied());
+        let note = "Correlations of the errors of the parameters.";
+        blocks.push(table(note, heads, rows.collect()));
         let rows = known.directions.iter().map(|d| {
             let width = d.half_width.map_or("no limit".to_owned(), |h| {
                 format!("± {:.2} % of the range", 100.0 * h)
@@ -332,12 +316,8 @@ fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Blo
             };
             vec![d.words(&names), width, known.to_owned()]
         });
-        blocks.push(Block::Table(SheetTable {
-            note: "Combinations of parameters, the best known first, in shares of their ranges."
-                .to_owned(),
-            heads: ["together", "known to", ""].map(str::to_owned).to_vec(),
-            rows: rows.collect(),
-        }));
+        let note = "Combinations of parameters, the best known first, in shares of their ranges.";
+        blocks.push(table(note, ["together", "known to", ""], rows.collect()));
     }
     blocks
 }
@@ -353,11 +333,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
             best.push(((k + 1) as f64, least.max(1e-12).log10()));
         }
     }
-    let failed = found
-        .evaluations
-        .iter()
-        .filter(|e| e.chi_squared.is_none())
-        .count();
+    let failed = found.failed();
     let x = Axis::new("evaluation", "").whole();
     let y = Axis::new("log10 of the sum of squares", "");
     let chart = Chart::new("Sum of squares", x, y)

@@ -1,24 +1,25 @@
-//! The search: points of a Latin hypercube over the whole region, then CMA-ES from the best of them, with as many seeds as tell the
-//! points apart; at the end runs around the best point, from which its intervals follow.
+//! The search: points of a Latin hypercube over the whole region, then CMA-ES from the best of
+//! them, with as many seeds as tell the points apart; at the end runs around the best point, from
+//! which its intervals follow.
 //!
-//! All choices follow from the seed of the search, and runs are kept by what determines them: the same command goes on after an
-//! interruption, and makes no run twice.
+//! All choices follow from the seed of the search, and runs are kept by what determines them: the
+//! same command goes on after an interruption, and makes no run twice.
 
 use super::evaluate::{Sample, Tests};
 use super::spec::SearchSpec;
 use crate::Error;
-use fretwork_study::design::latin_hypercube::maximin_latin_hypercube;
-use fretwork_study::fit::cma_es::{Cma, Limits};
-use fretwork_study::fit::residuals::over_seeds;
-use fretwork_study::fit::seeds::SeedsPerPoint;
+use fretwork_math::design::latin_hypercube::maximin_latin_hypercube;
+use fretwork_math::fit::cma_es::{Cma, Limits};
+use fretwork_math::fit::residuals::over_seeds;
+use fretwork_math::fit::seeds::SeedsPerPoint;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Latin hypercubes of which the one with the widest distances is taken.
 const TRIES: usize = 20;
 
-/// The search ends where the sums of squares of its points differ by less: a difference of one is one standard deviation of a
-/// parameter.
+/// The search ends where the sums of squares of its points differ by less: a difference of one is
+/// one standard deviation of a parameter.
 const FLAT: f64 = 0.02;
 
 /// And where it moves parameters by less than this share of their ranges.
@@ -37,7 +38,7 @@ pub struct Evaluation {
     /// Numbers of its seeds.
     pub seeds: Range<u64>,
     /// Simulated values by seed, or why a run gave none.
-    pub samples: Vec<Result<Vec<f64>, String>>,
+    pub samples: Vec<Sample>,
     /// Sum of squares of the mean over the seeds; `None` if a run failed.
     pub chi_squared: Option<f64>,
     /// Which part of the search made it.
@@ -162,7 +163,8 @@ impl Search<'_> {
             ..Limits::default()
         });
         let mut seeds = SeedsPerPoint::new(fewest, most);
-        // Each generation has seeds of its own, so that the minimum is not that of one set of samples.
+        // Each generation has seeds of its own, so that the minimum is not that of one set of
+        // samples.
         let mut next = most as u64;
         found.ended = format!("after {} generations", self.spec.generations);
         for generation in 1..=self.spec.generations {
@@ -263,10 +265,7 @@ impl Search<'_> {
     ///
     /// # Errors
     /// A run cannot be started.
-    pub fn with_half_step(
-        &self,
-        point: &Evaluation,
-    ) -> Result<Vec<Result<Vec<f64>, String>>, Error> {
+    pub fn with_half_step(&self, point: &Evaluation) -> Result<Vec<Sample>, Error> {
         let runs = point.samples.len() * self.tests.target.tests().len();
         (self.watch)(&Progress::Begins(Stage::HalfStep, runs));
         let watch = || (self.watch)(&Progress::Run);
@@ -275,8 +274,7 @@ impl Search<'_> {
         let all = self
             .tests
             .run(&values, seeds, 2, self.jobs, self.stop, &watch)?;
-        let samples: Vec<_> = all.into_iter().flatten().flatten().collect();
-        let samples: Vec<_> = samples.into_iter().map(|s| s.values).collect();
+        let samples: Vec<Sample> = all.into_iter().flatten().flatten().collect();
         let failed = samples.iter().filter(|s| s.is_err()).count();
         (self.watch)(&Progress::Ended(
             Stage::HalfStep,
@@ -324,8 +322,6 @@ impl Search<'_> {
             let samples: Option<Vec<Sample>> = samples.into_iter().collect();
             // What an interruption left out is no evaluation.
             let Some(samples) = samples else { continue };
-            let samples: Vec<Result<Vec<f64>, String>> =
-                samples.into_iter().map(|s| s.values).collect();
             let chi_squared = self.chi_squared(&samples);
             failed += usize::from(chi_squared.is_none());
             found.evaluations.push(Evaluation {
@@ -344,24 +340,30 @@ impl Search<'_> {
     }
 
     /// Of the mean over the seeds.
-    fn chi_squared(&self, samples: &[Result<Vec<f64>, String>]) -> Option<f64> {
+    fn chi_squared(&self, samples: &[Sample]) -> Option<f64> {
         let rows: Option<Vec<Vec<f64>>> =
             samples.iter().map(|s| s.as_ref().ok().cloned()).collect();
         let mean = over_seeds(&rows?)?.mean;
-        self.tests.target.chi_squared(&mean, None).ok()
+        self.tests.target.chi_squared(&mean).ok()
     }
 
     /// Of each seed alone.
     fn by_seed(&self, evaluation: &Evaluation) -> Vec<Option<f64>> {
-        let one = |s: &Result<Vec<f64>, String>| {
+        let one = |s: &Sample| {
             let values = s.as_ref().ok()?;
-            self.tests.target.chi_squared(values, None).ok()
+            self.tests.target.chi_squared(values).ok()
         };
         evaluation.samples.iter().map(one).collect()
     }
 }
 
 impl Found {
+    /// Number of points that failed.
+    pub fn failed(&self) -> usize {
+        let failed = self.evaluations.iter().filter(|e| e.chi_squared.is_none());
+        failed.count()
+    }
+
     /// The evaluation with the least sum of squares in a part of them.
     pub fn least(&self, part: Range<usize>) -> Option<usize> {
         let known = part.filter_map(|k| Some((k, self.evaluations[k].chi_squared?)));

@@ -37,10 +37,12 @@ pub struct FitSpec {
     /// Pairs of names: the first parameter is at most the second.
     #[serde(default)]
     pub order: Vec<(String, String)>,
-    /// Seeds of each point: with how many the search begins, and how many it may take where points cannot be told apart.
+    /// Seeds of each point: with how many the search begins, and how many it may take where points
+    /// cannot be told apart.
     #[serde(default = "seeds")]
     pub seeds: (u16, u16),
-    /// Whether the measured specimens scatter as runs do from seed to seed: their scatter then joins the error of the measurement.
+    /// Whether the measured specimens scatter as runs do from seed to seed: their scatter then
+    /// joins the error of the measurement.
     #[serde(default)]
     pub specimen_scatters: bool,
     /// Whether each test counts as much as a single value, however many it has.
@@ -73,7 +75,8 @@ pub enum TestSpec {
         name: String,
         /// The case, relative to the file of the fit.
         case: PathBuf,
-        /// `key.path=value` of its runs; with `${...}` in the value what follows from the parameters, by their names.
+        /// `key.path=value` of its runs; with `${...}` in the value what follows from the
+        /// parameters, by their names.
         #[serde(default)]
         set: Vec<String>,
         /// The measured curve.
@@ -141,8 +144,8 @@ pub enum SigmaSpec {
     OfLargest(f64),
 }
 
-/// How a run gives a curve: expressions in the columns of `statistics.csv`; `COLUMN_start` is the value at the first row that is
-/// used.
+/// How a run gives a curve: expressions in the columns of `statistics.csv`; `COLUMN_start` is the
+/// value at the first row that is used.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelSpec {
@@ -191,7 +194,8 @@ pub enum AlongSpec {
 pub struct ParameterSpec {
     /// Its name.
     pub name: String,
-    /// The key of all cases that takes it, or several; none for one that is used by its name in `set` of the tests.
+    /// The key of all cases that takes it, or several; none for one that is used by its name in
+    /// `set` of the tests.
     #[serde(default)]
     pub key: CaseKeys,
     /// Lower limit.

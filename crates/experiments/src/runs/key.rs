@@ -17,8 +17,8 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// For this program, with these arguments of plugins for its command line, `--plugin-path DIR`; libraries in these folders and in
-    /// those of `FRETWORK_PLUGIN_PATH` count by their content.
+    /// For this program, with these arguments of plugins for its command line, `--plugin-path DIR`;
+    /// libraries in these folders and in those of `FRETWORK_PLUGIN_PATH` count by their content.
     ///
     /// # Errors
     /// The path of the program cannot be determined, or its file cannot be read.
@@ -48,8 +48,8 @@ impl Keys {
         hex(&self.program.clone().finalize())[..LENGTH].to_owned()
     }
 
-    /// Key of a run: equal for two runs of one program whose cases say the same, however they are written. A case that cannot be
-    /// read has a key of its text.
+    /// Key of a run: equal for two runs of one program whose cases say the same, however they are
+    /// written. A case that cannot be read has a key of its text.
     pub fn of_run(&self, case: &Path, sets: &[String]) -> String {
         let mut hash = self.program.clone();
         let mut add = |part: &[u8]| {

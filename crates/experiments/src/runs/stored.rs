@@ -211,6 +211,15 @@ pub fn summary(place: &Path) -> Value {
         .unwrap_or(Value::Null)
 }
 
+/// Half-width of the error of step, tolerance and coupling that a run estimates of an output, as far as
+/// it does.
+pub fn numerical_error(summary: &Value, output: &str) -> Option<f64> {
+    let own = &summary["uncertainty"][output];
+    let parts = ["step", "tolerance", "coupling"].map(|key| own[key].as_f64());
+    let known: Vec<f64> = parts.into_iter().flatten().collect();
+    (!known.is_empty()).then(|| known.iter().sum())
+}
+
 /// Contacts times iterations over all steps, estimated from the rows of the statistics.
 fn visits(place: &Path, steps: f64) -> f64 {
     let path = place.join("statistics.csv");

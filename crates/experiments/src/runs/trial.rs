@@ -1,5 +1,5 @@
-//! Estimate of the run time from a few steps of a copy of the scene, timed for a short while. No files are
-//! written.
+//! Estimate of the run time from a few steps of a copy of the scene, timed for a short while. No
+//! files are written.
 
 use crate::duration::seconds;
 use cpu_time::ThreadTime;
@@ -14,14 +14,16 @@ use std::time::{Duration, Instant};
 /// Wall time for which steps are timed.
 const WATCHED: Duration = Duration::from_millis(500);
 
-/// Wall time that the first step of a scene with deformable bodies may take before: it forms what later steps keep.
+/// Wall time that the first step of a scene with deformable bodies may take before: it forms what
+/// later steps keep.
 const FIRST: Duration = Duration::from_secs(4);
 
 /// Limit on the number of timed steps.
 const STEPS: u64 = 2000;
 
-/// Factor between the estimate and its lower and upper bounds, since contacts and iterations change during
-/// the run. If grains are loose at the start, the upper bound is also raised to the contacts of a packing.
+/// Factor between the estimate and its lower and upper bounds, since contacts and iterations change
+/// during the run. If grains are loose at the start, the upper bound is also raised to the contacts
+/// of a packing.
 const FACTOR: f64 = 3.0;
 
 /// A timed step.
@@ -59,8 +61,8 @@ pub struct RunTime {
 }
 
 impl Trial {
-    /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the time is up,
-    /// so that even the largest scene does not block the program.
+    /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the
+    /// time is up, so that even the largest scene does not block the program.
     pub fn of<S: Space>(case: &Case, built: Built<S>) -> Self {
         let mut simulation = built.simulation;
         let steps = most_steps(case);
@@ -142,8 +144,8 @@ impl Trial {
         &self.timed[self.timed.len() / 2..]
     }
 
-    /// Seconds per step. An unfinished step that has taken much longer than the others counts with its time
-    /// so far.
+    /// Seconds per step. An unfinished step that has taken much longer than the others counts with
+    /// its time so far.
     fn step(&self) -> f64 {
         let (mean, n) = (self.mean(|t| t.seconds), self.used().len() as f64);
         if self.stuck() {
@@ -162,8 +164,8 @@ impl Trial {
         self.used().iter().map(f).sum::<f64>() / self.used().len() as f64
     }
 
-    /// Ratio of the contacts in a dense packing to the current ones: two per disk and three per sphere, half
-    /// of the four and six neighbours of each.
+    /// Ratio of the contacts in a dense packing to the current ones: two per disk and three per
+    /// sphere, half of the four and six neighbours of each.
     fn growth(&self) -> f64 {
         let dense = (self.grains * self.dimension) as f64;
         (dense / self.mean(|t| t.contacts as f64).max(1.0)).max(1.0)

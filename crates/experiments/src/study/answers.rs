@@ -1,6 +1,5 @@
 //! What `fretwork study` says: what a study consists of, and what its runs left.
 
-use super::analysis::{labels, numeric};
 use super::forecast::Forecast;
 use super::plan::{Plan, Point};
 use super::rows::Rows;
@@ -15,7 +14,7 @@ use std::fmt::Write as _;
 pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: usize) -> String {
     let mut out = format!("{}: {}\n", plan.file.display(), plan.title);
     for (k, factor) in plan.factors.iter().enumerate() {
-        let values = match labels(plan, k).as_slice() {
+        let values = match plan.labels(k).as_slice() {
             few if few.len() <= 8 => few.join(", "),
             all => match ends(plan, k) {
                 Some((low, high)) => format!("{low} to {high} ({} values)", all.len()),
@@ -76,7 +75,7 @@ pub fn consists_of(plan: &Plan, open: usize, forecast: Option<&Forecast>, jobs: 
 
 /// The smallest and the largest value of a factor of numbers.
 fn ends(plan: &Plan, factor: usize) -> Option<(&str, &str)> {
-    if !numeric(plan, factor) {
+    if !plan.is_numeric(factor) {
         return None;
     }
     let given = |v: &&Level| v.number.is_some();
@@ -99,7 +98,7 @@ pub fn points(plan: &Plan) -> String {
 /// The same as JSON; times are in seconds on one worker, null where they are not known.
 pub fn check_json(plan: &Plan, open: usize, forecast: Option<&Forecast>, points: bool) -> String {
     let factors: Vec<Value> = plan.factors.iter().enumerate().map(|(k, factor)| {
-        json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": labels(plan, k)})
+        json!({"name": factor.name, "keys": factor.keys, "unit": plan.unit_of(k), "values": plan.labels(k)})
     }).collect();
     let outputs: Vec<&str> = plan.outputs.iter().map(|o| o.name.as_str()).collect();
     let point = |p: Point| json!({"point": p.number, "setting": p.setting, "seed": p.run.seed, "set": p.run.sets});

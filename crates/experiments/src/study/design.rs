@@ -4,21 +4,22 @@ use super::spec::{DesignSpec, StudyFile};
 use crate::Error;
 use crate::factor::{Factor, Level};
 use crate::table::csv;
+use fretwork_math::design::grid::full_factorial;
+use fretwork_math::design::latin_hypercube::latin_hypercube;
+use fretwork_math::design::saltelli::saltelli;
+use fretwork_math::design::sobol::sobol;
 use fretwork_scene::InputError;
-use fretwork_study::design::grid::full_factorial;
-use fretwork_study::design::latin_hypercube::latin_hypercube;
-use fretwork_study::design::saltelli::saltelli;
-use fretwork_study::design::sobol::sobol;
 use std::collections::HashMap;
 
 /// One value of each factor.
 pub type Setting = Vec<Level>;
 
-/// Settings of a design in their order; `own` is the value of a factor that the case has. Rows of a table may add factors: columns
-/// that are keys.
+/// Settings of a design in their order; `own` is the value of a factor that the case has. Rows of a
+/// table may add factors: columns that are keys.
 ///
 /// # Errors
-/// A range without levels in a design of levels, more points than a design has, a table that does not fit.
+/// A range without levels in a design of levels, more points than a design has, a table that does
+/// not fit.
 pub fn settings(
     read: &StudyFile,
     factors: &mut Vec<Factor>,

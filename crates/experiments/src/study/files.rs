@@ -4,7 +4,8 @@ use super::analysis::Analysis;
 use super::figures::draw;
 use super::page::sheet;
 use super::plan::Plan;
-use super::rows::{Rows, of_settings};
+use super::rows::Rows;
+use super::settings::settings;
 use crate::Error;
 use crate::table::{csv, parquet};
 use std::collections::BTreeSet;
@@ -27,7 +28,7 @@ pub fn write(plan: &Plan, rows: &Rows) -> Result<bool, Error> {
     csv::write(&rows.table, &path("table.csv"), csv::Numbers::Plain)?;
     parquet::write(&rows.table, &path("table.parquet"))?;
     let analysis = Analysis::of(plan, &plan.design, rows);
-    let settings = of_settings(plan, &analysis);
+    let settings = settings(plan, &analysis);
     csv::write(&settings, &path("settings.csv"), csv::Numbers::Plain)?;
     let page = sheet(plan, rows, &analysis).write(&path("study.html"));
     page.map_err(|e| Error::Failed(e.to_string()))?;

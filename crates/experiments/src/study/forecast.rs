@@ -14,7 +14,8 @@ const TRIED: usize = 3;
 /// Expected duration of runs (s).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Forecast {
-    /// Best estimate of all together on one worker; `None` where a single step takes too long to time.
+    /// Best estimate of all together on one worker; `None` where a single step takes too long to
+    /// time.
     pub about: Option<f64>,
     /// Lower bound.
     pub least: f64,

@@ -1,9 +1,11 @@
-//! Studies: one case run at many points of its factors, here or by another engine, and gathered in one table.
+//! Studies: one case run at many points of its factors, here or by another engine, and gathered in
+//! one table.
 //!
 //! [`spec`] is the file, [`design`] says at which points, [`plan`] has the numbered runs,
 //! [`forecast`] what they will take, [`execute`] makes them on this machine and [`export`] writes
-//! what other engines take, [`rows`] gathers them in tables, [`analysis`] says what these show, for
-//! the [`page`] and the [`figures`]; [`files`] writes them, [`answers`] says it on a terminal.
+//! what other engines take, [`rows`] gathers them in a table, [`analysis`] says what it shows, for
+//! the [`settings`], the [`page`] and the [`figures`]; [`files`] writes them, [`answers`] says it
+//! on a terminal.
 
 mod analysis;
 pub mod answers;
@@ -16,6 +18,7 @@ pub mod forecast;
 mod page;
 pub mod plan;
 pub mod rows;
+mod settings;
 pub mod spec;
 
 pub use files::write;

@@ -1,7 +1,6 @@
 //! The runs of a study, numbered from 1: settings in the order of the design, each with its seeds.
 
 use super::design::{Setting, settings};
-use super::rows::COLUMNS;
 use super::spec::{DesignSpec, StudyFile};
 use crate::changes::Changes;
 use crate::factor::{AS_IN_THE_CASE, Factor, Level, Values};
@@ -13,6 +12,7 @@ use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
 use fretwork_scene::{InputError, Loaded, Scene};
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// Levels that are built before a run; of more, only the text is checked.
@@ -211,6 +211,21 @@ impl Plan {
         self.units.get(factor).cloned().unwrap_or_default()
     }
 
+    /// Labels that a factor takes, in the order of its first settings.
+    pub fn labels(&self, factor: usize) -> Vec<&str> {
+        let mut seen = HashSet::new();
+        let all = self.settings.iter().map(|s| s[factor].label.as_str());
+        all.filter(|label| seen.insert(*label)).collect()
+    }
+
+    /// Whether all values of a factor are numbers; that of the case as it is may be unknown, where
+    /// it is a default that the file does not give.
+    pub fn is_numeric(&self, factor: usize) -> bool {
+        let levels = self.settings.iter().map(|s| &s[factor]);
+        let mut given = levels.filter(|level| !level.is_unknown()).peekable();
+        given.peek().is_some() && given.all(|level| level.number.is_some())
+    }
+
     /// What a run is, in words: `friction 0.2, speed 1.0, seed 4`.
     pub fn words(&self, point: &Point) -> String {
         let values = self.factors.iter().zip(&self.settings[point.setting - 1]);
@@ -223,6 +238,21 @@ impl Plan {
         words.join(", ")
     }
 }
+
+/// Names of columns that the table of runs has itself.
+const OWN_COLUMNS: [&str; 11] = [
+    "point",
+    "setting",
+    "seed",
+    "status",
+    "reason",
+    "not_trustworthy",
+    "steps",
+    "cpu_seconds",
+    "wall_seconds",
+    "identity",
+    "folder",
+];
 
 /// The changes of a setting.
 fn sets_of(setting: &Setting, derived: &[String]) -> Vec<String> {
@@ -248,7 +278,7 @@ fn check_factors(
         if factor.keys.iter().any(|key| key.trim() == "seed") {
             return fail("a study sets the seed itself; for more of them give `seeds`".to_owned());
         }
-        if COLUMNS.contains(&name) || read.spec.outputs.iter().any(|o| o == name) {
+        if OWN_COLUMNS.contains(&name) || read.spec.outputs.iter().any(|o| o == name) {
             return fail(format!(
                 "the table has a column `{name}` already; give the factor another `name`"
             ));
@@ -332,8 +362,8 @@ fn outputs(read: &StudyFile, base: &Loaded, scene: &Scene) -> Result<Vec<Quantit
     Ok(all)
 }
 
-/// Builds the first setting, and reads, and builds if they are few, the case with each level alone, so that a wrong one is refused
-/// before any run.
+/// Builds the first setting, and reads, and builds if they are few, the case with each level alone,
+/// so that a wrong one is refused before any run.
 fn check_levels(
     read: &StudyFile,
     base: &Loaded,

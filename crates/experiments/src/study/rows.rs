@@ -1,14 +1,11 @@
-//! The tables of a study: a row for each run, with what was asked, what came out and how it ended,
-//! failed runs too; and a row for each setting, with means over its runs.
+//! The table of a study: a row for each run, with what was asked, what came out and how it ended,
+//! failed runs too.
 
-use super::analysis::{Analysis, numeric};
 use super::plan::Plan;
 use crate::factor::Level;
-use crate::runs::quantity::Quantity;
-use crate::runs::stored::{Finished, Status, summary};
+use crate::runs::stored::{Finished, Status, numerical_error, summary};
 use crate::runs::unit::unit_of;
 use crate::table::{Cell, Column, Table, Type};
-use fretwork_study::interval::Mean;
 use serde_json::Value as Json;
 
 /// Status of a run that is done and trusted.
@@ -16,21 +13,6 @@ pub const DONE: &str = "done";
 
 /// Status of a run that was not made.
 pub const NOT_RUN: &str = "not run";
-
-/// Names of columns that the table of runs has itself.
-pub const COLUMNS: [&str; 11] = [
-    "point",
-    "setting",
-    "seed",
-    "status",
-    "reason",
-    "not_trustworthy",
-    "steps",
-    "cpu_seconds",
-    "wall_seconds",
-    "identity",
-    "folder",
-];
 
 /// The table of the runs of a study, in the order of their numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,7 +72,9 @@ impl Rows {
             let unit = unit.unwrap_or_default();
             let value = |r: &Row| r.run.as_ref().and(output.read(&r.summary, &r.place));
             columns.push(Column::real(&output.name, &unit, rows.iter().map(value)));
-            let errors = rows.iter().map(|r| own_error(output, &r.summary));
+            let errors = rows
+                .iter()
+                .map(|r| numerical_error(&r.summary, &output.name));
             let errors = Column::real(format!("{}_numerical_error", output.name), unit, errors);
             if errors.cells.iter().any(|c| *c != Cell::Unknown) {
                 columns.push(errors);
@@ -179,43 +163,14 @@ impl Rows {
     }
 }
 
-/// The table of settings: values of the factors, and means over the seeds with half-widths of 95 %,
-/// scatter and counts.
-pub fn of_settings(plan: &Plan, analysis: &Analysis) -> Table {
-    let count = plan.settings.len();
-    let numbers = (1..=count).map(|k| Some(k as f64));
-    let mut columns = vec![Column::whole("setting", numbers)];
-    for k in 0..plan.factors.len() {
-        columns.push(factor_column(plan, k, plan.settings.iter().map(|s| &s[k])));
-    }
-    for output in &analysis.outputs {
-        let (name, unit) = (&output.name, &output.unit);
-        let of = |f: fn(&Mean) -> Option<f64>| {
-            let means = output.means.iter();
-            means.map(move |m| m.as_ref().and_then(f))
-        };
-        columns.extend([
-            Column::real(name, unit, of(|m| Some(m.mean))),
-            Column::real(format!("{name}_half_width"), unit, of(|m| m.half_width)),
-            Column::real(format!("{name}_scatter"), unit, of(|m| m.scatter)),
-            Column::whole(format!("{name}_runs"), of(|m| Some(m.count as f64))),
-        ]);
-    }
-    for regimes in &analysis.regimes {
-        let words = (0..count).map(|k| regimes.words(k));
-        columns.push(Column::text(&regimes.name, words));
-    }
-    Table { columns }
-}
-
 /// Values of a factor as numbers, if all are, otherwise as texts.
-fn factor_column<'a>(
+pub(super) fn factor_column<'a>(
     plan: &Plan,
     factor: usize,
     levels: impl Iterator<Item = &'a Level>,
 ) -> Column {
     let name = &plan.factors[factor].name;
-    match numeric(plan, factor) {
+    match plan.is_numeric(factor) {
         true => Column::real(name, plan.unit_of(factor), levels.map(|l| l.number)),
         false => Column {
             name: name.clone(),
@@ -246,12 +201,4 @@ pub fn status(run: Option<&Finished>) -> (&'static str, String) {
         Status::Failed(why) => ("failed", why.clone()),
         Status::Rejected(why) => ("rejected", why.clone()),
     }
-}
-
-/// Half-width of the error of step, tolerance and coupling that a run estimates of an output.
-fn own_error(output: &Quantity, summary: &Json) -> Option<f64> {
-    let own = &summary["uncertainty"][output.name.as_str()];
-    let parts = ["step", "tolerance", "coupling"].map(|key| own[key].as_f64());
-    let known: Vec<f64> = parts.into_iter().flatten().collect();
-    (!known.is_empty()).then(|| known.iter().sum())
 }

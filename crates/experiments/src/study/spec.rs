@@ -29,8 +29,8 @@ pub struct StudySpec {
     pub title: Option<String>,
     /// The case, relative to the file of the study.
     pub case: PathBuf,
-    /// `key.path=value` of all runs, as `--set` takes them; with `${...}` in the value what follows from the factors, by their
-    /// names: `bodies.top.mass=${2 * density}`.
+    /// `key.path=value` of all runs, as `--set` takes them; with `${...}` in the value what follows
+    /// from the factors, by their names: `bodies.top.mass=${2 * density}`.
     #[serde(default)]
     pub set: Vec<String>,
     /// What varies.
@@ -41,12 +41,13 @@ pub struct StudySpec {
     /// Seeds of each point, from the case's own upwards.
     #[serde(default = "one")]
     pub seeds: u16,
-    /// Numbers that are compared: names of `summary.json`, or `statistics.COLUMN`; friction, damage and wear by default, as far as
-    /// the case has them.
+    /// Numbers that are compared: names of `summary.json`, or `statistics.COLUMN`; friction, damage
+    /// and wear by default, as far as the case has them.
     #[serde(default)]
     pub outputs: Vec<String>,
-    /// Texts of `summary.json` by which runs are told apart on a map, such as `fretting.regime` or `findings.layer_regime`; of a
-    /// sentence what stands before its first colon, comma or semicolon.
+    /// Texts of `summary.json` by which runs are told apart on a map, such as `fretting.regime` or
+    /// `findings.layer_regime`; of a sentence what stands before its first colon, comma or
+    /// semicolon.
     #[serde(default)]
     pub regimes: Vec<String>,
     /// Which files of each run are kept.
@@ -96,7 +97,8 @@ pub enum DesignSpec {
         #[serde(default)]
         seed: u64,
     },
-    /// The rows of a CSV file, relative to the file of the study; its columns are named as factors, or are keys.
+    /// The rows of a CSV file, relative to the file of the study; its columns are named as factors,
+    /// or are keys.
     Table {
         /// The file.
         file: PathBuf,

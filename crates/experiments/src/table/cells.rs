@@ -8,7 +8,8 @@ fn begins(text: &str) -> bool {
     text.trim_start_matches('\'').starts_with(FORMULA)
 }
 
-/// A text as a cell that no spreadsheet takes for a formula: one that begins like a formula, and is no number, gets an apostrophe.
+/// A text as a cell that no spreadsheet takes for a formula: one that begins like a formula, and is
+/// no number, gets an apostrophe.
 pub fn guarded(text: &str) -> String {
     let formula = begins(text) && text.parse::<f64>().is_err();
     if formula {

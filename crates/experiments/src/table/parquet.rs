@@ -1,4 +1,5 @@
-//! The table of a study as a Parquet file. Units stand in the metadata of the file, under `units` as JSON.
+//! The table of a study as a Parquet file. Units stand in the metadata of the file, under `units`
+//! as JSON.
 
 use super::{Cell, Column, Table, Type as Kind};
 use crate::Error;
@@ -112,7 +113,8 @@ mod tests {
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
-    /// What the reader of the same library gives back; tests/program/study reads files with another reader.
+    /// What the reader of the same library gives back; tests/program/study reads files with another
+    /// reader.
     #[test]
     fn a_table_comes_back_with_nulls_and_units() {
         let table = Table {

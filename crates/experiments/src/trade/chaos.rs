@@ -1,9 +1,9 @@
 //! Test whether a case without random numbers is chaotic.
 //!
-//! The case's own setting is run twice, the second time with a step longer by 1e-10 of itself. If no
-//! difference grows, the outputs agree to a similar accuracy; if contacts are chaotic, they differ as those
-//! of two seeds do. Then runs whose steps are longer by k times 1e-10 take the place of seeds, and errors
-//! have intervals.
+//! The case's own setting is run twice, the second time with a step longer by 1e-10 of itself. If
+//! no difference grows, the outputs agree to a similar accuracy; if contacts are chaotic, they
+//! differ as those of two seeds do. Then runs whose steps are longer by k times 1e-10 take the
+//! place of seeds, and errors have intervals.
 
 use super::combination::Combination;
 use super::output::{Output, Wanted};
@@ -22,7 +22,8 @@ const NOTICED: f64 = 0.01;
 const SHARE: f64 = 0.2;
 
 impl Trade {
-    /// Tests a case without random numbers for chaos; if it is chaotic, each setting gets `runs` perturbed runs.
+    /// Tests a case without random numbers for chaos; if it is chaotic, each setting gets `runs`
+    /// perturbed runs.
     ///
     /// # Errors
     /// A run cannot be started.

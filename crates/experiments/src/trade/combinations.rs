@@ -1,5 +1,5 @@
-//! Combinations of levels that were cheaper alone; first those predicted, from the single parameters, to meet
-//! the wanted error.
+//! Combinations of levels that were cheaper alone; first those predicted, from the single
+//! parameters, to meet the wanted error.
 
 use super::combination::Combination;
 use super::compare::Row;

@@ -1,5 +1,5 @@
-//! Comparison with the reference: errors seed by seed with confidence intervals, distinguished from the
-//! scatter among seeds.
+//! Comparison with the reference: errors seed by seed with confidence intervals, distinguished from
+//! the scatter among seeds.
 
 use super::combination::Combination;
 use super::frontier::frontier;
@@ -7,11 +7,11 @@ use super::output::Wanted;
 use super::plan::Trade;
 use super::varied::{Sense, Varied};
 use crate::runs::stored::{Finished, Status, summary};
-use fretwork_study::interval::Mean;
+use fretwork_math::statistics::interval::Mean;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An output of a setting. Errors are fractions of the reference's value if the wanted error is relative,
-/// otherwise in the output's unit.
+/// An output of a setting. Errors are fractions of the reference's value if the wanted error is
+/// relative, otherwise in the output's unit.
 #[derive(Clone, Debug)]
 pub struct OutputError {
     /// The output over the seeds, in its unit.
@@ -56,7 +56,8 @@ pub struct Row {
     pub seconds: f64,
     /// Contacts times iterations per run.
     pub visits: f64,
-    /// Speed relative to the reference, seed by seed, with its confidence interval if there are enough seeds.
+    /// Speed relative to the reference, seed by seed, with its confidence interval if there are
+    /// enough seeds.
     pub faster: Option<(f64, Option<(f64, f64)>)>,
     /// One entry per output; `None` if it has no value.
     pub errors: Vec<Option<OutputError>>,
@@ -315,12 +316,12 @@ impl Trade {
     }
 }
 
-/// Smallest ratio to the reference for estimating its own error: below it a small difference would be
-/// multiplied by a large factor.
+/// Smallest ratio to the reference for estimating its own error: below it a small difference would
+/// be multiplied by a large factor.
 const NEAREST: f64 = 1.5;
 
-/// The level next to the reference's, of an ordered parameter: the first that is coarse enough for the
-/// estimate, otherwise the next one.
+/// The level next to the reference's, of an ordered parameter: the first that is coarse enough for
+/// the estimate, otherwise the next one.
 pub fn neighbour(parameter: &Varied) -> Option<usize> {
     let ordered = matches!(parameter.sense, Sense::Step | Sense::Tolerance);
     let mut coarser = parameter.reference + 1..parameter.levels.len();
@@ -335,9 +336,9 @@ fn ratio(parameter: &Varied, level: usize) -> Option<f64> {
     Some(parameter.levels.get(level)?.number? / parameter.levels.get(parameter.reference)?.number?)
 }
 
-/// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own error. For
-/// first order e(rh) - e(h) = (r - 1) e(h), so 1/(r - 1), and at least 1 up to r = 2. `None` if the levels
-/// are too close.
+/// Factor on the difference from a level `ratio` times as coarse that bounds the reference's own
+/// error. For first order e(rh) - e(h) = (r - 1) e(h), so 1/(r - 1), and at least 1 up to r = 2.
+/// `None` if the levels are too close.
 fn weight(ratio: f64) -> Option<f64> {
     match ratio {
         r if r >= 2.0 => Some(1.0),

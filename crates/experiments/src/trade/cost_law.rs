@@ -21,8 +21,8 @@ pub struct CostLaw {
     /// Cost of a form of the case over that of its own: parameter, level, factor.
     #[serde(default)]
     pub forms: Vec<(usize, usize, f64)>,
-    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is a guess,
-    /// and not stored.
+    /// Whether every probe measured a row of statistics or a whole run; otherwise the law is a
+    /// guess, and not stored.
     pub measured: bool,
 }
 
@@ -38,8 +38,8 @@ impl Default for CostLaw {
 }
 
 impl Trade {
-    /// Runs the case's own setting, its other forms and the finest setting for a short while each. A
-    /// run that ends within that time is done.
+    /// Runs the case's own setting, its other forms and the finest setting for a short while each.
+    /// A run that ends within that time is done.
     ///
     /// # Errors
     /// A run cannot be started.
@@ -123,8 +123,8 @@ impl Trade {
         Ok((guess, false))
     }
 
-    /// Duration of a run (s): that of its other seeds, or the cost law, multiplied by its mean error
-    /// so far.
+    /// Duration of a run (s): that of its other seeds, or the cost law, multiplied by its mean
+    /// error so far.
     pub fn seconds(&self, setting: &Combination) -> f64 {
         let ended = |r: &&Finished| r.status == Status::Done;
         let of = |setting: &Combination| -> Vec<f64> {

@@ -1,7 +1,8 @@
-//! The preset `rung`: the forms of one case by what may deform in it, from rigid contacts to grains of finite elements.
+//! The preset `rung`: the forms of one case by what may deform in it, from rigid contacts to grains
+//! of finite elements.
 //!
-//! A level is a list of `--set` arguments. Numbers that a form needs are those of the scene: `mu` of its contact laws, properties of its
-//! materials. What would need others is not offered.
+//! A level is a list of `--set` arguments. Numbers that a form needs are those of the scene: `mu`
+//! of its contact laws, properties of its materials. What would need others is not offered.
 
 use super::variant::field;
 use super::varied::{Sense, Varied};
@@ -19,10 +20,12 @@ use fretwork_scene::material::Material;
 use fretwork_scene::source::Source;
 use std::collections::BTreeMap;
 
-/// Restitution of a compliant contact whose rigid law has none: nearly critical damping (docs/compliant.md).
+/// Restitution of a compliant contact whose rigid law has none: nearly critical damping
+/// (docs/compliant.md).
 const RESTITUTION: f64 = 0.1;
 
-/// Position correction of rigid contacts that replace springs: these do not sink, rigid ones do, by the tolerance of each step.
+/// Position correction of rigid contacts that replace springs: these do not sink, rigid ones do, by
+/// the tolerance of each step.
 const CORRECTION: f64 = 0.05;
 
 /// What a scene has that its forms are made from.
@@ -104,7 +107,8 @@ impl Deformability {
     }
 }
 
-/// Young's modulus in the text of a material's file, which has Poisson's ratio too; or what it lacks.
+/// Young's modulus in the text of a material's file, which has Poisson's ratio too; or what it
+/// lacks.
 fn young(text: &str, name: &str) -> Result<f64, String> {
     let material: Material = Source::from_text(name, text)
         .parse()
@@ -118,8 +122,8 @@ fn young(text: &str, name: &str) -> Result<f64, String> {
     property("young", "Pa")
 }
 
-/// The forms of a case from the one that assumes least to rigid contacts; the first is the reference, since lower ones leave out what it
-/// has.
+/// The forms of a case from the one that assumes least to rigid contacts; the first is the
+/// reference, since lower ones leave out what it has.
 ///
 /// # Errors
 /// There is one form only: a sentence that says why.
@@ -299,8 +303,8 @@ fn compliant_contacts(case: &Case, scene: &Deformability) -> Result<Vec<String>,
     Ok(sets)
 }
 
-/// Grains that deform in place of rigid ones, with rigid contacts: the elasticity of a grain is then that of its elements, and a spring
-/// at its contacts would count it twice.
+/// Grains that deform in place of rigid ones, with rigid contacts: the elasticity of a grain is
+/// then that of its elements, and a spring at its contacts would count it twice.
 fn deforming_grains(case: &Case, scene: &Deformability) -> Result<Vec<String>, String> {
     let soft = scene
         .grains

@@ -29,7 +29,8 @@ pub enum Event<'a> {
 pub type Watch<'a> = &'a (dyn Fn(&Event<'_>) + Sync);
 
 impl Trade {
-    /// Runs the settings. It ends early, without an error, when the budget is spent or `stop` is set.
+    /// Runs the settings. It ends early, without an error, when the budget is spent or `stop` is
+    /// set.
     ///
     /// # Errors
     /// A run cannot be started, or no reference could be run.

@@ -110,8 +110,8 @@ impl Panel<'_> {
         self.factor * error.max(self.floor)
     }
 
-    /// The frontier joins the error bounds as a staircase that falls with increasing cost: between two
-    /// settings the cheaper one is the best available.
+    /// The frontier joins the error bounds as a staircase that falls with increasing cost: between
+    /// two settings the cheaper one is the best available.
     fn frontier(&self) -> Series {
         let mut stairs: Vec<(f64, f64)> = Vec::new();
         for (r, e) in self.others.iter().filter(|(_, e)| e.on_frontier) {
@@ -201,7 +201,8 @@ fn shown(x: f64) -> String {
     }
 }
 
-/// A setting by the values of all parameters that vary: what stands in the case may change, a figure says what was run.
+/// A setting by the values of all parameters that vary: what stands in the case may change, a
+/// figure says what was run.
 fn named(parameters: &[Varied], setting: &Combination) -> String {
     let varied = parameters
         .iter()
@@ -228,7 +229,8 @@ fn value(parameter: &Varied, level: &Level) -> String {
     }
 }
 
-/// Group of a setting among many: the case's own by its values, others by the parameter they change.
+/// Group of a setting among many: the case's own by its values, others by the parameter they
+/// change.
 fn group(trade: &Trade, row: &Row) -> String {
     match row.setting.changed(&trade.parameters).as_slice() {
         [] => format!("as in the case: {}", named(&trade.parameters, &row.setting)),

@@ -9,7 +9,7 @@ use super::plan::Trade;
 use super::verdict::Verdict;
 use crate::Error;
 use crate::table::{Column, Table, Type, csv};
-use fretwork_study::interval::CONFIDENCE;
+use fretwork_math::statistics::interval::CONFIDENCE;
 use serde_json::{Value, json};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Pareto frontier: settings for which no other is both cheaper and more accurate.
 
-/// Which of the points (cost, error) are not dominated: a point is dominated if another is no worse in both
-/// and better in one. Points that are not finite are never on the frontier.
+/// Which of the points (cost, error) are not dominated: a point is dominated if another is no worse
+/// in both and better in one. Points that are not finite are never on the frontier.
 pub fn frontier(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let beats = |a: &(f64, f64), b: &(f64, f64)| {
@@ -33,8 +33,8 @@ mod tests {
         assert!(frontier(&[]).is_empty());
     }
 
-    /// By definition, along the frontier a higher cost gives a lower error, and every other point is
-    /// dominated by one on it.
+    /// By definition, along the frontier a higher cost gives a lower error, and every other point
+    /// is dominated by one on it.
     #[test]
     fn is_sorted_and_covers_the_rest() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(3);

@@ -36,7 +36,8 @@ pub(super) fn listed(loaded: &Loaded, tolerance: f64, argument: &str) -> Result<
     };
     let levels: Vec<Level> = values.iter().map(level).collect();
     let before = loaded.source.sets();
-    // Compares the text of the case before and after: a value that does not change it is the case's own.
+    // Compares the text of the case before and after: a value that does not change it is the case's
+    // own.
     let (mut own, mut texts) = (None, Vec::new());
     for (k, level) in levels.iter().enumerate() {
         let sets: Vec<String> = before.iter().chain(&level.sets).cloned().collect();

@@ -1,14 +1,14 @@
-//! Accuracy against cost: settings of a case are varied, and each is compared with a reference at the
-//! finest setting, over several seeds.
+//! Accuracy against cost: settings of a case are varied, and each is compared with a reference at
+//! the finest setting, over several seeds.
 //!
-//! A [`request`] is checked ([`refuse`]) and becomes a trade: [`presets`], [`listed`] and [`variant`]
-//! make the [`varied`] [`parameters`], [`ordered`] the levels of
-//! a step or a tolerance, [`deformability`] those that change what deforms. [`plan`] says which
-//! settings run, by their [`cost_law`], [`execute`] runs them, [`combinations`] adds what is
-//! promising together, [`chaos`] tells whether runs scatter where the seed changes nothing.
-//! [`output`] says which numbers are compared and how well, [`compare`] compares them with the
-//! reference, [`frontier`] finds the non-dominated settings, [`verdict`] the cheapest one for a
-//! wanted error, and [`table`], [`files`] and [`figure`] report the result.
+//! A [`request`] is checked ([`refuse`]) and becomes a trade: [`presets`], [`listed`] and
+//! [`variant`] make the [`varied`] [`parameters`], [`ordered`] the levels of a step or a tolerance,
+//! [`deformability`] those that change what deforms. [`plan`] says which settings run, by their
+//! [`cost_law`], [`execute`] runs them, [`combinations`] adds what is promising together, [`chaos`]
+//! tells whether runs scatter where the seed changes nothing. [`output`] says which numbers are
+//! compared and how well, [`compare`] compares them with the reference, [`frontier`] finds the
+//! non-dominated settings, [`verdict`] the cheapest one for a wanted error, and [`table`],
+//! [`files`] and [`figure`] report the result.
 
 mod chaos;
 mod combination;

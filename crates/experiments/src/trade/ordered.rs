@@ -24,7 +24,8 @@ pub(super) fn number(key: &str, x: f64) -> Level {
     }
 }
 
-/// Positive values including the case's own, from the finest up, each with the arguments of its level.
+/// Positive values including the case's own, from the finest up, each with the arguments of its
+/// level.
 fn ordered(
     name: &str,
     sense: Sense,

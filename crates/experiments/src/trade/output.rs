@@ -19,7 +19,8 @@ pub struct Output {
     pub quantity: Quantity,
     /// The error wanted.
     pub wanted: Wanted,
-    /// Exact value, for example from a closed form; if absent, errors are measured against the reference.
+    /// Exact value, for example from a closed form; if absent, errors are measured against the
+    /// reference.
     pub exact: Option<f64>,
 }
 

@@ -3,8 +3,8 @@
 //! The first runs are the reference, the case's own setting, and the neighbours of the reference
 //! from which its own error is estimated. Then one parameter at a time is varied, outward from the
 //! case's own value. Then follow combinations of levels that were cheaper alone, first those
-//! predicted to meet the wanted error. Interactions of parameters outside these combinations are not
-//! detected.
+//! predicted to meet the wanted error. Interactions of parameters outside these combinations are
+//! not detected.
 
 use super::combination::Combination;
 use super::compare::{Comparison, neighbour};

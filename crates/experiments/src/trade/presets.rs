@@ -39,13 +39,15 @@ pub const PRESETS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Whether a preset is varied by default; the number of grains changes the problem itself, not only the accuracy, and a run that
-/// chooses its settings is compared with them where that is asked for; another rung is another model.
+/// Whether a preset is varied by default; the number of grains changes the problem itself, not only
+/// the accuracy, and a run that chooses its settings is compared with them where that is asked for;
+/// another rung is another model.
 fn wanted_by_default(name: &str) -> bool {
     !matches!(name, "grains" | "accuracy" | "rung")
 }
 
-/// What levels depend on beside the text of the case: how its scene is solved, and what may deform in it.
+/// What levels depend on beside the text of the case: how its scene is solved, and what may deform
+/// in it.
 #[derive(Debug)]
 pub struct Solving {
     /// The methods that serve it.
@@ -120,7 +122,8 @@ fn preset(loaded: &Loaded, solving: &Solving, name: &str) -> Result<Varied, Stri
         "tolerance" => {
             let own = solving.tolerance;
             let all = [-2, -1, 0, 1, 2].map(|k| own * 10f64.powi(k));
-            // Iterations cannot reach a tolerance below rounding; at 0.1 the problem is hardly solved.
+            // Iterations cannot reach a tolerance below rounding; at 0.1 the problem is hardly
+            // solved.
             let useful = |t: &f64| (1e-13..=0.1).contains(t);
             let useful = all.into_iter().filter(useful).collect();
             return Ok(tolerances(case, own, useful));
@@ -201,7 +204,8 @@ fn coupling_levels(case: &Case) -> Result<Choices, String> {
     Ok((levels, own))
 }
 
-/// The case with step and tolerance as they are, and with those that the run chooses for an accuracy.
+/// The case with step and tolerance as they are, and with those that the run chooses for an
+/// accuracy.
 fn accuracy_levels(case: &Case) -> Choices {
     let level = |label: &str, set: String| Level::named(label, vec![set]);
     let mut levels = vec![level("fixed", "accuracy=None".into())];

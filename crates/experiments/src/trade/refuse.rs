@@ -1,4 +1,5 @@
-//! Checks of a trade before it runs: outputs that the case does not have, and a budget below one run.
+//! Checks of a trade before it runs: outputs that the case does not have, and a budget below one
+//! run.
 
 use super::output::Output;
 use super::plan::Trade;
@@ -14,8 +15,8 @@ use fretwork_scene::case::Case;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// The requested outputs, or the default ones, with their exact values where given; an error if the case does
-/// not have one.
+/// The requested outputs, or the default ones, with their exact values where given; an error if the
+/// case does not have one.
 ///
 /// # Errors
 /// An output or an exact value is wrong.
@@ -95,8 +96,8 @@ pub fn budget(request: &Request, case: &Case, scene: Scene) -> Result<(), Error>
     )))
 }
 
-/// Checks names in groups that only a run fills against a run of two steps, if the case allows one so
-/// short.
+/// Checks names in groups that only a run fills against a run of two steps, if the case allows one
+/// so short.
 ///
 /// # Errors
 /// An output that the run does not have.

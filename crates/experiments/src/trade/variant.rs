@@ -1,4 +1,5 @@
-//! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the coarsest.
+//! The option `--variant NAME=FILE`: other files as forms of the case, given from the finest to the
+//! coarsest.
 
 use super::varied::{Sense, Varied};
 use crate::Error;
@@ -39,7 +40,8 @@ fn compared(case: &Case) -> Case {
 /// The parameter `variant`, if there are any.
 ///
 /// # Errors
-/// An argument is malformed or given twice, its file is wrong, lies elsewhere, or cannot be reached from the case by `--set`.
+/// An argument is malformed or given twice, its file is wrong, lies elsewhere, or cannot be reached
+/// from the case by `--set`.
 pub fn variants(loaded: &Loaded, arguments: &[String]) -> Result<Option<Varied>, Error> {
     let mut levels: Vec<Level> = Vec::new();
     for argument in arguments {

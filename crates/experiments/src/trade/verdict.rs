@@ -2,7 +2,7 @@
 
 use super::compare::{Comparison, OutputError, Row, share};
 use super::output::{Output, Wanted};
-use fretwork_study::interval::{Mean, seeds_for};
+use fretwork_math::statistics::interval::{Mean, seeds_for};
 
 /// Verdict for a wanted error.
 #[derive(Clone, Debug)]
@@ -11,8 +11,8 @@ pub struct Verdict {
     pub wanted: String,
     /// Index of the setting in the rows; `None` if no setting is shown to meet the error.
     pub row: Option<usize>,
-    /// Whether the error bound includes the reference's own error, and not only the distance from the
-    /// reference.
+    /// Whether the error bound includes the reference's own error, and not only the distance from
+    /// the reference.
     pub holds: bool,
     /// Text of the verdict.
     pub text: String,
@@ -80,7 +80,8 @@ fn idle_output(found: &Comparison, outputs: &[Output], set: &[usize]) -> Option<
     })
 }
 
-/// The cheapest row within the wanted errors, whether that includes the reference's own error, and the text.
+/// The cheapest row within the wanted errors, whether that includes the reference's own error, and
+/// the text.
 fn cheapest(
     found: &Comparison,
     outputs: &[Output],
@@ -102,8 +103,8 @@ fn cheapest(
     let reference_known = set
         .iter()
         .all(|&o| found.own[o].as_ref().is_some_and(|x| x.at_most.is_finite()));
-    // Rows are ordered from the cheapest. First those proven with the reference's own error, then those
-    // relative to the reference alone.
+    // Rows are ordered from the cheapest. First those proven with the reference's own error, then
+    // those relative to the reference alone.
     let proved = reference_known
         .then(|| found.rows.iter().position(|r| all(r, &|e, w| e.bound <= w)))
         .flatten();
@@ -270,8 +271,8 @@ fn no_setting(found: &Comparison, outputs: &[Output], set: &[usize], random: boo
     )
 }
 
-/// That the scatter hides the error, and how many seeds would show it. More seeds only narrow the interval; the mean and the
-/// reference's own error remain.
+/// That the scatter hides the error, and how many seeds would show it. More seeds only narrow the
+/// interval; the mean and the reference's own error remain.
 fn hidden_by_scatter(e: &OutputError, output: &Output, own: f64) -> String {
     let (scatter, wanted) = (e.error.scatter.unwrap_or(0.0), limit(output));
     let own = if own.is_finite() { own } else { 0.0 };

@@ -1,13 +1,13 @@
 //! Alternatives of a factor compared with each other, such as laws.
 
-use super::{Data, numeric};
+use super::Data;
 use crate::study::spec::DesignSpec;
-use fretwork_study::tournament::Tournament;
+use fretwork_math::statistics::comparisons::Comparisons;
 use std::collections::HashMap;
 
 /// The alternatives of a factor compared.
 #[derive(Clone, Debug)]
-pub struct Comparison {
+pub struct Alternatives {
     /// The factor.
     pub factor: String,
     /// Names of the alternatives.
@@ -15,13 +15,14 @@ pub struct Comparison {
     /// What the means are over, as the end of a sentence.
     pub over: String,
     /// What is paired: seeds or combinations.
-    pub pairs: &'static str,
-    /// The comparison, seed by seed, or combination by combination of the other factors where there is one seed.
-    pub tournament: Tournament,
+    pub paired: &'static str,
+    /// The comparison, seed by seed, or combination by combination of the other factors where there
+    /// is one seed.
+    pub comparisons: Comparisons,
 }
 
 /// The alternatives of factors without numbers, in designs that have each with the same others.
-pub(super) fn comparisons(data: &Data<'_>) -> Vec<Comparison> {
+pub(super) fn comparisons(data: &Data<'_>) -> Vec<Alternatives> {
     match data.design {
         DesignSpec::Grid | DesignSpec::OneAtATime | DesignSpec::Table { .. } => {
             let factors = 0..data.plan.factors.len();
@@ -31,10 +32,10 @@ pub(super) fn comparisons(data: &Data<'_>) -> Vec<Comparison> {
     }
 }
 
-fn comparison(data: &Data<'_>, factor: usize) -> Option<Comparison> {
+fn comparison(data: &Data<'_>, factor: usize) -> Option<Alternatives> {
     let plan = data.plan;
     let names = data.labels(factor);
-    if numeric(plan, factor) || names.len() < 2 {
+    if plan.is_numeric(factor) || names.len() < 2 {
         return None;
     }
     let place: HashMap<&str, usize> = names.iter().copied().zip(0..).collect();
@@ -85,11 +86,11 @@ fn comparison(data: &Data<'_>, factor: usize) -> Option<Comparison> {
         (false, n) => format!("means over {n} combinations of the other factors, one run each"),
     };
     let rows: Vec<Vec<Option<f64>>> = (0..names.len()).map(row).collect();
-    Some(Comparison {
+    Some(Alternatives {
         factor: plan.factors[factor].name.clone(),
         names: names.iter().map(|n| (*n).to_owned()).collect(),
         over,
-        pairs: if by_seed { "seeds" } else { "combinations" },
-        tournament: Tournament::of(&rows),
+        paired: if by_seed { "seeds" } else { "combinations" },
+        comparisons: Comparisons::of(&rows),
     })
 }

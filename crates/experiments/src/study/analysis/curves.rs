@@ -1,9 +1,9 @@
 //! The output over each factor that has numbers.
 
-use super::{Data, numeric};
+use super::Data;
 use crate::study::plan::Plan;
 use crate::study::spec::DesignSpec;
-use fretwork_study::interval::Mean;
+use fretwork_math::statistics::interval::Mean;
 use std::collections::BTreeSet;
 
 /// Lines of a response; of more, the mean over the other factors is shown.
@@ -34,7 +34,7 @@ pub struct Curve {
 /// The responses to all factors with two numbers or more.
 pub(super) fn responses(data: &Data<'_>) -> Vec<Response> {
     (0..data.plan.factors.len())
-        .filter(|&f| numeric(data.plan, f) && numbers(data.plan, f) > 1)
+        .filter(|&f| data.plan.is_numeric(f) && numbers(data.plan, f) > 1)
         .map(|f| response(data, f))
         .collect()
 }
@@ -86,9 +86,13 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
             false,
         ),
         DesignSpec::Grid => {
-            // One other factor tells lines apart, best one without numbers; over the rest is averaged.
+            // One other factor tells lines apart, best one without numbers; over the rest is
+            // averaged.
             let few = |f: &&usize| data.labels(**f).len() <= LINES;
-            let words = varied.iter().filter(few).find(|&&f| !numeric(data.plan, f));
+            let words = varied
+                .iter()
+                .filter(few)
+                .find(|&&f| !data.plan.is_numeric(f));
             let other = words.or_else(|| varied.iter().find(few)).copied();
             let rest: Vec<&str> = varied
                 .iter()
@@ -128,7 +132,8 @@ fn response(data: &Data<'_>, factor: usize) -> Response {
     }
 }
 
-/// The mean output by value of a factor, over the settings that are kept: for each seed the mean over those with that value.
+/// The mean output by value of a factor, over the settings that are kept: for each seed the mean
+/// over those with that value.
 fn curve(data: &Data<'_>, factor: usize, label: String, keep: impl Fn(usize) -> bool) -> Curve {
     let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
     for (k, setting) in data.plan.settings.iter().enumerate() {

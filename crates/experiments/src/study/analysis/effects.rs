@@ -1,12 +1,12 @@
 //! How much each factor matters for an output.
 
-use super::{Data, logarithmic, numeric};
+use super::{Data, logarithmic};
 use crate::study::spec::DesignSpec;
-use fretwork_study::sensitivity::anova::{Anova, anova};
-use fretwork_study::sensitivity::main_effects::{MainEffect, main_effects};
-use fretwork_study::sensitivity::ranks::{RankCorrelation, rank_correlations};
-use fretwork_study::sensitivity::regression::{Regression, regression};
-use fretwork_study::sensitivity::sobol_indices::{SobolIndices, sobol_indices};
+use fretwork_math::sensitivity::anova::{Anova, anova};
+use fretwork_math::sensitivity::main_effects::{MainEffect, main_effects};
+use fretwork_math::sensitivity::ranks::{RankCorrelation, rank_correlations};
+use fretwork_math::sensitivity::regression::{Regression, regression};
+use fretwork_math::sensitivity::sobol_indices::{SobolIndices, sobol_indices};
 
 /// What a design says of the importance of its factors.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub struct Change {
     /// The level.
     pub label: String,
     /// Mean over the seeds of the difference, seed by seed.
-    pub change: Option<fretwork_study::interval::Mean>,
+    pub change: Option<fretwork_math::statistics::interval::Mean>,
 }
 
 /// Seed of the resamples behind intervals of Sobol indices.
@@ -86,7 +86,7 @@ fn trend(data: &Data<'_>) -> Effects {
     let varied: Vec<usize> = (0..plan.factors.len())
         .filter(|&f| data.labels(f).len() > 1)
         .collect();
-    if let Some(&f) = varied.iter().find(|&&f| !numeric(plan, f)) {
+    if let Some(&f) = varied.iter().find(|&&f| !plan.is_numeric(f)) {
         return Effects::Nothing(format!(
             "`{}` has no numbers, and a trend is over numbers; compare its alternatives on a grid",
             plan.factors[f].name
@@ -129,7 +129,7 @@ fn changes(data: &Data<'_>) -> Vec<Change> {
         out.push(Change {
             factor,
             label: setting[factor].label.clone(),
-            change: fretwork_study::interval::Mean::of(&differences),
+            change: fretwork_math::statistics::interval::Mean::of(&differences),
         });
     }
     out

@@ -1,22 +1,22 @@
-//! What the runs of a study say: means over seeds, response curves, effects of factors, comparisons of alternatives, maps of
-//! regimes. Only runs that are done and trusted count.
+//! What the runs of a study say: means over seeds, response curves, effects of factors, comparisons
+//! of alternatives, maps of regimes. Only runs that are done and trusted count.
 
 mod comparisons;
 mod curves;
 mod effects;
 mod regimes;
 
-pub use comparisons::Comparison;
+pub use comparisons::Alternatives;
 pub use curves::{Curve, Response};
-pub use effects::Effects;
+pub use effects::{Change, Effects};
 pub use regimes::Regimes;
 
 use super::plan::Plan;
 use super::rows::Rows;
 use super::spec::DesignSpec;
 use crate::factor::{Factor, Level, Values};
-use fretwork_study::interval::Mean;
-use std::collections::{HashMap, HashSet};
+use fretwork_math::statistics::interval::Mean;
+use std::collections::HashMap;
 
 /// Everything that is said of a study.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub struct OutputAnalysis {
     /// How much each factor matters.
     pub effects: Effects,
     /// Alternatives of the factors without numbers.
-    pub comparisons: Vec<Comparison>,
+    pub alternatives: Vec<Alternatives>,
 }
 
 /// A study with one output by run.
@@ -70,7 +70,7 @@ impl Analysis {
                 means: data.means(),
                 responses: curves::responses(&data),
                 effects: effects::effects(&data),
-                comparisons: comparisons::comparisons(&data),
+                alternatives: comparisons::comparisons(&data),
             }
         });
         Self {
@@ -110,7 +110,7 @@ impl Data<'_> {
 
     /// Labels that a factor takes, in the order of its first settings.
     fn labels(&self, factor: usize) -> Vec<&str> {
-        labels(self.plan, factor)
+        self.plan.labels(factor)
     }
 
     /// Level numbers of all settings.
@@ -128,34 +128,19 @@ impl Data<'_> {
     }
 }
 
-/// Labels that a factor takes, in the order of its first settings.
-pub fn labels(plan: &Plan, factor: usize) -> Vec<&str> {
-    let mut seen = HashSet::new();
-    let all = plan.settings.iter().map(|s| s[factor].label.as_str());
-    all.filter(|label| seen.insert(*label)).collect()
-}
-
-/// Whether all values of a factor are numbers; that of the case as it is may be unknown, where it is a default that the file does not
-/// give.
-pub fn numeric(plan: &Plan, factor: usize) -> bool {
-    let values = plan.settings.iter().map(|s| &s[factor]);
-    let mut given = values.filter(|v| !v.is_unknown()).peekable();
-    given.peek().is_some() && given.all(|v| v.number.is_some())
-}
-
 /// Whether a factor is spread evenly in its logarithm.
 pub fn logarithmic(factor: &Factor) -> bool {
     matches!(
         &factor.values,
         Values::Range {
-            scale: fretwork_study::design::scale::Scale::Logarithmic { .. },
+            scale: fretwork_math::design::scale::Scale::Logarithmic { .. },
             ..
         }
     )
 }
 
-/// Whether the values of a factor read better on a logarithmic axis: those of a range by its scale, listed ones if their ratios are
-/// more alike than their differences.
+/// Whether the values of a factor read better on a logarithmic axis: those of a range by its scale,
+/// listed ones if their ratios are more alike than their differences.
 pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
     if matches!(plan.factors[factor].values, Values::Range { .. }) {
         return logarithmic(&plan.factors[factor]);
@@ -170,7 +155,8 @@ pub fn logarithmic_axis(plan: &Plan, factor: usize) -> bool {
     ratios_are_alike(&numbers)
 }
 
-/// Of numbers in their order: whether ratios of neighbours vary less, by their standard deviation over their mean, than differences.
+/// Of numbers in their order: whether ratios of neighbours vary less, by their standard deviation
+/// over their mean, than differences.
 fn ratios_are_alike(numbers: &[f64]) -> bool {
     let variation = |of: &dyn Fn(f64) -> f64| {
         let steps: Vec<f64> = numbers.windows(2).map(|w| of(w[1]) - of(w[0])).collect();

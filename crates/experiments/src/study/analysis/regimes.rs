@@ -1,6 +1,5 @@
 //! Regimes: which of several behaviours the runs of a setting show, and where over two factors.
 
-use super::numeric;
 use crate::study::plan::Plan;
 use crate::study::rows::Rows;
 
@@ -9,7 +8,8 @@ use crate::study::rows::Rows;
 pub struct Regimes {
     /// What tells them apart.
     pub name: String,
-    /// For each setting, the regimes of its runs that are done with their number, the most frequent first.
+    /// For each setting, the regimes of its runs that are done with their number, the most frequent
+    /// first.
     pub shown: Vec<Vec<(String, usize)>>,
     /// Where each occurs; `None` without a factor with numbers.
     pub map: Option<RegimeMap>,
@@ -20,7 +20,8 @@ pub struct Regimes {
 pub struct RegimeMap {
     /// The factors of the two axes; one if only one has numbers.
     pub axes: (usize, Option<usize>),
-    /// By regime the settings at least half of whose runs show it: values of both axes, the second 0 without one.
+    /// By regime the settings at least half of whose runs show it: values of both axes, the second
+    /// 0 without one.
     pub places: Vec<(String, Vec<(f64, f64)>)>,
 }
 
@@ -37,7 +38,8 @@ impl Regimes {
     }
 }
 
-/// For each regime that is asked for what the settings show, with a map over the first two factors with numbers.
+/// For each regime that is asked for what the settings show, with a map over the first two factors
+/// with numbers.
 pub(super) fn regimes(plan: &Plan, rows: &Rows) -> Vec<Regimes> {
     let of = |name: &String| {
         let shown = shown(plan, rows, name);
@@ -68,7 +70,7 @@ fn shown(plan: &Plan, rows: &Rows, name: &str) -> Vec<Vec<(String, usize)>> {
 }
 
 fn map(plan: &Plan, shown: &[Vec<(String, usize)>]) -> Option<RegimeMap> {
-    let mut axes = (0..plan.factors.len()).filter(|&f| numeric(plan, f));
+    let mut axes = (0..plan.factors.len()).filter(|&f| plan.is_numeric(f));
     let (first, second) = (axes.next()?, axes.next());
     let mut places: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for (setting, shown) in plan.settings.iter().zip(shown) {

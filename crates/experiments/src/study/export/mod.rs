@@ -1,5 +1,5 @@
-//! The runs of a study for other engines: scripts that call `fretwork study point` for each and `fretwork study collect` at the
-//! end.
+//! The runs of a study for other engines: scripts that call `fretwork study point` for each and
+//! `fretwork study collect` at the end.
 
 mod hyperqueue;
 mod jobs;
@@ -67,7 +67,8 @@ impl Export<'_> {
         }
     }
 
-    /// Refuses texts that a script cannot hold: a line of it would end in them, or an engine would read more than a name.
+    /// Refuses texts that a script cannot hold: a line of it would end in them, or an engine would
+    /// read more than a name.
     fn check_texts(&self, engine: Engine) -> Result<(), Error> {
         let plan = self.plan;
         for path in [&plan.file, &plan.out, &plan.launcher.case] {

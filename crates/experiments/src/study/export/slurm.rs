@@ -1,4 +1,5 @@
-//! Slurm: a job array, each task of which makes a chunk of the runs, and a job that collects when all have ended.
+//! Slurm: a job array, each task of which makes a chunk of the runs, and a job that collects when
+//! all have ended.
 
 use super::{Export, Written, absolute, quote, shell, shell_with};
 use crate::Error;

@@ -18,7 +18,8 @@ pub(super) fn write(export: &Export<'_>) -> Result<Written, Error> {
     // A text of JSON is one of Python.
     let python = |text: &str| serde_json::Value::from(text).to_string();
     let (point, collect, folder) = (python(&point), python(&collect), python(&out));
-    // Where they have changed, the runs are looked at again; those that are there still are not made.
+    // Where they have changed, the runs are looked at again; those that are there still are not
+    // made.
     let mut inputs = vec![export.plan.file.clone(), export.plan.launcher.case.clone()];
     if let DesignSpec::Table { file } = &export.plan.design {
         let beside = export.plan.file.parent().unwrap_or(Path::new(""));

@@ -6,10 +6,11 @@ use super::analysis::{Analysis, OutputAnalysis};
 use super::figures::{regime_chart, response_chart};
 use super::plan::Plan;
 use super::rows::{DONE, NOT_RUN, Rows};
-use effects::{comparison_table, effect_blocks, pair_table};
+use crate::page::{section, table};
+use effects::{alternatives_table, effect_block, pairs_table};
+use fretwork_math::statistics::interval::Mean;
 use fretwork_observe::quantity::quantity;
-use fretwork_study::interval::Mean;
-use fretwork_view::{Block, Section, Sheet, SheetTable};
+use fretwork_view::{Block, Section, Sheet};
 
 /// Settings that a page lists; all are in the tables.
 const LISTED: usize = 100;
@@ -28,10 +29,7 @@ pub fn sheet(plan: &Plan, rows: &Rows, analysis: &Analysis) -> Sheet {
         .filter_map(|r| Some(Block::Figure(regime_chart(plan, r)?)))
         .collect();
     if !maps.is_empty() {
-        sections.push(Section {
-            title: "Regimes".to_owned(),
-            blocks: maps,
-        });
+        sections.push(section("Regimes", maps));
     }
     sections.push(settings_section(plan, rows, analysis));
     sections.push(runs_section(rows));
@@ -71,21 +69,14 @@ pub fn sheet(plan: &Plan, rows: &Rows, analysis: &Analysis) -> Sheet {
 
 fn output_section(plan: &Plan, output: &OutputAnalysis) -> Section {
     let mut blocks: Vec<Block> = Vec::new();
-    for comparison in &output.comparisons {
-        blocks.push(Block::Table(comparison_table(comparison, &output.unit)));
-        blocks.push(Block::Table(pair_table(comparison, &output.unit)));
+    for alternatives in &output.alternatives {
+        blocks.push(alternatives_table(alternatives, &output.unit));
+        blocks.push(pairs_table(alternatives, &output.unit));
     }
-    blocks.extend(
-        output
-            .responses
-            .iter()
-            .map(|r| Block::Figure(response_chart(plan, output, r))),
-    );
-    blocks.extend(effect_blocks(plan, output));
-    Section {
-        title: title_of(&output.name),
-        blocks,
-    }
+    let figures = output.responses.iter();
+    blocks.extend(figures.map(|r| Block::Figure(response_chart(plan, output, r))));
+    blocks.push(effect_block(plan, output));
+    section(title_of(&output.name), blocks)
 }
 
 /// A name as a heading.
@@ -130,10 +121,8 @@ fn settings_section(plan: &Plan, runs: &Rows, analysis: &Analysis) -> Section {
         ),
         false => "Means over the seeds, with intervals of 95 %.".to_owned(),
     };
-    Section {
-        title: "Settings".to_owned(),
-        blocks: vec![Block::Table(SheetTable { note, heads, rows })],
-    }
+    let heads = heads.iter().map(String::as_str);
+    section("Settings", vec![table(note, heads, rows)])
 }
 
 fn runs_section(runs: &Rows) -> Section {
@@ -158,11 +147,8 @@ fn runs_section(runs: &Rows) -> Section {
         ]);
     }
     if rows.is_empty() {
-        let said = "No run failed, and none says that it is not trustworthy.".to_owned();
-        return Section {
-            title: "Runs".to_owned(),
-            blocks: vec![Block::Text(said)],
-        };
+        let text = "No run failed, and none says that it is not trustworthy.".to_owned();
+        return section("Runs", vec![Block::Text(text)]);
     }
     let more = if left > 0 {
         format!(" {left} more are in table.csv.")
@@ -171,29 +157,19 @@ fn runs_section(runs: &Rows) -> Section {
     };
     let note =
         format!("Runs that failed, were rejected, or say that they are not trustworthy.{more}");
-    let heads = ["run", "status", "reason", "says", "folder"]
-        .map(str::to_owned)
-        .to_vec();
-    Section {
-        title: "Runs".to_owned(),
-        blocks: vec![Block::Table(SheetTable { note, heads, rows })],
-    }
+    let heads = ["run", "status", "reason", "says", "folder"];
+    section("Runs", vec![table(note, heads, rows)])
 }
 
 fn inputs_section(plan: &Plan) -> Section {
     let text = std::fs::read_to_string(&plan.file).unwrap_or_default();
-    Section {
-        title: "The study".to_owned(),
-        blocks: vec![
-            Block::Text(format!(
-                "Made by fretwork {}, program {}. To repeat a run by hand: fretwork study check {} --points lists the changes of each.",
-                env!("CARGO_PKG_VERSION"),
-                plan.launcher.program(),
-                plan.file.display()
-            )),
-            Block::Code(text),
-        ],
-    }
+    let made = format!(
+        "Made by fretwork {}, program {}. To repeat a run by hand: fretwork study check {} --points lists the changes of each.",
+        env!("CARGO_PKG_VERSION"),
+        plan.launcher.program(),
+        plan.file.display()
+    );
+    section("The study", vec![Block::Text(made), Block::Code(text)])
 }
 
 /// A mean with its interval.
