@@ -62,14 +62,14 @@ mod tests {
         let out = std::env::temp_dir().join(format!("fretwork-lock-{}", std::process::id()));
         let _ = std::fs::remove_dir_all(&out);
         let first = OWNER.take(&out).unwrap();
-        let said = OWNER.take(&out).unwrap_err().to_string();
-        assert!(said.contains("another fretwork trade is running"), "{said}");
+        let message = OWNER.take(&out).unwrap_err().to_string();
+        assert!(message.contains("another fretwork trade is running"), "{message}");
         drop(first);
         drop(OWNER.take(&out).unwrap());
         std::fs::remove_file(out.join(OWNER.mark)).unwrap();
         std::fs::write(out.join("thesis.txt"), "mine").unwrap();
-        let said = OWNER.take(&out).unwrap_err().to_string();
-        assert!(said.contains("holds no study"), "{said}");
+        let message = OWNER.take(&out).unwrap_err().to_string();
+        assert!(message.contains("holds no study"), "{message}");
         std::fs::remove_dir_all(&out).unwrap();
     }
 }

@@ -15,12 +15,12 @@ pub struct Tangential {
     /// Displacement of distant points at which it begins (m); of a line it depends on the form of
     /// the bodies at a distance.
     pub slip_displacement: Option<Range>,
-    /// Under the force or displacement that was asked for: Q/(mu P), 1 in gross slip.
+    /// Under the force or displacement that was requested: Q/(mu P), 1 in gross slip.
     pub share: Option<Range>,
     /// Semi-axis of the part that sticks over that of the patch; 0 in gross slip.
     pub stuck: Option<Range>,
-    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was asked
-    /// for: 0 in partial slip.
+    /// Amplitude of the slip in the middle of the patch (m), under the displacement that was
+    /// requested: 0 in partial slip.
     pub local_slip: Option<Range>,
 }
 
@@ -30,9 +30,9 @@ impl Tangential {
         contact: &Contact,
         friction: Option<&Friction>,
     ) -> Result<Option<Self>, String> {
-        let asked = question.force.is_some() || question.displacement.is_some();
+        let requested = question.force.is_some() || question.displacement.is_some();
         let Some(friction) = friction else {
-            return match asked {
+            return match requested {
                 true => Err("force, displacement: where slip begins needs the friction coefficient; give friction".into()),
                 false => Ok(None),
             };
@@ -74,7 +74,7 @@ impl Tangential {
                     let q = moved.map_or(force.unwrap_or(0.0), |d| slip(mu).force_at(d));
                     q.abs().min(mu * load)
                 };
-                if asked {
+                if requested {
                     out.share = Some(mu.map(|mu| under(mu) / (mu * load)));
                     out.stuck = Some(mu.map(|mu| slip(mu).stuck(under(mu))));
                 }
@@ -90,7 +90,7 @@ impl Tangential {
 pub struct Rolling {
     /// Creepage from which the whole patch slips.
     pub saturation: Range,
-    /// The creepage that was asked for.
+    /// The creepage that was requested.
     pub creepage: Option<f64>,
     /// Tangential force over load at this creepage.
     pub adhesion: Option<Range>,
@@ -110,9 +110,9 @@ impl Rolling {
         contact: &Contact,
         friction: Option<&Friction>,
     ) -> Result<Option<Self>, String> {
-        let asked = question.creepage.is_some() || question.speed.is_some();
+        let requested = question.creepage.is_some() || question.speed.is_some();
         let Some(friction) = friction else {
-            return match asked {
+            return match requested {
                 true => Err(
                     "creepage, speed: rolling needs the friction coefficient; give friction".into(),
                 ),
@@ -125,7 +125,7 @@ impl Rolling {
             Theory::Point(point) => Creep::of_point(point, load, mu, &solids),
         };
         if creep(mu.value).is_none() {
-            return match asked {
+            return match requested {
                 true => Err("creepage: the patch is more than ten times as long in one direction as in the other, beyond Kalker's table; give the load per length for a line contact".into()),
                 false => Ok(None),
             };
@@ -170,7 +170,7 @@ pub struct Window {
     /// By how much the gap of the undeformed bodies grows from the middle to its edges (m).
     pub gap: f64,
     /// Slip (m): the amplitude in fretting, or that of one passage in rolling; none where neither
-    /// was asked for.
+    /// was requested.
     pub slip: Option<Range>,
 }
 

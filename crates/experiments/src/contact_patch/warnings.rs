@@ -13,14 +13,14 @@ pub(super) fn of(question: &Question, contact: &Contact, answer: &Answer) -> Vec
     for body in &contact.bodies {
         for (axis, curvature) in axes.iter().zip(body.curvature) {
             if let Some(a) = axis.filter(|a| a * curvature.abs() > FLAT) {
-                let said = format!(
+                let warning = format!(
                     "NOT HERTZ: the patch, {a:.3e} m, is {:.2} of a radius of {}; the theory takes it as small, and the bodies as half-spaces",
                     a * curvature.abs(),
                     body.name
                 );
                 // Both directions of a sphere are one.
-                if !out.contains(&said) {
-                    out.push(said);
+                if !out.contains(&warning) {
+                    out.push(warning);
                 }
             }
         }

@@ -115,10 +115,10 @@ mod tests {
             of("tau", SigmaSpec::OfLargest(0.1)).unwrap().0.sigma,
             [8.0, 8.0]
         );
-        let said = of("sigma", SigmaSpec::Value(1.0)).unwrap_err().to_string();
+        let message = of("sigma", SigmaSpec::Value(1.0)).unwrap_err().to_string();
         assert!(
-            said.contains("no column `sigma`; there are u, tau, s"),
-            "{said}"
+            message.contains("no column `sigma`; there are u, tau, s"),
+            "{message}"
         );
         std::fs::remove_file(&path).unwrap();
     }

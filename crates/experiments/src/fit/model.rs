@@ -212,10 +212,10 @@ mod tests {
             [3.0, 5.0, 7.0, 9.0]
         );
         assert!(of("delta", RowsSpec::From(9.0)).is_err());
-        let (key, said) = Model::new(&spec("dlta", RowsSpec::All), &columns).unwrap_err();
+        let (key, message) = Model::new(&spec("dlta", RowsSpec::All), &columns).unwrap_err();
         assert!(
-            key == "x" && said.contains("`dlta`") && said.contains("delta, Q"),
-            "{said}"
+            key == "x" && message.contains("`dlta`") && message.contains("delta, Q"),
+            "{message}"
         );
         // A loop of constant friction stays one when it is smoothed: its turn is not.
         std::fs::write(&path, "step,time [s],delta [m],Q [N]\n1,0.1,0.0,2\n2,0.2,1.0,2\n3,0.3,2.0,2\n4,0.4,1.0,-2\n5,0.5,0.0,-2\n").unwrap();

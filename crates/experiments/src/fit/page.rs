@@ -12,7 +12,7 @@ use fretwork_view::{Axis, Block, Chart, DrawError, Series, Sheet, Style, draw_pa
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Correlation from which two parameters are said to be hard to tell apart.
+/// Correlation from which two parameters are sentences to be hard to tell apart.
 const HIGH: f64 = 0.9;
 
 /// What a fit consists of.
@@ -291,9 +291,9 @@ fn parameter_blocks(read: &FitFile, found: &Found, outcome: &Outcome) -> Vec<Blo
         "range of the search",
     ];
     let mut blocks = vec![table(note, heads, rows.collect())];
-    let said = verdict(read, found, outcome);
-    if !said.is_empty() {
-        blocks.push(Block::List(said));
+    let sentences = verdict(read, found, outcome);
+    if !sentences.is_empty() {
+        blocks.push(Block::List(sentences));
     }
     if names.len() > 1 {
         let cell = |r: &Option<f64>| r.map_or(String::new(), |r| format!("{r:.2}"));

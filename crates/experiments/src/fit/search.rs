@@ -175,9 +175,9 @@ impl Search<'_> {
             };
             next = here.end.max(next);
             let stage = Stage::Generation(generation);
-            let asked: Vec<Vec<f64>> = cma.ask();
+            let points: Vec<Vec<f64>> = cma.ask();
             let first = found.evaluations.len();
-            self.evaluate(&mut found, asked, here, stage)?;
+            self.evaluate(&mut found, points, here, stage)?;
             if self.stopped() {
                 return Ok(self.interrupted(found));
             }

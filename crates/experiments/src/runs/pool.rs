@@ -76,8 +76,8 @@ mod tests {
             7 => Err(Error::Usage("seven".into())),
             x => Ok(*x),
         };
-        let said = each(&items, 4, &stop, &fails).unwrap_err().to_string();
-        assert_eq!(said, "seven");
+        let message = each(&items, 4, &stop, &fails).unwrap_err().to_string();
+        assert_eq!(message, "seven");
         // What stands in the queue when the stop comes is left.
         let stops = |x: &u64| {
             stop.store(*x == 3, Ordering::Relaxed);

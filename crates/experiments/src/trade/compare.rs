@@ -76,14 +76,14 @@ pub struct Comparison {
 
 impl Row {
     /// How many of its runs say that they are not trustworthy, and why; none where all are.
-    pub fn doubt(&self) -> Option<String> {
+    pub fn not_trustworthy(&self) -> Option<String> {
         let words: Vec<&str> = self.doubts.iter().map(String::as_str).collect();
         let (doubted, seeds) = (self.doubted, self.seeds);
-        let said = format!(
+        let text = format!(
             "{doubted} of {seeds} runs not trustworthy: {}",
             words.join(", ")
         );
-        (doubted > 0).then_some(said)
+        (doubted > 0).then_some(text)
     }
 }
 
@@ -389,9 +389,9 @@ mod tests {
         let c = 0.3;
         for r in [1.5, 1.7, 2.0, 3.0] {
             let difference = c * r - c;
-            let said = weight(r).unwrap() * difference;
-            assert!(said >= c * (1.0 - 1e-12), "{r}: {said}");
-            assert!(r > 2.0 || (said - c).abs() < 1e-12, "{r}: {said}");
+            let bound = weight(r).unwrap() * difference;
+            assert!(bound >= c * (1.0 - 1e-12), "{r}: {bound}");
+            assert!(r > 2.0 || (bound - c).abs() < 1e-12, "{r}: {bound}");
         }
         assert_eq!(weight(1.1), None);
         assert_eq!(weight(f64::NAN), None);

@@ -116,8 +116,8 @@ mod tests {
             "a=100%",
             "statistics.q:mid=1%",
         ] {
-            let said = Output::parse(wrong).unwrap_err().to_string();
-            assert!(said.contains(wrong), "{said}");
+            let message = Output::parse(wrong).unwrap_err().to_string();
+            assert!(message.contains(wrong), "{message}");
         }
     }
 }

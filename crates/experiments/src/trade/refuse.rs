@@ -21,11 +21,11 @@ use std::time::{Duration, Instant};
 /// # Errors
 /// An output or an exact value is wrong.
 pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
-    let asked = request.outputs.iter().map(|t| Output::parse(t));
+    let requested = request.outputs.iter().map(|t| Output::parse(t));
     let usual = offer.usual().into_iter().map(Output::parse);
     let mut outputs: Vec<Output> = match request.outputs.is_empty() {
         true => usual.collect::<Result<_, _>>()?,
-        false => asked.collect::<Result<_, _>>()?,
+        false => requested.collect::<Result<_, _>>()?,
     };
     if outputs.is_empty() {
         return Err(Error::Usage(

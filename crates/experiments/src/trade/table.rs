@@ -138,8 +138,8 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
             let cell = error_cell(e.as_ref(), o, row.setting == reference);
             let _ = write!(out, "  {cell:>24}");
         }
-        if let Some(doubt) = row.doubt() {
-            let _ = write!(out, "  ! {doubt}");
+        if let Some(why) = row.not_trustworthy() {
+            let _ = write!(out, "  ! {why}");
         }
         if row.seeds < trade.seeds.len() {
             let _ = write!(out, "  {} of {} seeds", row.seeds, trade.seeds.len());
@@ -150,7 +150,7 @@ fn push_settings(out: &mut String, trade: &Trade, found: &Comparison) {
         out,
         "* on the frontier: no other setting is cheaper with a smaller error bound"
     );
-    if found.rows.iter().any(|row| row.doubt().is_some()) {
+    if found.rows.iter().any(|row| row.not_trustworthy().is_some()) {
         let _ = writeln!(
             out,
             "! runs that warn about themselves; the reasons are in `summary.json` of their folders in runs/"
