@@ -63,7 +63,10 @@ mod tests {
         let _ = std::fs::remove_dir_all(&out);
         let first = OWNER.take(&out).unwrap();
         let message = OWNER.take(&out).unwrap_err().to_string();
-        assert!(message.contains("another fretwork trade is running"), "{message}");
+        assert!(
+            message.contains("another fretwork trade is running"),
+            "{message}"
+        );
         drop(first);
         drop(OWNER.take(&out).unwrap());
         std::fs::remove_file(out.join(OWNER.mark)).unwrap();

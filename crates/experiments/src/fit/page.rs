@@ -351,7 +351,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
 }
 
 /// Measured and fitted curves of each test, with two standard deviations.
-fn charts(read: &ReadFit, tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Chart> {
+fn charts(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Chart> {
     let all = points(tests, found, outcome).into_iter().enumerate();
     let chart = |(t, points): (usize, Points)| {
         let (x, y) = axes(read, t);

@@ -117,7 +117,10 @@ fn settings(trade: &Trade, found: &Comparison) -> Table {
         Column::whole("reference", of(&|r| flag(r.setting == reference))),
         Column::whole("seeds", of(&|r| Some(r.seeds as f64))),
         Column::text("failed", text(&|r| r.failed.clone().unwrap_or_default())),
-        Column::text("not_trustworthy", text(&|r| r.not_trustworthy().unwrap_or_default())),
+        Column::text(
+            "not_trustworthy",
+            text(&|r| r.not_trustworthy().unwrap_or_default()),
+        ),
         Column::real("seconds", "", of(&|r| Some(r.seconds))),
         Column::real("visits", "", of(&|r| Some(r.visits))),
         Column::real("faster", "", of(&|r| r.faster.map(|f| f.0))),

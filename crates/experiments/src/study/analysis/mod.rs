@@ -7,7 +7,7 @@ mod effects;
 mod regimes;
 
 pub use comparisons::Alternatives;
-pub use curves::{Curve, Response};
+pub use curves::Response;
 pub use effects::{Change, Effects};
 pub use regimes::Regimes;
 
