@@ -6,7 +6,7 @@ use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
 use fretwork::scene::{Built, Scene, load};
 use fretwork::shipped::search_path;
-use fretwork::step::coupling::Coupling;
+use fretwork::step::Coupling;
 use rand::RngExt;
 use std::path::{Path, PathBuf};
 

@@ -9,9 +9,9 @@ use super::source::ValidationError;
 use fretwork_core::bodies::Dof;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Kind;
+use fretwork_core::step::Coupling;
 use fretwork_core::step::Simulation;
 use fretwork_core::step::control::Until;
-use fretwork_core::step::coupling::Coupling;
 
 /// Most materials and most interfaces of a case.
 const MOST: usize = 10_000;

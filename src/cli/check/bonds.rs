@@ -8,7 +8,7 @@ use crate::laws::bench::scale::{BondScale, Mode};
 use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
-use crate::step::coupling::Coupling;
+use crate::step::Coupling;
 
 /// Range of bond strength over pressure in which load and bonds are comparable.
 const STRENGTH: [f64; 2] = [0.01, 100.0];

@@ -12,8 +12,8 @@ use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
 use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
 use crate::solve::Problem;
+use crate::step::Coupling;
 use crate::step::Simulation;
-use crate::step::coupling::Coupling;
 
 /// Names of the enabled and disabled features.
 #[derive(Default)]

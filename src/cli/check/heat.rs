@@ -6,6 +6,7 @@ use crate::geometry::space::Space;
 use crate::heat::{Heat, Node, Store};
 use crate::laws::bench::{Bench, Motion};
 use crate::laws::{Interface, Kind};
+use crate::process::expansion::ThermalExpansion;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Simulation;
@@ -85,7 +86,7 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
 
 /// Which bodies expand with their temperature, and which first bodies do not.
 fn expanding<S: Space>(s: &Simulation<S>, heat: &Heat) -> Option<CheckLine> {
-    let expansion = s.expansion()?;
+    let expansion = ThermalExpansion::of(s)?;
     let bodies = &s.state.bodies;
     let expands = |body: usize| expansion.coefficient[body] != 0.0;
     let grains = bodies.grains().filter(|g| expands(*g)).count();

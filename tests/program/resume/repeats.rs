@@ -6,8 +6,8 @@ use super::state::{all, built, steps};
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::scene::{Built, Scene, load};
 use fretwork::shipped::search_path;
+use fretwork::step::Coupling;
 use fretwork::step::Simulation;
-use fretwork::step::coupling::Coupling;
 use fretwork_observe::error_estimate::{Change, ErrorEstimate, Repeats};
 use std::path::Path;
 

@@ -6,7 +6,7 @@ use super::spring::Spring;
 use super::step_size::StepSizeDiagnostics;
 use super::thermal::ContactHeat;
 use crate::bodies::Bodies;
-use crate::geometry::space::{Space, VectorLike};
+use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::{count, sum};
 use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -189,6 +189,28 @@ impl<S: Space> Contact<S> {
     /// Whether it is within the alert distance or bonded, or was predicted and has an impulse.
     pub fn counts(&self) -> bool {
         !self.beyond || self.impulse != S::Vector::zero()
+    }
+
+    /// Velocity of the candidate relative to the antagonist, at the current velocities of rigid bodies (m/s).
+    #[inline]
+    pub fn relative_velocity(&self, bodies: &Bodies<S>) -> S::Vector {
+        let [i, j] = self.bodies.map(|b| b as usize);
+        let levers = self.levers();
+        bodies.velocity[i] + S::spin_velocity(&bodies.spin[i], &levers[0])
+            - bodies.velocity[j]
+            - S::spin_velocity(&bodies.spin[j], &levers[1])
+    }
+
+    /// Mass along the normal, 1/W_nn (kg; kg/m in 2D); zero between bodies that cannot move.
+    pub fn effective_mass(&self, bodies: &Bodies<S>) -> f64 {
+        let (n, levers) = (&self.normal, self.levers());
+        let mobility = |side: usize| {
+            let b = self.bodies[side] as usize;
+            let turning = S::rotation_block(&levers[side], &bodies.inverse_tensor(b));
+            n.dot(&n.scaled_by(&bodies.inverse_mass[b])) + n.dot(&turning.apply(n))
+        };
+        let w = mobility(0) + mobility(1);
+        if w > 0.0 { 1.0 / w } else { 0.0 }
     }
 
     /// Returns the slot of its memory, if any.

@@ -2,8 +2,9 @@
 
 use super::circuit::CircuitState;
 use super::ledger::HeatLedger;
-use fretwork_math::diffusion::Node;
+use fretwork_math::diffusion::{Node, Store};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Temperatures, the account of heat, and the circuit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -39,6 +40,26 @@ impl HeatState {
         }
     }
 
+    /// Mean temperature of some nodes (K): by their capacities where they have one; `None` of no node.
+    pub fn mean_temperature(&self, nodes: Range<usize>) -> Option<f64> {
+        let nodes = self.nodes.get(nodes)?;
+        if let [node] = nodes {
+            return Some(node.temperature);
+        }
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for node in nodes {
+            let weight = match &node.store {
+                Store::Lumped(capacity) => *capacity,
+                Store::HalfSpace(_) => 1.0,
+                // A held part of a mesh, unless all of it is held.
+                Store::Fixed => 1e-300,
+            };
+            sum += weight * node.temperature;
+            weights += weight;
+        }
+        (!nodes.is_empty()).then(|| sum / weights)
+    }
+
     /// Whether it is a later state of the same nodes.
     pub(crate) fn fits(&self, first: &Self) -> bool {
         let nodes = self.nodes.iter().zip(&first.nodes);
@@ -64,5 +85,32 @@ impl HeatState {
         self.pending[node] -= work;
         self.ledger.pending -= work;
         self.ledger.expansion += work;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fretwork_math::diffusion::Node;
+
+    /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where there is nothing else.
+    #[test]
+    fn the_mean_temperature_is_that_of_the_heat_that_is_stored() {
+        let lumped = |t, c| Node::new(t, Store::Lumped(c));
+        let fixed = |t| Node::new(t, Store::Fixed);
+        let nodes = vec![
+            fixed(900.0),
+            fixed(100.0),
+            lumped(300.0, 1.0),
+            lumped(400.0, 3.0),
+        ];
+        let state = HeatState::new(nodes, 0);
+        let mean = |range| state.mean_temperature(range);
+        assert_eq!(mean(2..4), Some(375.0));
+        assert_eq!(mean(1..3), Some(300.0));
+        assert_eq!(mean(0..4), Some(375.0));
+        assert!((mean(0..2).unwrap() - 500.0).abs() < 1e-9);
+        assert_eq!(mean(0..1), Some(900.0));
+        assert_eq!((mean(1..1), mean(3..5)), (None, None));
     }
 }

@@ -11,6 +11,8 @@
 
 pub mod circuit;
 pub mod cycle;
+pub mod expansion;
+pub mod heat;
 pub mod jump;
 mod jump_summary;
 pub mod recession;

@@ -8,7 +8,7 @@
 use super::{Process, ProcessError};
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepError, StepReport};
-use crate::wear::scar::{Scar, WornThrough, closest_point};
+use crate::wear::scar::{Scar, closest_point};
 
 /// Puts what contacts wear off on the scars of a simulation, and lowers its surfaces. It carries nothing: the scars are part of
 /// the state of the simulation.
@@ -22,6 +22,13 @@ impl<S: Space> Process<S> for Recession {
 
     fn repeats(&self) -> bool {
         true
+    }
+
+    /// Refuses a step of a surface that is worn through.
+    fn at_start(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        s.check_worn_through()?;
+        s.state.network.losses.get_or_insert_default();
+        Ok(())
     }
 
     fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
@@ -59,15 +66,14 @@ impl<S: Space> Simulation<S> {
     /// # Errors
     /// Which is, and where.
     pub fn check_worn_through(&self) -> Result<(), StepError> {
-        let error = |source: &WornThrough| StepError::WornThrough {
-            step: self.state.steps,
-            time: self.state.time,
-            source: source.clone(),
-        };
-        self.state
-            .worn_through
-            .as_ref()
-            .map_or(Ok(()), |w| Err(error(w)))
+        match &self.state.worn_through {
+            None => Ok(()),
+            Some(source) => Err(StepError::WornThrough {
+                step: self.state.steps,
+                time: self.state.time,
+                source: source.clone(),
+            }),
+        }
     }
 }
 

@@ -1,12 +1,11 @@
 //! How much a step has changed: what tells whether a longer one would do.
 
-use super::Simulation;
 use crate::contact::Key;
 use crate::geometry::space::{Space, VectorLike};
 
 /// Forces of all contacts in the last step (N; N/m in 2D), in the order of their keys.
 #[derive(Clone, Debug, Default)]
-pub struct ContactForces<S: Space>(Vec<(Key, S::Vector)>);
+pub struct ContactForces<S: Space>(pub(super) Vec<(Key, S::Vector)>);
 
 impl<S: Space> ContactForces<S> {
     /// Root of the sum of squares of the differences, over that of the forces, the larger of the two; 0 where there is none.
@@ -39,63 +38,10 @@ impl<S: Space> ContactForces<S> {
 /// What a step has changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepChange {
-    /// Largest displacement of a point of a body, see [`Simulation::largest_displacement`].
+    /// Largest displacement of a point of a body, see [`super::Simulation::largest_displacement`].
     pub displacement: f64,
     /// Change of the contact forces, see [`ContactForces::change`].
     pub forces: f64,
-}
-
-impl<S: Space> Simulation<S> {
-    /// The forces of the contacts in the last step.
-    pub fn contact_forces(&self) -> ContactForces<S> {
-        let per = 1.0 / self.options.scheme.h;
-        let contacts = self.state.network.contacts.iter();
-        let carrying = contacts.filter(|c| c.impulse != S::Vector::zero());
-        ContactForces(carrying.map(|c| (c.key, c.impulse * per)).collect())
-    }
-
-    /// The largest displacement of a point of a body in a step at the current velocities, over the length of the smallest
-    /// grain, or the alert distance without grains. Infinite where a surface turns into another place, since its extent is
-    /// not known. A ball that turns in its place does not move.
-    pub fn largest_displacement(&self) -> f64 {
-        let (bodies, network) = (&self.state.bodies, &self.state.network);
-        let turning = self.shapes.surfaces.iter().any(|surface| {
-            let b = surface.body as usize;
-            let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
-            bodies.spin[b].norm() > 0.0 && !surface.shape.keeps_place(&spin)
-        });
-        if turning {
-            return f64::INFINITY;
-        }
-        let speed = |b: usize| {
-            let lever = network.extents.lever(b);
-            let turn = if lever > 0.0 {
-                lever * bodies.spin[b].norm()
-            } else {
-                0.0
-            };
-            bodies.velocity[b].norm() + turn
-        };
-        let present = (0..bodies.len()).filter(|b| !bodies.removed[*b]);
-        let grains = bodies.grains().filter(|b| !bodies.removed[*b]);
-        let smallest = grains
-            .map(|b| bodies.length[b])
-            .fold(f64::INFINITY, f64::min);
-        let size = if smallest.is_finite() {
-            smallest
-        } else {
-            network.alert
-        };
-        self.options.scheme.h * present.map(speed).fold(0.0, f64::max) / size
-    }
-
-    /// What the last step has changed; `before` are the forces of the step before.
-    pub fn change_since(&self, before: &ContactForces<S>) -> StepChange {
-        StepChange {
-            displacement: self.largest_displacement(),
-            forces: before.change(&self.contact_forces()),
-        }
-    }
 }
 
 #[cfg(test)]

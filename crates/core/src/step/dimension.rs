@@ -3,6 +3,7 @@
 //! [`Simulation::step`] and [`Simulation::detect`] look it up, so that the step is compiled here, once for each dimension, and
 //! not again in every crate that makes steps.
 
+use super::one_step::one_step;
 use super::{Simulation, StepError, StepReport};
 use crate::contact::detect::detect;
 use crate::geometry::space::{Dim2, Dim3, Space};
@@ -62,8 +63,8 @@ impl<'a> InDimensionMut<'a> {
     /// As [`Simulation::step`].
     pub fn step(self) -> Result<StepReport, StepError> {
         match self {
-            Self::Dim2(simulation) => simulation.one_step(),
-            Self::Dim3(simulation) => simulation.one_step(),
+            Self::Dim2(simulation) => one_step(simulation),
+            Self::Dim3(simulation) => one_step(simulation),
         }
     }
 

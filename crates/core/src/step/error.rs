@@ -1,9 +1,11 @@
 //! Errors of a time step.
 
-use super::process::ProcessError;
 use crate::heat::DiffusionError;
 use crate::laws::LawError;
 use crate::wear::WornThrough;
+
+/// Why a process cannot go on; it ends the run.
+pub type ProcessError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Reason why a step failed.
 #[derive(Debug, thiserror::Error)]

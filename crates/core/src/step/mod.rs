@@ -1,75 +1,58 @@
-//! The time step.
+//! The time step. `one_step.rs` lists its stages; each is a module of the name on the left. The
+//! moments at which processes act, see [`crate::process`], stand on the right.
 //!
 //! ```text
-//!       ┌──────► detect (broad, narrow) ─► contact network (memory: bonds, D, slip)
-//!       │                                        ▼
-//!       │                         mean places of points on meshes (gap, what they act on)
-//!       │                                        ▼
-//!       │                         predict contacts that close within the step, mean places of these
-//!       │                                        ▼
-//!       │                         laws: prepare (batch, plugin ABI)
-//!       │                                        ▼
-//!       │                         solve: standard local form ─► p
-//!       │                                        ▼
-//!       │                         laws: commit (damage, broken, wear, dissipation)
-//!       │                                        ▼
-//!       │                         heat, current and work of expansion, where the case has them
-//!       │                                        ▼
-//!       │                         energy ledger
-//!       │                                        ▼
-//!       │                         advance bodies, processes after the move
-//!       │                                        ▼
-//!       └──────────────── observers and files (layers above), processes between steps
+//!             ┌─────►                                                        at_start
+//!  control    │  schedule, imposed motion
+//!             │       ▼                                                      before_detection
+//!  motion     │  bodies to q_m
+//!             │       ▼
+//!  detection  │  contacts (broad, narrow), what they act on on meshes;
+//!             │  overlaps taken out; contacts that close within the step
+//!             │       ▼                                                      contacts_found
+//!  problem    │  laws: prepare ─► standard local form ─► solve ─► p, until
+//!             │  laws, damage and contacts agree with the velocities
+//!             │  laws: commit (damage, broken, worn off, dissipation)
+//!             │       ▼                                                      after_solve
+//!  ledger     │  energy, momentum
+//!             │       ▼
+//!  motion     │  bodies to the end of the step
+//!             │       ▼                                                      after_move
+//!  control    │  end of a phase
+//!             │       ▼
+//!             └─ observers and files (layers above)                          between_steps
 //! ```
-mod action;
-mod agreement;
-mod answers;
-mod attraction;
-mod balance;
+mod building;
 mod change;
-mod columns;
 pub mod control;
-pub mod coupling;
+mod detection;
 mod dimension;
 mod error;
-mod expansion;
 pub mod fields;
-mod finite;
-mod heat;
-mod imposed;
-mod impossible;
-mod mortar;
-pub mod motion;
+mod ledger;
+mod motion;
 mod one_step;
 mod options;
-mod prediction;
 mod problem;
 pub mod process;
-mod processes;
-pub mod projection;
-mod removal;
+mod reading;
 mod repeat;
 mod report;
 mod run;
 mod simulation;
-mod sliding;
 mod state;
-mod swerve;
-mod systems;
-mod turning;
 mod workspace;
 
-pub use agreement::Agreement;
 pub use change::{ContactForces, StepChange};
-pub use columns::ContactRow;
+pub use control::ImpossibleMotions;
 pub use dimension::{InDimension, InDimensionMut};
 pub use error::StepError;
-pub use impossible::{DrivenOverlap, Impossible, ImpossibleMotions};
-pub use options::{Options, Scheme};
-pub use processes::ProcessState;
-pub use projection::Projected;
-pub use repeat::{RepeatError, Saved};
-pub use report::{StepReport, Timing};
+pub use options::{Coupling, Options, Scheme};
+pub use reading::ContactRow;
+pub use repeat::{ProcessState, RepeatError, Saved};
+pub use report::{
+    Agreement, CouplingReport, DrivenOverlap, Impossible, Projected, StepReport, Timing,
+};
 pub use simulation::Simulation;
 pub use state::State;
 

@@ -1,7 +1,7 @@
 //! How a simulation is computed: what a case or a program chooses, and no step changes.
 
-use super::coupling::Coupling;
 use crate::solve;
+use serde::{Deserialize, Serialize};
 
 /// The time scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub struct Options {
     /// Fraction of a penetration removed per step, 0 to 1: `solver.correction` of a case.
     pub correction: f64,
     /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved apart; 0 for
-    /// never. See [`super::projection`].
+    /// never. See `detection/projection.rs`.
     pub projection: f64,
     /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact dissipated. Once there, the record is
     /// continued until it is set to `None`.
@@ -49,4 +49,29 @@ impl Options {
     pub fn event_step(&self) -> f64 {
         self.scheme.h / (1.0 + f64::from(self.grown))
     }
+}
+
+/// The coupling of damage and opening.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Coupling {
+    /// The step is solved with the damage at its start; damage grows at its end. First order in h.
+    Explicit,
+    /// The step is solved once, with the mean of the damage at its start and of the damage that the law gives for the
+    /// opening predicted from the velocity at its start; damage grows at its end. Second order in h where velocities are
+    /// smooth.
+    #[default]
+    Midpoint,
+    /// The step is solved repeatedly until the damage used equals the damage that the resulting openings
+    /// give. Damage never decreases between iterations, so that the iteration ends.
+    Implicit {
+        /// Largest change of damage between two iterations at convergence.
+        tolerance: f64,
+        /// Maximum number of solves in a step; 50 where it is left out.
+        #[serde(default = "default_max_iterations")]
+        max_iterations: u32,
+    },
+}
+
+fn default_max_iterations() -> u32 {
+    50
 }

@@ -1,28 +1,45 @@
 //! A process: what acts on a simulation at the named moments of its steps, see [`crate::process`].
 
+pub use super::error::ProcessError;
 use super::{Simulation, StepReport};
 use crate::code::CodeError;
 use crate::geometry::space::Space;
 use std::any::Any;
 use std::fmt::Debug;
 
-/// Why a process cannot go on; it ends the run.
-pub type ProcessError = Box<dyn std::error::Error + Send + Sync>;
-
 /// Something that acts on a simulation at the named moments of a step, see [`crate::process`]. All moments but those that it needs may be
 /// left out. While a process acts, [`Simulation::process`] finds no other.
 ///
-/// An error of a moment ends the step with [`super::StepError::Process`]; the state is then that of this moment.
+/// An error of a moment ends the step with [`super::StepError::Process`], unless it is a
+/// [`super::StepError`] itself; the state is then that of this moment.
 pub trait Process<S: Space>: Any + Debug + Send + Sync {
     /// Its name: tells processes of one simulation apart in checkpoints and messages.
     fn name(&self) -> &str;
 
-    /// At the start of a step, when imposed motions have their velocities of the step: where forces act on bodies, see
+    /// At the start of a step, before anything of it is done.
+    ///
+    /// # Errors
+    /// Why the step is not to be made.
+    fn at_start(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
+        Ok(())
+    }
+
+    /// When imposed motions have their velocities of the step: where forces act on bodies, see
     /// [`Simulation::apply_impulse`].
     ///
     /// # Errors
     /// Why it cannot go on.
     fn before_detection(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
+        Ok(())
+    }
+
+    /// When the contacts of the step are found, at q_m, before the laws see them: what laws are to
+    /// see of contacts is set here. Called again in the same step where its velocities close further
+    /// contacts.
+    ///
+    /// # Errors
+    /// Why it cannot go on.
+    fn contacts_found(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
 
@@ -58,6 +75,13 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     fn at_end(&mut self, _: &mut Simulation<S>) -> Result<(), ProcessError> {
         Ok(())
     }
+
+    /// When a body has been removed from the scene.
+    fn body_removed(&mut self, _: &mut Simulation<S>, _body: usize) {}
+
+    /// When the state has been replaced, see [`Simulation::restore`] and [`Simulation::repeat`]: what
+    /// follows the state elsewhere, such as the sizes of shapes, is brought up to date.
+    fn follow_state(&mut self, _: &mut Simulation<S>) {}
 
     /// Whether what it was to reach is reached, so that the run may end.
     fn finished(&self) -> bool {

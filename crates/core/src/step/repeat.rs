@@ -1,9 +1,12 @@
 //! Repeating steps from a saved state: steps with other options, after which all is as before.
 
-use super::{Options, ProcessState, Simulation, State};
+use super::{Options, Simulation, State, control};
 use crate::code::CodeError;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
+
+/// The state of one process: its name and its bytes.
+pub type ProcessState = (String, Vec<u8>);
 
 /// Why steps cannot be repeated.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,6 +34,55 @@ pub struct Saved<S: Space> {
 }
 
 impl<S: Space> Simulation<S> {
+    /// Continues from the state of a simulation that was built from the same case. The next step gives the same bits as in that
+    /// simulation. Returns false, and changes nothing, if the state belongs to another case, or if this simulation has made steps
+    /// already: build it again then, since laws and surfaces follow the state. A decoded state is restored here, not assigned to
+    /// `state`, which would leave dynamical systems without their data.
+    #[must_use]
+    pub fn restore(&mut self, mut state: State<S>) -> bool {
+        if self.state.steps > 0
+            || !fits(&state, self)
+            || !state.systems.take_up(&self.state.systems)
+        {
+            return false;
+        }
+        self.state = state;
+        for scar in &self.state.scars {
+            scar.show_again(&mut self.shapes);
+        }
+        self.tell(|process, simulation| process.follow_state(simulation));
+        // Results may be asked for before the next step.
+        self.state
+            .systems
+            .deform(&self.state.bodies, &mut self.shapes);
+        self.state.control.set_parameters(&mut self.laws);
+        control::set_holder_drives(self);
+        self.measure_areas();
+        true
+    }
+
+    /// What the processes carry from step to step, in their order.
+    ///
+    /// # Errors
+    /// One cannot be put into bytes.
+    pub fn save_processes(&self) -> Result<Vec<ProcessState>, CodeError> {
+        let list = self.processes.iter();
+        list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
+    }
+
+    /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with the same ones.
+    ///
+    /// # Errors
+    /// The states are of other processes; where one cannot be read, those before it are restored already.
+    pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
+        let names = self.processes.iter().map(|p| p.name());
+        if !names.eq(from.iter().map(|(name, _)| name.as_str())) {
+            return Err(CodeError::other("processes"));
+        }
+        let mut pairs = self.processes.iter_mut().zip(from);
+        pairs.try_for_each(|(process, (_, bytes))| process.restore(bytes))
+    }
+
     /// Whether steps can be repeated.
     ///
     /// # Errors
@@ -65,9 +117,7 @@ impl<S: Space> Simulation<S> {
         }
         self.options.grown = count - 1;
     }
-}
 
-impl<S: Space> Simulation<S> {
     /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
     /// the next step gives the same bits as without the trial.
     ///
@@ -117,10 +167,35 @@ impl<S: Space> Simulation<S> {
         for (scar, _) in scars.filter(|(_, worn)| *worn) {
             scar.show_again(&mut self.shapes);
         }
-        self.show_expansion();
         self.processes.truncate(saved.processes.len());
-        Ok(self.restore_processes(&saved.processes)?)
+        self.restore_processes(&saved.processes)?;
+        self.tell(|process, simulation| process.follow_state(simulation));
+        Ok(())
     }
+}
+
+/// Returns whether it is a state of this scene, in which a step can be made: its lists are as long as those of the scene, indices
+/// are in range, and numbers of motion are finite.
+fn fits<S: Space>(state: &State<S>, scene: &Simulation<S>) -> bool {
+    let built = &scene.state;
+    let scars = state.scars.iter().zip(&built.scars);
+    let heat = state.heat.iter().zip(&built.heat);
+    state.bodies.len() == built.bodies.len()
+        && state.bodies.fits(&built.bodies)
+        && state.bodies.carriers == built.bodies.carriers
+        && state
+            .network
+            .fits(&built.network, &scene.shapes, &state.bodies)
+        && state.received.len() == built.received.len()
+        && state.started.len() == built.started.len()
+        && state.scars.len() == built.scars.len()
+        && scars.into_iter().all(|(a, b)| a.fits(b))
+        && state.heat.is_some() == built.heat.is_some()
+        && heat.into_iter().all(|(a, b)| a.fits(b))
+        && state.law_history.fits(scene.laws.len())
+        && state.time.is_finite()
+        && state.gravity.is_finite()
+        && (state.control).fits(&scene.phases, &scene.laws, &state.bodies.driven)
 }
 
 #[cfg(test)]

@@ -1,9 +1,5 @@
 //! What a step reports.
 
-use super::agreement::Agreement;
-use super::coupling::CouplingReport;
-use super::impossible::Impossible;
-use super::projection::Projected;
 use crate::laws::Totals;
 use crate::solve;
 use std::time::Duration;
@@ -44,4 +40,59 @@ pub struct StepReport {
     pub overlap: f64,
     /// Wall-clock time.
     pub timing: Timing,
+}
+
+/// Report of the coupling in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CouplingReport {
+    /// Number of solves; zero where the coupling is explicit.
+    pub iterations: u32,
+    /// Largest change of damage in the last iteration.
+    pub change: f64,
+    /// Whether the iteration ended without reaching the tolerance.
+    pub missed: bool,
+}
+
+/// How laws and the step agree.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Agreement {
+    /// Number of solves: more than 1 where friction depends on velocity, or attraction on the gap.
+    pub solves: u32,
+    /// Sum over contacts of the difference between the friction used and that of the laws at the velocity of sliding reached, over
+    /// the sum of the friction.
+    pub friction: f64,
+    /// Sum over contacts of the difference between the attraction used and that over the gaps passed, over the sum of their loads.
+    pub attraction: f64,
+}
+
+/// Result of a projection.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projected {
+    /// Deepest penetration before it, as a fraction of the smaller body's length.
+    pub before: f64,
+    /// Deepest penetration left.
+    pub after: f64,
+    /// Iterations of the solver.
+    pub sweeps: u32,
+    /// Work done on driven bodies against imposed forces and moments (J; J/m in 2D).
+    pub against_loads: f64,
+}
+
+/// What a step could not obey.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Impossible {
+    /// Bodies that squeeze others without bound: those that do the work first, then those against which they press; empty where
+    /// none do.
+    pub squeezing: Vec<u32>,
+    /// The deepest overlap of two bodies whose motions are both imposed, if there is one that grows.
+    pub overlap: Option<DrivenOverlap>,
+}
+
+/// Two bodies whose motions are both imposed, and that overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenOverlap {
+    /// The bodies.
+    pub bodies: [u32; 2],
+    /// Depth at the end of the step (m).
+    pub depth: f64,
 }

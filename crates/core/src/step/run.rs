@@ -1,5 +1,6 @@
-//! Many steps, watched and stopped by the caller.
+//! Steps, and the moments at which processes act.
 
+use super::process::{Process, ProcessError};
 use super::{Simulation, StepError, StepReport};
 use crate::geometry::space::Space;
 use std::ops::ControlFlow;
@@ -23,5 +24,84 @@ impl<S: Space> Simulation<S> {
             }
         }
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// Has the processes act on the state after a step, once a step. The next step does it first where this was not called; who
+    /// looks at each step calls it when that is done.
+    ///
+    /// # Errors
+    /// Why a process cannot go on. The processes after it have not acted then, and do not act on this state any more: the
+    /// simulation has ended.
+    pub fn between_steps(&mut self) -> Result<(), StepError> {
+        if std::mem::replace(&mut self.state.settled, true) {
+            return Ok(());
+        }
+        self.act(Process::between_steps)
+    }
+
+    /// Has the processes do after the last step what they do every so many steps, and first what is due between steps.
+    ///
+    /// # Errors
+    /// Why a process cannot.
+    pub fn end(&mut self) -> Result<(), StepError> {
+        self.between_steps()?;
+        self.act(Process::at_end)
+    }
+
+    /// Has the features and then the processes act in their order, until one refuses.
+    pub(super) fn act(
+        &mut self,
+        mut moment: impl FnMut(&mut (dyn Process<S> + 'static), &mut Self) -> Result<(), ProcessError>,
+    ) -> Result<(), StepError> {
+        let mut features = std::mem::take(&mut self.features);
+        let acted = features
+            .iter_mut()
+            .try_for_each(|f| self.act_one(f, &mut moment));
+        self.features = features;
+        acted?;
+        let mut list = std::mem::take(&mut self.processes);
+        let acted = list
+            .iter_mut()
+            .try_for_each(|p| self.act_one(p, &mut moment));
+        // A process that was added acts after those that were there; while they acted it could not see them.
+        let added = std::mem::take(&mut self.processes);
+        for process in added {
+            if list.iter().all(|p| p.name() != process.name()) {
+                list.push(process);
+            }
+        }
+        self.processes = list;
+        acted
+    }
+
+    fn act_one(
+        &mut self,
+        process: &mut Box<dyn Process<S>>,
+        moment: &mut impl FnMut(&mut (dyn Process<S> + 'static), &mut Self) -> Result<(), ProcessError>,
+    ) -> Result<(), StepError> {
+        let Err(source) = moment(process.as_mut(), self) else {
+            return Ok(());
+        };
+        Err(match source.downcast() {
+            Ok(own) => *own,
+            Err(source) => StepError::Process {
+                step: self.state.steps,
+                time: self.state.time,
+                process: process.name().to_owned(),
+                source,
+            },
+        })
+    }
+
+    /// Tells features and processes that they are to follow the state, or that a body was removed.
+    pub(super) fn tell(
+        &mut self,
+        mut what: impl FnMut(&mut (dyn Process<S> + 'static), &mut Self),
+    ) {
+        let told = self.act(|process, simulation| {
+            what(process, simulation);
+            Ok(())
+        });
+        debug_assert!(told.is_ok(), "nothing refused");
     }
 }

@@ -1,18 +1,23 @@
 //! The simulation: what a case gives, how it is computed, and its state.
 
-use super::control::Phase;
+use super::control::phases::Phase;
 use super::fields::Fields;
 use super::process::Process;
 use super::workspace::Workspace;
-use super::{Options, State};
+use super::{Options, State, StepError};
 use crate::bodies::Bodies;
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
-use crate::heat::{Expansion, Heat};
-use crate::laws::{ContactStep, Interface};
+use crate::heat::Heat;
+use crate::laws::{ContactStep, Interface, LawError};
 use crate::solve::{self, ContactForm};
+use crate::threads::pays;
+use std::sync::Arc;
+
+/// About what a pass over contacts takes for each (ns).
+const EACH: f64 = 15.0;
 
 /// A scene that is advanced in time: what a case gives, the options of the computation, and the state.
 #[derive(Debug)]
@@ -27,20 +32,28 @@ pub struct Simulation<S: Space> {
     pub phases: Vec<Phase<S>>,
     /// How it is computed; no step changes it.
     pub options: Options,
-    /// Heat and current; `None` where none is computed. See [`Simulation::set_heat`].
-    pub(super) heat: Option<Heat>,
-    /// Thermal expansion; `None` where no body expands. See [`Simulation::set_expansion`].
-    pub(super) expansion: Option<Expansion<S>>,
+    /// Heat and current; `None` where none is computed. See [`crate::process::heat::HeatFlow`].
+    pub(crate) heat: Option<Arc<Heat>>,
     /// What steps change; a checkpoint holds all of it.
     pub state: State<S>,
     /// What grains and contacts carry for output, by name.
     pub fields: Fields<S>,
+    /// What the core itself adds to the stages of a step, see [`Simulation::add_feature`].
+    pub(super) features: Vec<Box<dyn Process<S>>>,
     /// What acts at the named moments of a step, in this order; they save themselves, see [`Simulation::save_processes`].
     pub(super) processes: Vec<Box<dyn Process<S>>>,
-    pub(super) workspace: Workspace<S>,
+    pub(crate) workspace: Workspace<S>,
 }
 
 impl<S: Space> Simulation<S> {
+    /// Bytes per contact in addition to the solver's rows and the bond: the contact, its pair in the neighbour list, its form, its
+    /// results, and its relative velocities before and after.
+    pub const BYTES_A_CONTACT: usize = size_of::<Contact<S>>()
+        + size_of::<(u32, u32)>()
+        + size_of::<ContactForm<S>>()
+        + size_of::<ContactStep<S>>()
+        + 2 * size_of::<S::Vector>();
+
     /// Builds a scene at rest at time zero.
     pub fn new(
         bodies: Bodies<S>,
@@ -64,27 +77,17 @@ impl<S: Space> Simulation<S> {
             phases: Vec::new(),
             options: Options::default(),
             heat: None,
-            expansion: None,
             state: State::at_rest(bodies, network),
             fields: Fields::default(),
+            features: Vec::new(),
             processes: Vec::new(),
             workspace: Workspace::default(),
         }
     }
-}
-
-impl<S: Space> Simulation<S> {
-    /// Bytes per contact in addition to the solver's rows and the bond: the contact, its pair in the neighbour list, its form, its
-    /// results, and its relative velocities before and after.
-    pub const BYTES_A_CONTACT: usize = size_of::<Contact<S>>()
-        + size_of::<(u32, u32)>()
-        + size_of::<ContactForm<S>>()
-        + size_of::<ContactStep<S>>()
-        + 2 * size_of::<S::Vector>();
 
     /// Heat and current, as the case gives them.
     pub fn heat(&self) -> Option<&Heat> {
-        self.heat.as_ref()
+        self.heat.as_deref()
     }
 
     /// The options of the solver, with the tolerance that the current phase has set, if any.
@@ -93,6 +96,21 @@ impl<S: Space> Simulation<S> {
         solve::Options {
             tolerance: self.state.control.tolerance.unwrap_or(given.tolerance),
             ..given
+        }
+    }
+
+    /// Whether a pass over the contacts is divided among threads.
+    pub(super) fn divides_contacts(&self) -> bool {
+        let parallel = self.options.solver.parallel;
+        pays(parallel, self.state.network.contacts.len(), EACH)
+    }
+
+    /// The error of a law in the current step.
+    pub(super) fn law_error(&self, source: LawError) -> StepError {
+        StepError::Law {
+            step: self.state.steps + 1,
+            time: self.state.time,
+            source,
         }
     }
 }

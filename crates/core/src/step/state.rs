@@ -3,10 +3,9 @@
 //! All of it is saved, by its derived form: a new field is saved without being named anywhere else. What a case gives (shapes,
 //! laws, phases, options) is built again, and work arrays of a step (forms, columns, the solver's problem and its colouring)
 //! depend only on this state. Two things of the case follow the state while it changes: worn surfaces follow their scars, and
-//! parameters of laws what phases have set; [`Simulation::restore`] has them follow again.
+//! parameters of laws what phases have set; [`super::Simulation::restore`] has them follow again.
 
-use super::Simulation;
-use super::control::Control;
+use super::control::schedule::Control;
 use crate::bodies::{Bodies, Systems};
 use crate::contact::Network;
 use crate::energy::Energy;
@@ -18,7 +17,7 @@ use crate::solve::AutoState;
 use crate::wear::{Scar, WornThrough};
 use serde::{Deserialize, Serialize};
 
-/// State of a simulation between two steps; see [`Simulation::restore`].
+/// State of a simulation between two steps; see [`super::Simulation::restore`].
 ///
 /// ```
 /// use fretwork_core::code::{CodeError, decode, encode};
@@ -44,11 +43,11 @@ pub struct State<S: Space> {
     pub(super) time_excess: f64,
     /// Steps completed.
     pub steps: u64,
-    /// Whether the processes have acted on the state since the last step, see [`Simulation::between_steps`].
+    /// Whether the processes have acted on the state since the last step, see [`super::Simulation::between_steps`].
     pub(super) settled: bool,
     /// Grains and first bodies.
     pub bodies: Bodies<S>,
-    /// Bodies that are more than rigid; see [`Simulation::add_system`].
+    /// Bodies that are more than rigid; see [`super::Simulation::add_system`].
     pub systems: Systems<S>,
     /// The contacts.
     pub network: Network<S>,
@@ -107,56 +106,5 @@ impl<S: Space> State<S> {
             auto_state: AutoState::default(),
             bodies,
         }
-    }
-
-    /// Returns whether it is a state of this scene, in which a step can be made: its lists are as long as those of the scene, indices
-    /// are in range, and numbers of motion are finite.
-    fn fits(&self, scene: &Simulation<S>) -> bool {
-        let built = &scene.state;
-        let scars = self.scars.iter().zip(&built.scars);
-        let heat = self.heat.iter().zip(&built.heat);
-        self.bodies.len() == built.bodies.len()
-            && self.bodies.fits(&built.bodies)
-            && self.bodies.carriers == built.bodies.carriers
-            && self
-                .network
-                .fits(&built.network, &scene.shapes, &self.bodies)
-            && self.received.len() == built.received.len()
-            && self.started.len() == built.started.len()
-            && self.scars.len() == built.scars.len()
-            && scars.into_iter().all(|(a, b)| a.fits(b))
-            && self.heat.is_some() == built.heat.is_some()
-            && heat.into_iter().all(|(a, b)| a.fits(b))
-            && self.law_history.fits(scene.laws.len())
-            && self.time.is_finite()
-            && self.gravity.is_finite()
-            && (self.control).fits(&scene.phases, &scene.laws, &self.bodies.driven)
-    }
-}
-
-impl<S: Space> Simulation<S> {
-    /// Continues from the state of a simulation that was built from the same case. The next step gives the same bits as in that
-    /// simulation. Returns false, and changes nothing, if the state belongs to another case, or if this simulation has made steps
-    /// already: build it again then, since laws and surfaces follow the state. A decoded state is restored here, not assigned to
-    /// `state`, which would leave dynamical systems without their data.
-    #[must_use]
-    pub fn restore(&mut self, mut state: State<S>) -> bool {
-        if self.state.steps > 0 || !state.fits(self) || !state.systems.take_up(&self.state.systems)
-        {
-            return false;
-        }
-        self.state = state;
-        for scar in &self.state.scars {
-            scar.show_again(&mut self.shapes);
-        }
-        self.show_expansion();
-        // Results may be asked for before the next step.
-        self.state
-            .systems
-            .deform(&self.state.bodies, &mut self.shapes);
-        self.state.control.set_parameters(&mut self.laws);
-        self.set_holder_drives();
-        self.measure_areas();
-        true
     }
 }

@@ -10,6 +10,8 @@ use crate::heat::{
 };
 use crate::laws::Interface;
 use crate::laws::sample_laws::{bond, constant, interface, sticky};
+use crate::process::expansion::ThermalExpansion;
+use crate::process::heat::HeatFlow;
 use nalgebra::Vector2;
 
 const H: f64 = 1.0 / 64.0;
@@ -258,7 +260,7 @@ fn two_disks_come_to_one_temperature() {
             imposed,
             ..heat()
         };
-        s.set_heat(heat, nodes([(400.0, 1.0), (300.0, 2.0)]));
+        HeatFlow::add_to(&mut s, heat, nodes([(400.0, 1.0), (300.0, 2.0)]));
         let begun = (start / H) as u64;
         let span = every as f64 * clock * H;
         let (mut differ, mut put) = (100.0, 0.0);
@@ -308,7 +310,7 @@ fn friction_warms_both_sides() {
             shares,
             ..heat()
         };
-        s.set_heat(heat, nodes([(300.0, 0.5), (310.0, 2.0)]));
+        HeatFlow::add_to(&mut s, heat, nodes([(300.0, 0.5), (310.0, 2.0)]));
         for _ in 0..30 {
             s.step().unwrap();
         }
@@ -338,7 +340,11 @@ fn a_sliding_contact_flashes() {
             clock,
             ..heat()
         };
-        s.set_heat(heat.clone(), nodes([(300.0, 1e300), (300.0, 1e300)]));
+        HeatFlow::add_to(
+            &mut s,
+            heat.clone(),
+            nodes([(300.0, 1e300), (300.0, 1e300)]),
+        );
         for k in 0..10 {
             s.step().unwrap();
             let seen = &s.state.network.thermal.as_ref().unwrap().seen[0];
@@ -399,8 +405,8 @@ fn a_disk_that_grows_meets_its_neighbour() {
     let disks = [([0.0, 0.0], 0.5), ([1.1, 0.0], 0.5)];
     let mut s = Simulation::of_disks(&disks).with_law(interface([]));
     s.options.scheme = Scheme { h: H, theta: 0.5 };
-    s.set_heat(heat(), nodes([(300.0, 1.0), (300.0, 2.0)]));
-    s.set_expansion(vec![1e-3, 0.0], Vec::new());
+    HeatFlow::add_to(&mut s, heat(), nodes([(300.0, 1.0), (300.0, 2.0)]));
+    ThermalExpansion::add_to(&mut s, vec![1e-3, 0.0], Vec::new());
     for k in 0..=20 {
         // 0.5 m times 1e-3/K, to 0.5995 m.
         s.state.heat.as_mut().unwrap().nodes[0].temperature = 300.0 + 9.95 * f64::from(k);

@@ -12,7 +12,7 @@ use crate::Error;
 use crate::factor::{AS_IN_THE_CASE, Level};
 use fretwork_core::laws::Kind;
 use fretwork_core::solve::local::solver::Method;
-use fretwork_core::step::coupling::Coupling;
+use fretwork_core::step::Coupling;
 use fretwork_scene::Loaded;
 use fretwork_scene::case::{Case, GrainSpec};
 use fretwork_scene::source::nearest;

@@ -5,7 +5,7 @@ use super::{FINER, Place};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Interface;
 use fretwork_core::process::cycle::RubbedBody;
-use fretwork_core::step::coupling::Coupling;
+use fretwork_core::step::Coupling;
 use fretwork_core::step::{RepeatError, Simulation};
 
 /// The tight tolerance is the tolerance over this number.

@@ -2,8 +2,8 @@
 
 use crate::quantity::number;
 use fretwork_core::contact::Slides;
+use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
-use fretwork_core::step::coupling::Coupling;
 use serde::Serialize;
 
 /// Relative difference of the released energy from that of the laws from which bonds count as not resolved.

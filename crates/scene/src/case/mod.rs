@@ -38,8 +38,8 @@ use super::phases::PhaseSpec;
 use fretwork_core::bodies::Dof;
 use fretwork_core::solve::error::Norm;
 use fretwork_core::solve::local::solver::Method;
+use fretwork_core::step::Coupling;
 use fretwork_core::step::control::GravityDrive;
-use fretwork_core::step::coupling::Coupling;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -5,6 +5,7 @@ use crate::case::{Case, HeatSpec};
 use crate::source::ValidationError;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{BodyNodes, ExpandingSystem, Node, Store};
+use fretwork_core::process::expansion::ThermalExpansion;
 use fretwork_core::step::Simulation;
 use std::collections::BTreeMap;
 
@@ -73,7 +74,7 @@ pub(super) fn install<S: Space>(
         let message = "no body of the case expands; bodies that do are rigid grains, first bodies of balls, polygons or polyhedra with the store `Lumped`, and bodies of `elastic`, of a material with an `expansion` other than zero";
         return Err(ValidationError::new("heat.expansion", message));
     }
-    s.set_expansion(rigid, systems);
+    ThermalExpansion::add_to(s, rigid, systems);
     Ok(())
 }
 

@@ -13,6 +13,7 @@ use crate::source::ValidationError;
 use bodies::Nodes;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Circuit, Heat, HeatState, ThermalMaterial};
+use fretwork_core::process::heat::HeatFlow;
 use fretwork_core::step::Simulation;
 use std::collections::BTreeMap;
 
@@ -61,7 +62,7 @@ pub(crate) fn install<S: Space>(
         circuit,
     };
     let state = HeatState::new(nodes.list, heat.first_bodies.len());
-    s.set_heat(heat, state);
+    HeatFlow::add_to(s, heat, state);
     match spec.expansion {
         true => expansion::install(case, spec, properties, &material, s),
         false => Ok(()),

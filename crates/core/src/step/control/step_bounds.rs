@@ -1,9 +1,10 @@
 //! What bounds a step that would span several steps of the case.
 
-use super::{GravityDrive, Simulation};
+use super::GravityDrive;
 use crate::bodies::{Dof, TimeFunction};
 use crate::geometry::space::Space;
 use crate::laws::Interface;
+use crate::step::Simulation;
 
 /// What a step must not pass, and how long it may be, as known from drives, gates and phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,6 +16,40 @@ pub struct StepBounds {
 }
 
 impl StepBounds {
+    /// See [`Simulation::step_bounds`].
+    pub(in crate::step) fn of<S: Space>(s: &Simulation<S>) -> StepBounds {
+        // An event that is due is one of the step that begins.
+        let t = s.state.time + 1e-6 * s.options.event_step();
+        let control = &s.state.control;
+        let mut bounds = StepBounds {
+            event: f64::INFINITY,
+            longest: f64::INFINITY,
+        };
+        for dof in s.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
+            bounds.drive(dof, t);
+        }
+        for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
+            bounds.event = bounds.event.min(*gate);
+        }
+        let bonds = s.laws.iter().filter_map(Interface::bonding_time);
+        bounds.event = bonds.filter(|b| *b > t).fold(bounds.event, f64::min);
+        match &control.gravity_drive {
+            None => {}
+            Some(GravityDrive::Turned { angle: f, .. } | GravityDrive::Scaled(f)) => {
+                bounds.function(f, t);
+            }
+            Some(GravityDrive::Axes(list)) => list.iter().for_each(|f| bounds.function(f, t)),
+        }
+        let phase = control.phase().checked_sub(1);
+        let until = phase.and_then(|k| s.phases.get(k)?.until.as_ref());
+        if let Some(until) = until {
+            let [end, longest] = control.clock.bounds(until);
+            bounds.event = bounds.event.min(end);
+            bounds.longest = bounds.longest.min(longest);
+        }
+        bounds
+    }
+
     fn function(&mut self, f: &TimeFunction, t: f64) {
         self.event = self.event.min(f.next_kink(t));
         self.longest = self.longest.min(f.resolved_step(t));
@@ -39,47 +74,6 @@ impl StepBounds {
         };
         // Saturates where there is no bound.
         [self.event - time, self.longest].map(|t| whole(t).max(1.0) as u64)
-    }
-}
-
-impl<S: Space> Simulation<S> {
-    /// What bounds the next step. Drives of deformable bodies are not looked at.
-    pub fn step_bounds(&self) -> StepBounds {
-        // An event that is due is one of the step that begins.
-        let t = self.state.time + 1e-6 * self.options.event_step();
-        let control = &self.state.control;
-        let mut step_bounds = StepBounds {
-            event: f64::INFINITY,
-            longest: f64::INFINITY,
-        };
-        for dof in self.state.bodies.driven.iter().flat_map(|d| &d.dofs) {
-            step_bounds.drive(dof, t);
-        }
-        for (_, gate) in control.gates.iter().filter(|g| g.1 > t) {
-            step_bounds.event = step_bounds.event.min(*gate);
-        }
-        let bonds = self.laws.iter().filter_map(Interface::bonding_time);
-        step_bounds.event = bonds.filter(|b| *b > t).fold(step_bounds.event, f64::min);
-        match &control.gravity_drive {
-            None => {}
-            Some(GravityDrive::Turned { angle: f, .. } | GravityDrive::Scaled(f)) => {
-                step_bounds.function(f, t);
-            }
-            Some(GravityDrive::Axes(list)) => list.iter().for_each(|f| step_bounds.function(f, t)),
-        }
-        let phase = control.phase().checked_sub(1);
-        let until = phase.and_then(|k| self.phases.get(k)?.until.as_ref());
-        if let Some(until) = until {
-            let [end, longest] = control.clock.bounds(until);
-            step_bounds.event = step_bounds.event.min(end);
-            step_bounds.longest = step_bounds.longest.min(longest);
-        }
-        step_bounds
-    }
-
-    /// Whether the next step is the first of a phase: what bounds it is known after it.
-    pub fn phase_begins(&self) -> bool {
-        self.state.control.clock.turns() && self.state.control.phase() < self.phases.len()
     }
 }
 

@@ -9,12 +9,12 @@
 //! the first x on the way at which G(x) holds it, or, if there is none, at x_s or beyond. There the attraction is linearised: by its value, and,
 //! where it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
 
-use super::Simulation;
-use super::answers::effective_mass;
+use super::asking::asks;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::LawError;
 use crate::laws::columns::StepInfo;
 use crate::solve::form::{ContactForm, Elastic};
+use crate::step::Simulation;
 
 /// The nodes at which an attraction is asked for: powers of two of the distance from the smallest gap, and parts of each.
 const OCTAVES: usize = 18;
@@ -267,207 +267,207 @@ struct Moved {
     pull: Option<Pull>,
 }
 
-impl<S: Space> Simulation<S> {
-    /// Finds the contacts that are attracted.
-    pub(super) fn begin_attractions(&self) -> Attractions {
-        let attracted = self.workspace.evaluator.attracted(&self.laws);
-        let group = |(interface, members)| Group {
-            interface,
-            members,
-            pulls: Vec::new(),
+/// Finds the contacts that are attracted.
+pub(super) fn begin_attractions<S: Space>(s: &Simulation<S>) -> Attractions {
+    let attracted = s.workspace.evaluator.attracted(&s.laws);
+    let group = |(interface, members)| Group {
+        interface,
+        members,
+        pulls: Vec::new(),
+    };
+    Attractions {
+        groups: attracted.into_iter().map(group).collect(),
+    }
+}
+
+/// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by more than the tolerance, attractions are
+/// linearised anew.
+pub(super) fn compare_attractions<S: Space>(
+    s: &mut Simulation<S>,
+    attractions: &mut Attractions,
+    tolerance: f64,
+    info: &StepInfo,
+) -> Result<Differences, LawError> {
+    let mut differences = Differences::default();
+    if !attractions.groups.is_empty() {
+        // Those of this solve: the forms change below.
+        let contacts = 0..s.workspace.solved.contact_steps.len();
+        let loads = contacts.map(|at| load(s, at) / info.h);
+        differences.loads = loads.sum();
+    }
+    for group in &mut attractions.groups {
+        compare_attraction(s, group, tolerance, &mut differences, info)?;
+    }
+    Ok(differences)
+}
+
+/// What a contact carries in a step, or its attraction, if that is more (N s).
+fn load<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
+    let carried = s.workspace.solved.contact_steps[at].solution.unilateral_n;
+    s.workspace.forms[at].tension.max(carried.abs())
+}
+
+/// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
+fn moved<S: Space>(s: &Simulation<S>, group: &Group, info: &StepInfo) -> (Vec<Moved>, f64) {
+    let (workspace, contacts) = (&s.workspace, &s.state.network.contacts);
+    let mut moved = Vec::new();
+    let mut whole = 0.0;
+    let mut pulls = group.pulls.iter().peekable();
+    for at in &group.members {
+        let contact = &contacts[*at];
+        let pull = pulls.next_if(|p| p.at == *at).copied();
+        let solved = &workspace.solved;
+        let (gap, n) = (contact.gap, &contact.normal);
+        let path = Path {
+            start: gap - (1.0 - info.theta) * info.h * n.dot(&solved.before.relative[*at]),
+            gap,
+            x: info.h * n.dot(&solved.after[*at]),
+            theta: info.theta,
         };
-        Attractions {
-            groups: attracted.into_iter().map(group).collect(),
-        }
-    }
-
-    /// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by more than the tolerance, attractions are
-    /// linearised anew.
-    pub(super) fn compare_attractions(
-        &mut self,
-        attractions: &mut Attractions,
-        tolerance: f64,
-        info: &StepInfo,
-    ) -> Result<Differences, LawError> {
-        let mut differences = Differences::default();
-        if !attractions.groups.is_empty() {
-            // Those of this solve: the forms change below.
-            let contacts = 0..self.workspace.solved.contact_steps.len();
-            let loads = contacts.map(|at| self.load(at) / info.h);
-            differences.loads = loads.sum();
-        }
-        for group in &mut attractions.groups {
-            self.compare_attraction(group, tolerance, &mut differences, info)?;
-        }
-        Ok(differences)
-    }
-
-    /// What a contact carries in a step, or its attraction, if that is more (N s).
-    fn load(&self, at: usize) -> f64 {
-        let carried = self.workspace.solved.contact_steps[at]
-            .solution
-            .unilateral_n;
-        self.workspace.forms[at].tension.max(carried.abs())
-    }
-
-    /// The contacts of a group that pass gaps where attraction may change, and the load of all (N s).
-    fn moved(&self, group: &Group, info: &StepInfo) -> (Vec<Moved>, f64) {
-        let (workspace, contacts) = (&self.workspace, &self.state.network.contacts);
-        let mut moved = Vec::new();
-        let mut whole = 0.0;
-        let mut pulls = group.pulls.iter().peekable();
-        for at in &group.members {
-            let contact = &contacts[*at];
-            let pull = pulls.next_if(|p| p.at == *at).copied();
-            let solved = &workspace.solved;
-            let (gap, n) = (contact.gap, &contact.normal);
-            let path = Path {
-                start: gap - (1.0 - info.theta) * info.h * n.dot(&solved.before.relative[*at]),
-                gap,
-                x: info.h * n.dot(&solved.after[*at]),
-                theta: info.theta,
-            };
-            whole += self.load(*at);
-            let [low, high] = path.bounds();
-            if pull.is_some() || (high > low && high > 0.0) {
-                moved.push(Moved {
-                    at: *at,
-                    path,
-                    pull,
-                });
-            }
-        }
-        (moved, whole)
-    }
-
-    fn compare_attraction(
-        &mut self,
-        group: &mut Group,
-        tolerance: f64,
-        differences: &mut Differences,
-        info: &StepInfo,
-    ) -> Result<(), LawError> {
-        let h = info.h;
-        let (mut moved, whole) = self.moved(group, info);
-        // Those that are not linearised yet, and pass one attraction only, are left as they are.
-        let unknown = moved.iter().filter(|m| m.pull.is_none());
-        let (mut places, mut gaps) = (Vec::new(), Vec::new());
-        for m in unknown {
-            let [start, gap, next, _] = m.path.gaps();
-            places.extend([m.at; 3]);
-            gaps.extend([gap, start, next]);
-        }
-        let force = self.attraction_at(group, &places, &gaps, info)?;
-        let mut found = force.chunks_exact(3);
-        moved.retain_mut(|m| {
-            if m.pull.is_some() {
-                return true;
-            }
-            let Some([here, start, next]) = found.next() else {
-                return false;
-            };
-            let form = &self.workspace.forms[m.at];
-            m.pull = Some(Pull {
-                at: m.at,
-                tension: form.tension - h * here,
-                shift: form.shift_n - form.compliance[0] * form.tension,
-                start: *here,
-                linear: Linear {
-                    force: *here,
-                    ..Linear::default()
-                },
+        whole += load(s, *at);
+        let [low, high] = path.bounds();
+        if pull.is_some() || (high > low && high > 0.0) {
+            moved.push(Moved {
+                at: *at,
+                path,
+                pull,
             });
-            let most = here.max(*start).max(*next);
-            let load = most + 0.01 * whole / h;
-            let differs = |f: &f64| (*f - here).abs() > NO_DIFFERENCE * load;
-            h * most > NEGLIGIBLE * whole && (differs(start) || differs(next))
+        }
+    }
+    (moved, whole)
+}
+
+fn compare_attraction<S: Space>(
+    s: &mut Simulation<S>,
+    group: &mut Group,
+    tolerance: f64,
+    differences: &mut Differences,
+    info: &StepInfo,
+) -> Result<(), LawError> {
+    let h = info.h;
+    let (mut moved, whole) = moved(s, group, info);
+    // Those that are not linearised yet, and pass one attraction only, are left as they are.
+    let unknown = moved.iter().filter(|m| m.pull.is_none());
+    let (mut places, mut gaps) = (Vec::new(), Vec::new());
+    for m in unknown {
+        let [start, gap, next, _] = m.path.gaps();
+        places.extend([m.at; 3]);
+        gaps.extend([gap, start, next]);
+    }
+    let force = attraction_at(s, group, &places, &gaps, info)?;
+    let mut found = force.chunks_exact(3);
+    moved.retain_mut(|m| {
+        if m.pull.is_some() {
+            return true;
+        }
+        let Some([here, start, next]) = found.next() else {
+            return false;
+        };
+        let form = &s.workspace.forms[m.at];
+        m.pull = Some(Pull {
+            at: m.at,
+            tension: form.tension - h * here,
+            shift: form.shift_n - form.compliance[0] * form.tension,
+            start: *here,
+            linear: Linear {
+                force: *here,
+                ..Linear::default()
+            },
         });
-        let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
-        for m in &moved {
-            let first = gaps.len();
-            gaps.extend(m.path.nodes());
-            places.resize(gaps.len(), m.at);
-            ranges.push(first..gaps.len());
-        }
-        let force = self.attraction_at(group, &places, &gaps, info)?;
-        let (mut differs, mut next) = (0.0f64, Vec::with_capacity(moved.len()));
-        for (m, range) in moved.iter().zip(ranges) {
-            let Some(mut pull) = m.pull else { continue };
-            let passed = Passed::of(m.path, &gaps[range.clone()], &force[range]);
-            let x = m.path.x;
-            let (used, given) = (pull.linear.at(x), passed.given(x));
-            let own = used.abs().max(pull.start).max(given);
-            let inertia = self.inertia_of(m.at) / (h * h);
-            let needed = |here: f64| used + (x - here) * inertia;
-            // What is linearised is no tension of the form.
-            differences.loads += (own - self.load(m.at) / h).max(0.0);
-            let load = own + 0.01 * whole / h;
-            let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
-            pull.linear = linear;
-            next.push(pull);
-            if load > 0.0 {
-                let difference = (given - used).abs();
-                differs = differs.max(difference / load);
-                differences.all += difference;
-                if early && tolerance < 1.0 {
-                    differs = differs.max(2.0 * tolerance);
-                }
+        let most = here.max(*start).max(*next);
+        let load = most + 0.01 * whole / h;
+        let differs = |f: &f64| (*f - here).abs() > NO_DIFFERENCE * load;
+        h * most > NEGLIGIBLE * whole && (differs(start) || differs(next))
+    });
+    let (mut places, mut gaps, mut ranges) = (Vec::new(), Vec::new(), Vec::new());
+    for m in &moved {
+        let first = gaps.len();
+        gaps.extend(m.path.nodes());
+        places.resize(gaps.len(), m.at);
+        ranges.push(first..gaps.len());
+    }
+    let force = attraction_at(s, group, &places, &gaps, info)?;
+    let (mut differs, mut next) = (0.0f64, Vec::with_capacity(moved.len()));
+    for (m, range) in moved.iter().zip(ranges) {
+        let Some(mut pull) = m.pull else { continue };
+        let passed = Passed::of(m.path, &gaps[range.clone()], &force[range]);
+        let x = m.path.x;
+        let (used, given) = (pull.linear.at(x), passed.given(x));
+        let own = used.abs().max(pull.start).max(given);
+        let inertia = inertia_of(s, m.at) / (h * h);
+        let needed = |here: f64| used + (x - here) * inertia;
+        // What is linearised is no tension of the form.
+        differences.loads += (own - load(s, m.at) / h).max(0.0);
+        let load = own + 0.01 * whole / h;
+        let (linear, early) = passed.first_hold(needed, 2.0 * tolerance.min(1.0) * load);
+        pull.linear = linear;
+        next.push(pull);
+        if load > 0.0 {
+            let difference = (given - used).abs();
+            differs = differs.max(difference / load);
+            differences.all += difference;
+            if early && tolerance < 1.0 {
+                differs = differs.max(2.0 * tolerance);
             }
         }
-        differences.worst = differences.worst.max(differs);
-        if differs <= tolerance {
-            return Ok(());
-        }
-        for pull in next {
-            pull.apply(&mut self.workspace.forms[pull.at], h);
-            match group.pulls.binary_search_by_key(&pull.at, |p| p.at) {
-                Ok(k) => group.pulls[k] = pull,
-                Err(k) => group.pulls.insert(k, pull),
-            }
-        }
-        Ok(())
     }
-
-    fn attraction_at(
-        &mut self,
-        group: &Group,
-        places: &[usize],
-        gaps: &[f64],
-        info: &StepInfo,
-    ) -> Result<Vec<f64>, LawError> {
-        if places.is_empty() {
-            return Ok(Vec::new());
-        }
-        let (evaluator, mut step) = self.asks(info);
-        evaluator.attraction_at(&mut step, group.interface, places, gaps)
+    differences.worst = differences.worst.max(differs);
+    if differs <= tolerance {
+        return Ok(());
     }
-
-    /// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a body deforms, of which only the answer of a
-    /// solve tells.
-    fn inertia_of(&self, at: usize) -> f64 {
-        let (bodies, contact) = (&self.state.bodies, &self.state.network.contacts[at]);
-        let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();
-        if contact.bodies.iter().any(deforms) {
-            return 0.0;
+    for pull in next {
+        pull.apply(&mut s.workspace.forms[pull.at], h);
+        match group.pulls.binary_search_by_key(&pull.at, |p| p.at) {
+            Ok(k) => group.pulls[k] = pull,
+            Err(k) => group.pulls.insert(k, pull),
         }
-        effective_mass(bodies, contact)
     }
+    Ok(())
+}
 
-    /// Writes attractions as tension alone, in forms and solutions.
-    pub(super) fn settle_attractions(&mut self, attractions: Attractions, h: f64) {
-        for pull in attractions.groups.iter().flat_map(|group| &group.pulls) {
-            let form = &mut self.workspace.forms[pull.at];
-            let un = form.normal.dot(&self.workspace.solved.after[pull.at]);
-            let step = &mut self.workspace.solved.contact_steps[pull.at];
-            if pull.linear.slope > 0.0 {
-                let force = h * pull.linear.at(h * un);
-                step.solution.unilateral_n -= force;
-                form.tension += force;
-                form.shift_n += form.compliance[0] * force;
-            }
-            form.elastic = None;
-            step.adheres = form.tension > 0.0;
+fn attraction_at<S: Space>(
+    s: &mut Simulation<S>,
+    group: &Group,
+    places: &[usize],
+    gaps: &[f64],
+    info: &StepInfo,
+) -> Result<Vec<f64>, LawError> {
+    if places.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (evaluator, mut step) = asks(s, info);
+    evaluator.attraction_at(&mut step, group.interface, places, gaps)
+}
+
+/// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a body deforms, of which only the answer of a
+/// solve tells.
+fn inertia_of<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
+    let (bodies, contact) = (&s.state.bodies, &s.state.network.contacts[at]);
+    let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();
+    if contact.bodies.iter().any(deforms) {
+        return 0.0;
+    }
+    contact.effective_mass(bodies)
+}
+
+/// Writes attractions as tension alone, in forms and solutions.
+pub(super) fn settle_attractions<S: Space>(
+    s: &mut Simulation<S>,
+    attractions: Attractions,
+    h: f64,
+) {
+    for pull in attractions.groups.iter().flat_map(|group| &group.pulls) {
+        let form = &mut s.workspace.forms[pull.at];
+        let un = form.normal.dot(&s.workspace.solved.after[pull.at]);
+        let step = &mut s.workspace.solved.contact_steps[pull.at];
+        if pull.linear.slope > 0.0 {
+            let force = h * pull.linear.at(h * un);
+            step.solution.unilateral_n -= force;
+            form.tension += force;
+            form.shift_n += form.compliance[0] * force;
         }
+        form.elastic = None;
+        step.adheres = form.tension > 0.0;
     }
 }
 

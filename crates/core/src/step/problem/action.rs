@@ -1,8 +1,8 @@
 //! Where the impulses of contacts act.
 
-use super::Simulation;
 use crate::contact::{Acts, Contact};
 use crate::geometry::space::Space;
+use crate::step::Simulation;
 use crate::threads::{map_chunks_mut, pays};
 
 /// Contacts of a task.
@@ -17,46 +17,44 @@ struct Across {
     bond: bool,
 }
 
-impl<S: Space> Simulation<S> {
-    /// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act on each other when they touch, on
-    /// their surfaces: that these are apart at q_m is an error of the step. A bond, a spring or an attraction acts across the gap, or
-    /// the overlap, that there is.
-    pub(super) fn place_actions(&mut self) {
-        let across = self.laws.iter().map(|law| Across {
-            spring: law.compliant(),
-            attraction: law.cohesion().is_some() && !law.opens(),
-            bond: law.opens(),
-        });
-        let across: Vec<Across> = across.collect();
-        // What acts on surfaces does so from the start.
-        let never = |a: &Across| !(a.spring || a.attraction || a.bond);
-        if across.iter().all(never) {
-            return;
-        }
-        let bodies = &self.state.bodies;
-        let deforms = !self.state.systems.is_empty();
-        let (network, memory) = (&mut self.state.network.contacts, &self.state.network.memory);
-        let divide = pays(self.options.solver.parallel, network.len(), LOOK);
-        map_chunks_mut(divide, network, CHUNK, |_, contacts| {
-            for contact in contacts {
-                let law = usize::from(contact.law);
-                let (across, bonds) = (&across[law], &memory[law].bonds);
-                let bonded = |c: &Contact<S>| c.memory().is_some_and(|slot| bonds[slot].intact());
-                let apart = across.spring
-                    || (across.attraction && !contact.beyond)
-                    || (across.bond && bonded(contact));
-                let sides = contact
-                    .bodies
-                    .map(|b| deforms && bodies.carrier(b as usize).is_some());
-                contact.acts = match (apart, sides) {
-                    (false, _) | (true, [true, true]) => Acts::Surfaces,
-                    (true, [false, false]) => Acts::Middle,
-                    (true, [true, false]) => Acts::Candidate,
-                    (true, [false, true]) => Acts::Antagonist,
-                };
-            }
-        });
+/// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act on each other when they touch, on
+/// their surfaces: that these are apart at q_m is an error of the step. A bond, a spring or an attraction acts across the gap, or
+/// the overlap, that there is.
+pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
+    let across = s.laws.iter().map(|law| Across {
+        spring: law.compliant(),
+        attraction: law.cohesion().is_some() && !law.opens(),
+        bond: law.opens(),
+    });
+    let across: Vec<Across> = across.collect();
+    // What acts on surfaces does so from the start.
+    let never = |a: &Across| !(a.spring || a.attraction || a.bond);
+    if across.iter().all(never) {
+        return;
     }
+    let bodies = &s.state.bodies;
+    let deforms = !s.state.systems.is_empty();
+    let (network, memory) = (&mut s.state.network.contacts, &s.state.network.memory);
+    let divide = pays(s.options.solver.parallel, network.len(), LOOK);
+    map_chunks_mut(divide, network, CHUNK, |_, contacts| {
+        for contact in contacts {
+            let law = usize::from(contact.law);
+            let (across, bonds) = (&across[law], &memory[law].bonds);
+            let bonded = |c: &Contact<S>| c.memory().is_some_and(|slot| bonds[slot].intact());
+            let apart = across.spring
+                || (across.attraction && !contact.beyond)
+                || (across.bond && bonded(contact));
+            let sides = contact
+                .bodies
+                .map(|b| deforms && bodies.carrier(b as usize).is_some());
+            contact.acts = match (apart, sides) {
+                (false, _) | (true, [true, true]) => Acts::Surfaces,
+                (true, [false, false]) => Acts::Middle,
+                (true, [true, false]) => Acts::Candidate,
+                (true, [false, true]) => Acts::Antagonist,
+            };
+        }
+    });
 }
 
 #[cfg(test)]
@@ -82,7 +80,7 @@ mod tests {
             s.step().unwrap();
             let placed = [false, true].map(|beyond| {
                 s.state.network.contacts[0].beyond = beyond;
-                s.place_actions();
+                place_actions(&mut s);
                 s.state.network.contacts[0].acts
             });
             assert_eq!(placed, acts);
@@ -98,7 +96,7 @@ mod tests {
         let slot = s.state.network.memory[0].allocate(true, 0.0, 1.0, &[]);
         let placed = [slot, Contact::<Dim2>::NO_MEMORY].map(|slot| {
             s.state.network.contacts[0].slot = slot;
-            s.place_actions();
+            place_actions(&mut s);
             s.state.network.contacts[0].acts
         });
         assert_eq!(placed, [Acts::Middle, Acts::Surfaces]);

@@ -9,60 +9,58 @@
 //! Where material passes through a surface that stays in place ([`crate::bodies::DynamicalSystem::passing`]) it moves along the surface, and the
 //! velocity along the normal that it seems to have on a slope closes no gap either.
 
-use super::Simulation;
 use crate::bodies::{Bodies, DynamicalSystem};
 use crate::contact::{Contact, Key, Network};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::laws::Interface;
+use crate::step::Simulation;
 use crate::threads::fill;
 
 /// Velocity and spin of a body.
 type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-impl<S: Space> Simulation<S> {
-    /// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the velocities without contacts; leaves the
-    /// list empty where nothing is hollow, no driven body turns and no material passes.
-    pub(super) fn find_swerves(&mut self, free: &[Motion<S>], h: f64) {
-        let mut swerves = std::mem::take(&mut self.workspace.swerves);
-        swerves.clear();
-        let hollow = self.shapes.surfaces.iter().any(|s| s.shape.is_hollow());
-        let driven = self.state.bodies.driven.iter().map(|d| d.body as usize);
-        let mut turning: Vec<usize> = driven.filter(|b| free[*b].1 != S::Spin::zero()).collect();
-        turning.sort_unstable();
-        let systems = &self.state.systems;
-        let all = (0..systems.len()).filter_map(|k| systems.get(k));
-        let passing: Vec<S::Vector> = all.map(DynamicalSystem::passing).collect();
-        let passes = passing.iter().any(|v| *v != S::Vector::zero());
-        if hollow || passes || !turning.is_empty() {
-            let turns = |b: u32| turning.binary_search(&(b as usize)).is_ok();
-            let contacts = &self.state.network.contacts;
-            let scene = Scene {
-                network: &self.state.network,
-                bodies: &self.state.bodies,
-                shapes: &self.shapes,
-                laws: &self.laws,
+/// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the velocities without contacts; leaves the
+/// list empty where nothing is hollow, no driven body turns and no material passes.
+pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>], h: f64) {
+    let mut swerves = std::mem::take(&mut s.workspace.swerves);
+    swerves.clear();
+    let hollow = s.shapes.surfaces.iter().any(|s| s.shape.is_hollow());
+    let driven = s.state.bodies.driven.iter().map(|d| d.body as usize);
+    let mut turning: Vec<usize> = driven.filter(|b| free[*b].1 != S::Spin::zero()).collect();
+    turning.sort_unstable();
+    let systems = &s.state.systems;
+    let all = (0..systems.len()).filter_map(|k| systems.get(k));
+    let passing: Vec<S::Vector> = all.map(DynamicalSystem::passing).collect();
+    let passes = passing.iter().any(|v| *v != S::Vector::zero());
+    if hollow || passes || !turning.is_empty() {
+        let turns = |b: u32| turning.binary_search(&(b as usize)).is_ok();
+        let contacts = &s.state.network.contacts;
+        let scene = Scene {
+            network: &s.state.network,
+            bodies: &s.state.bodies,
+            shapes: &s.shapes,
+            laws: &s.laws,
+        };
+        fill(s.divides_contacts(), &mut swerves, contacts.len(), |k| {
+            let c = &contacts[k];
+            let bends = hollow && scene.is_on_hollow(c);
+            let bent = if bends || c.bodies.into_iter().any(turns) {
+                scene.swerve(c, free, h)
+            } else {
+                0.0
             };
-            fill(self.divides_contacts(), &mut swerves, contacts.len(), |k| {
-                let c = &contacts[k];
-                let bends = hollow && scene.is_on_hollow(c);
-                let bent = if bends || c.bodies.into_iter().any(turns) {
-                    scene.swerve(c, free, h)
-                } else {
-                    0.0
-                };
-                if !passes {
-                    return bent;
-                }
-                let [one, other] = c.bodies.map(|b| {
-                    let carrier = scene.bodies.carrier(b as usize);
-                    carrier.map_or(S::Vector::zero(), |c| passing[c.system as usize])
-                });
-                bent + h * c.normal.dot(&(one - other))
+            if !passes {
+                return bent;
+            }
+            let [one, other] = c.bodies.map(|b| {
+                let carrier = scene.bodies.carrier(b as usize);
+                carrier.map_or(S::Vector::zero(), |c| passing[c.system as usize])
             });
-        }
-        self.workspace.swerves = swerves;
+            bent + h * c.normal.dot(&(one - other))
+        });
     }
+    s.workspace.swerves = swerves;
 }
 
 /// What swerves follow from.
@@ -145,5 +143,21 @@ impl<S: Space> Scene<'_, S> {
             }
             _ => n.dot(&(after - place)),
         }
+    }
+}
+
+/// The velocity at which a step may close the gap of a contact; for a penetration, the (negative) velocity at which the correction
+/// removes its share (m/s).
+pub(super) fn shift_of_gap<S: Space>(
+    network: &Network<S>,
+    contact: &Contact<S>,
+    correction: f64,
+    h: f64,
+) -> f64 {
+    let gap = network.open_gap(contact);
+    if gap > 0.0 {
+        gap / h
+    } else {
+        correction * gap / h
     }
 }

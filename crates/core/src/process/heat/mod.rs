@@ -1,0 +1,68 @@
+//! Heat and current in the step: laws see the temperatures at its start, and at its end heat flows.
+//!
+//! Temperatures and the account of heat are in [`crate::step::State::heat`], so that a checkpoint holds them.
+
+mod flow;
+mod temperatures;
+
+use super::{Process, ProcessError};
+use crate::geometry::space::Space;
+use crate::heat::{Heat, HeatState};
+use crate::step::fields::{heat_of_contacts, heat_of_grains};
+use crate::step::{Simulation, StepError};
+use std::sync::Arc;
+
+/// Heat and current, as a case gives them.
+#[derive(Debug)]
+pub struct HeatFlow(Arc<Heat>);
+
+impl HeatFlow {
+    /// Has a simulation compute heat, and current where there is a circuit, from here on.
+    pub fn add_to<S: Space>(s: &mut Simulation<S>, heat: Heat, state: HeatState) {
+        s.fields.grains.add(heat_of_grains());
+        for field in heat_of_contacts() {
+            s.fields.contacts.add(field);
+        }
+        let heat = Arc::new(heat);
+        s.heat = Some(Arc::clone(&heat));
+        s.state.heat = Some(state);
+        s.add_feature(Self(heat));
+    }
+}
+
+impl<S: Space> Process<S> for HeatFlow {
+    fn name(&self) -> &str {
+        "heat"
+    }
+
+    fn at_start(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        s.state.network.dissipation.get_or_insert_default();
+        Ok(())
+    }
+
+    fn contacts_found(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        temperatures::gather_temperatures(&self.0, s);
+        Ok(())
+    }
+
+    fn after_solve(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
+        flow::conduct(&self.0, s).map_err(|source| {
+            let (step, time) = (s.state.steps + 1, s.state.time);
+            StepError::Heat { step, time, source }.into()
+        })
+    }
+
+    /// Keeps the body from its surroundings: its heat leaves with it.
+    fn body_removed(&mut self, s: &mut Simulation<S>, body: usize) {
+        if let Some(state) = &mut s.state.heat {
+            for node in &mut state.nodes[self.0.nodes[body].range()] {
+                node.surroundings = 0.0;
+            }
+        }
+    }
+}
+
+/// Whether heat flows in the current step: a step belongs to where its middle is.
+pub(super) fn has_begun<S: Space>(heat: &Heat, s: &Simulation<S>) -> bool {
+    s.state.time + 0.5 * s.options.scheme.h >= heat.start
+}

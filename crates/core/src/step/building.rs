@@ -1,0 +1,67 @@
+//! What is added to a scene, and done to it from outside.
+
+use super::process::Process;
+use super::{Simulation, control, motion};
+use crate::bodies::DynamicalSystem;
+use crate::geometry::algebra::{MatrixLike, VectorLike};
+use crate::geometry::space::Space;
+
+impl<S: Space> Simulation<S> {
+    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and its ball, point or surface; gives its index. The
+    /// bodies are [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
+    ///
+    /// Energy that it holds counts as work done on it before the start.
+    pub fn add_system(&mut self, system: Box<dyn DynamicalSystem<S>>) -> usize {
+        motion::add_system(self, system)
+    }
+
+    /// Has a process act from now on, after those that are there.
+    pub fn add_process(&mut self, process: impl Process<S>) {
+        self.processes.push(Box::new(process));
+    }
+
+    /// Has a feature of the core act from now on, before those that are there and before all
+    /// processes. What it carries from step to step is in the state.
+    pub(crate) fn add_feature(&mut self, feature: impl Process<S>) {
+        self.features.insert(0, Box::new(feature));
+    }
+
+    /// Gives driven bodies their imposed velocities at time zero, for code that inspects the scene before
+    /// the first step. The drives of the first phase are included.
+    pub fn set_in_motion(&mut self) {
+        control::set_in_motion(self);
+    }
+
+    /// Measures the loaded areas of all servo pressures.
+    pub fn measure_areas(&mut self) {
+        for servo in &self.state.control.servos {
+            servo.measure(&mut self.state.bodies, &mut self.state.systems);
+        }
+    }
+
+    /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s in 2D), and books the work in
+    /// the energy ledger. Degrees of freedom whose motion is imposed take none, nor does a body that stands for a contactor of a
+    /// dynamical system.
+    pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
+        let bodies = &mut self.state.bodies;
+        let before = bodies.energy_of(body);
+        bodies.velocity[body] += impulse.scaled_by(&bodies.inverse_mass[body]);
+        let spin = bodies.inverse_tensor(body).apply(angular);
+        bodies.spin[body] += spin;
+        let work = bodies.energy_of(body) - before;
+        self.workspace.pushed = true;
+        self.state.energy.see(work);
+        self.state.energy.external_work += work;
+    }
+
+    /// Removes a grain for good: it is at rest, has no contacts, and its bonds break. Its kinetic energy
+    /// becomes an entry of the energy ledger.
+    pub fn remove_body(&mut self, body: usize) {
+        let energy = self.state.bodies.energy_of(body);
+        self.state.energy.carried += energy;
+        self.state.energy.kinetic -= energy;
+        self.state.bodies.remove_body(body);
+        self.tell(|process, simulation| process.body_removed(simulation, body));
+        self.state.network.forget_neighbours();
+    }
+}

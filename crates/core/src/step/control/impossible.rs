@@ -1,0 +1,277 @@
+//! Imposed motions that nothing can obey: bodies driven into each other, or into others that have nowhere to go.
+
+use crate::bodies::Bodies;
+use crate::contact::Contact;
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::{DrivenOverlap, Impossible, Simulation, StepReport};
+use serde::{Deserialize, Serialize};
+
+/// Residual velocities over those of the contacts from which impulses do not do what they should: a thousand layers share the motion of a lid.
+const NOT_OBEYED: f64 = 0.03;
+/// Iterations below which a step that ended at their limit says nothing of its motions.
+const LEAST_ITERATIONS: u32 = 100;
+/// Share of the work of the drives that goes into the residuals, at least, and how much of it is not accounted for by these and by slip,
+/// at most, where they squeeze what does not yield.
+const WASTED: f64 = 0.2;
+const UNEXPLAINED: f64 = 0.3;
+/// Share of the work of all drives from which a body is named, and of the largest impulse on a body from which a contact passes on what
+/// presses on it.
+const NAMED: f64 = 0.05;
+/// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be rounding of their places, and share of what
+/// they travel by which they may close by rounding.
+const ROUNDING: f64 = 1e-9;
+const GRAZING: f64 = 1e-6;
+
+/// Impossible motions over a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImpossibleMotions {
+    /// Steps in which imposed motions squeezed others without bound.
+    pub squeezed_steps: u64,
+    /// End of the first of them (s).
+    pub squeezed_at: f64,
+    /// The bodies that did so, in the first of these steps.
+    pub squeezing: Vec<String>,
+    /// Steps in which bodies whose motions are both imposed moved into each other.
+    pub overlapping_steps: u64,
+    /// End of the first of them (s).
+    pub overlapping_at: f64,
+    /// The bodies with the largest overlap.
+    pub overlapping: Vec<String>,
+    /// Largest overlap of them (m).
+    pub overlap: f64,
+}
+
+impl ImpossibleMotions {
+    /// Whether all motions were possible.
+    pub fn is_empty(&self) -> bool {
+        self.squeezed_steps == 0 && self.overlapping_steps == 0
+    }
+
+    /// Adds a step of a simulation, given after it.
+    pub fn add<S: Space>(&mut self, s: &Simulation<S>, report: &StepReport) {
+        let Some(step) = report.impossible.as_deref() else {
+            return;
+        };
+        let name = |b: &u32| s.state.bodies.name(*b);
+        if !step.squeezing.is_empty() {
+            if self.squeezed_steps == 0 {
+                self.squeezed_at = s.state.time;
+                self.squeezing = step.squeezing.iter().map(name).collect();
+            }
+            self.squeezed_steps += 1;
+        }
+        if let Some(overlap) = step.overlap {
+            if self.overlapping_steps == 0 {
+                self.overlapping_at = s.state.time;
+            }
+            self.overlapping_steps += 1;
+            if overlap.depth > self.overlap {
+                self.overlap = overlap.depth;
+                self.overlapping = overlap.bodies.iter().map(name).collect();
+            }
+        }
+    }
+
+    /// What to tell the user; `None` if all motions were possible.
+    pub fn warning(&self) -> Option<String> {
+        let squeezed = (self.squeezed_steps > 0).then(|| {
+            format!(
+                "in {} steps, the first ends at t = {:.6e} s, {} squeezed bodies that can neither yield nor escape: no finite \
+                 forces do that, and those of the run mean nothing; move a body by Force instead of a motion, use a compliant contact \
+                 law (docs/compliant.md), or impose less displacement",
+                self.squeezed_steps,
+                self.squeezed_at,
+                self.squeezing.join(" and ")
+            )
+        });
+        let overlapping = (self.overlapping_steps > 0).then(|| {
+            format!(
+                "{}, whose motions are both imposed, moved into each other by up to {:.2e} m, from t = {:.6e} s on: a rigid contact \
+                 between them carries nothing; move one of them by Force, use a compliant contact law (docs/compliant.md), or impose \
+                 motions that keep them apart",
+                self.overlapping.join(" and "),
+                self.overlap,
+                self.overlapping_at
+            )
+        });
+        let told: Vec<String> = [squeezed, overlapping].into_iter().flatten().collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+}
+
+/// Work that a driven body does on others by its imposed motion in a step (J).
+struct Push {
+    body: u32,
+    work: f64,
+}
+
+/// Looks whether the imposed motions of the step could be obeyed, given the impulses and moments on the driven bodies.
+pub(in crate::step) fn watch_imposed<S: Space>(
+    s: &Simulation<S>,
+    received: &[(S::Vector, S::Spin)],
+    report: &mut StepReport,
+) {
+    let impossible = Impossible {
+        squeezing: squeezing(s, received, report),
+        overlap: driven_overlap(s),
+    };
+    if let Some(DrivenOverlap { bodies, depth }) = impossible.overlap {
+        let length = bodies.map(|b| s.state.bodies.length[b as usize]);
+        report.overlap = report.overlap.max(depth / length[0].min(length[1]));
+    }
+    if impossible != Impossible::default() {
+        report.impossible = Some(Box::new(impossible));
+    }
+}
+
+/// The bodies that squeeze others without bound.
+fn squeezing<S: Space>(
+    s: &Simulation<S>,
+    received: &[(S::Vector, S::Spin)],
+    report: &StepReport,
+) -> Vec<u32> {
+    let solver = &report.solver;
+    if solver.converged || !(solver.unbounded || solver.parts.velocity > NOT_OBEYED) {
+        return Vec::new();
+    }
+    let pushes = pushes(s, received);
+    let work: f64 = pushes.iter().map(|p| p.work).sum();
+    if !solver.unbounded {
+        let wasted = solver.parts.residual_energy;
+        let left = (work - wasted - solver.parts.slip_energy).abs();
+        let asked = solver.iterations >= LEAST_ITERATIONS
+            || solver.iterations < s.options.solver.max_iterations;
+        if !(asked && work > 0.0 && wasted > WASTED * work && left < UNEXPLAINED * work) {
+            return Vec::new();
+        }
+    }
+    let works = |p: &&Push| p.work > NAMED * work && p.work > 0.0;
+    let pressed = pressed_by(s, pushes.iter().filter(works).map(|p| p.body as usize));
+    let holds = |p: &&Push| !works(p) && pressed[p.body as usize];
+    let (first, then) = (pushes.iter().filter(works), pushes.iter().filter(holds));
+    first.chain(then).map(|p| p.body).collect()
+}
+
+/// Which bodies some press on through chains of contacts. Far from where a motion is imposed impulses may be small when the iterations
+/// end, so links are compared with those before them.
+fn pressed_by<S: Space>(s: &Simulation<S>, those: impl Iterator<Item = usize>) -> Vec<bool> {
+    let (bodies, contacts) = (&s.state.bodies, &s.state.network.contacts);
+    let mut largest = vec![0.0f64; bodies.len()];
+    for contact in contacts {
+        for b in contact.bodies {
+            largest[b as usize] = largest[b as usize].max(contact.impulse.norm());
+        }
+    }
+    let mut pressed = vec![false; bodies.len()];
+    let mut passes_on = vec![false; bodies.len()];
+    for b in those {
+        (pressed[b], passes_on[b]) = (true, true);
+    }
+    let mut changed = true;
+    while std::mem::take(&mut changed) {
+        for contact in contacts {
+            let [i, j] = contact.bodies.map(|b| b as usize);
+            let size = contact.impulse.norm();
+            for (from, to) in [(i, j), (j, i)] {
+                if passes_on[from] && !pressed[to] && size > NAMED * largest[from] {
+                    pressed[to] = true;
+                    passes_on[to] = !bodies.immovable(to);
+                    changed = true;
+                }
+            }
+        }
+    }
+    pressed
+}
+
+/// What driven bodies do to others.
+fn pushes<S: Space>(s: &Simulation<S>, received: &[(S::Vector, S::Spin)]) -> Vec<Push> {
+    let bodies = &s.state.bodies;
+    let of = |(driven, (impulse, moment)): (&crate::bodies::Driven, &(S::Vector, S::Spin))| {
+        let b = driven.body as usize;
+        let along = |k: usize| -impulse[k] * bodies.velocity[b][k];
+        let imposed = (0..S::D).filter(|k| bodies.inverse_mass[b][*k] == 0.0);
+        let turning = if bodies.inverse_inertia[b] == 0.0 {
+            -moment.dot(&bodies.spin[b])
+        } else {
+            0.0
+        };
+        Push {
+            body: driven.body,
+            work: imposed.map(along).sum::<f64>() + turning,
+        }
+    };
+    bodies.driven.iter().zip(received).map(of).collect()
+}
+
+/// The deepest overlap that grows of two bodies whose motions are imposed and whose contacts are rigid. (Springs and bonds between such
+/// bodies carry.)
+fn driven_overlap<S: Space>(s: &Simulation<S>) -> Option<DrivenOverlap> {
+    let bodies = &s.state.bodies;
+    let at_rest =
+        |b: usize| bodies.velocity[b] == S::Vector::zero() && bodies.spin[b] == S::Spin::zero();
+    let driven = bodies.driven.iter().map(|d| d.body as usize);
+    let immovable: Vec<usize> = driven.filter(|b| bodies.immovable(*b)).collect();
+    if immovable.len() < 2 || immovable.iter().all(|b| at_rest(*b)) {
+        return None;
+    }
+    let mut stays = vec![false; bodies.len()];
+    immovable.iter().for_each(|b| stays[*b] = true);
+    let contacts = s.state.network.contacts.iter().enumerate();
+    let between = contacts.filter(|(_, c)| c.bodies.iter().all(|b| stays[*b as usize]));
+    let deep = between.filter_map(|(k, contact)| {
+        let depth = depth_of_driven(s, k, contact, bodies)?;
+        Some(DrivenOverlap {
+            bodies: contact.bodies,
+            depth,
+        })
+    });
+    deep.reduce(|a, b| if b.depth > a.depth { b } else { a })
+}
+
+/// Depth at the end of the step of a rigid contact that closes, where it is no rounding (m).
+fn depth_of_driven<S: Space>(
+    s: &Simulation<S>,
+    k: usize,
+    contact: &Contact<S>,
+    bodies: &Bodies<S>,
+) -> Option<f64> {
+    let law = &s.laws[contact.law as usize];
+    let bonded = s.state.network.bond(contact).is_some_and(|b| b.intact());
+    if law.compliant() || bonded {
+        return None;
+    }
+    let closing = contact.normal.dot(s.workspace.solved.after.get(k)?);
+    let scheme = &s.options.scheme;
+    let depth = -contact.gap - scheme.theta * scheme.h * closing;
+    let b = contact.bodies.map(|b| b as usize);
+    let size = bodies.length[b[0]].min(bodies.length[b[1]]);
+    let speed = |side: usize| {
+        let turning = S::spin_velocity(&bodies.spin[b[side]], &contact.arms[side]);
+        (bodies.velocity[b[side]] + turning).norm()
+    };
+    let travelled = scheme.h * (speed(0) + speed(1));
+    // Steps are chords of curved paths.
+    let told = depth > ROUNDING * size + travelled * travelled / size;
+    (-closing * scheme.h > GRAZING * travelled && told).then_some(depth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bodies::Dof;
+    use crate::geometry::space::Dim2;
+    use nalgebra::{Vector1, Vector2};
+
+    /// A body that is driven along x and turned, and free along y: only the imposed motions do work on others, against what they receive.
+    #[test]
+    fn imposed_motions_push() {
+        let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5)]);
+        s.drive(0, [Dof::Fixed, Dof::Free, Dof::Fixed]);
+        s.state.bodies.velocity[0] = Vector2::new(2.0, 3.0);
+        s.state.bodies.spin[0].x = 5.0;
+        let pushes = pushes(s, &[(Vector2::new(-7.0, 11.0), Vector1::new(-13.0))]);
+        let pushes: Vec<(u32, f64)> = pushes.iter().map(|p| (p.body, p.work)).collect();
+        assert_eq!(pushes, [(0, 7.0 * 2.0 + 13.0 * 5.0)]);
+    }
+}

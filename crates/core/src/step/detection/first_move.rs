@@ -1,0 +1,73 @@
+//! Bodies that pass through others in the move before detection, which no step before has checked.
+
+use crate::contact::detect;
+use crate::geometry::space::{Space, VectorLike};
+use crate::step::{Scheme, Simulation};
+
+/// Relative change of a surface's spin from which it counts as a jump.
+const TURNS: f64 = 0.01;
+
+/// Reports tunnelling during the first half move. Each step checks the paths of the bodies between two
+/// detections at its final velocities; this misses the very first move and the velocity added by a jump
+/// of an imposed motion. `before` holds the velocities and spins of the driven bodies before their
+/// jumps.
+pub(in crate::step) fn watch_first_move<S: Space>(
+    s: &mut Simulation<S>,
+    before: &[(S::Vector, S::Spin)],
+) {
+    let Scheme { h, theta } = s.options.scheme;
+    let length = (1.0 - theta) * h;
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    if s.state.steps == 0 {
+        let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+        if detect::is_calm(network, &s.shapes, bodies, velocity, length, false) {
+            return;
+        }
+    } else if !velocities_jump(s, before, length) {
+        return;
+    }
+    detect::report_first_move(
+        &mut s.state.network,
+        &s.shapes,
+        &s.state.bodies,
+        &s.table,
+        s.state.time,
+        length,
+    );
+}
+
+/// Reports penetrations and passages in the move before detection if a process has applied an impulse.
+pub(in crate::step) fn watch_push<S: Space>(s: &mut Simulation<S>) {
+    let Scheme { h, theta } = s.options.scheme;
+    let length = (1.0 - theta) * h;
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+    if s.workspace.pushed && !detect::is_calm(network, &s.shapes, bodies, velocity, length, false) {
+        let (shapes, table) = (&s.shapes, &s.table);
+        detect::report_first_move(network, shapes, bodies, table, s.state.time, length);
+    }
+}
+
+/// Returns whether the jumps of imposed velocities give a body a large displacement within a time (s).
+fn velocities_jump<S: Space>(
+    s: &Simulation<S>,
+    before: &[(S::Vector, S::Spin)],
+    time: f64,
+) -> bool {
+    let bodies = &s.state.bodies;
+    let mut driven = bodies.driven.iter().zip(before);
+    driven.any(|(driven, (v, w))| {
+        let b = driven.body as usize;
+        let jump = (bodies.velocity[b] - *v).norm();
+        let turn = (bodies.spin[b] - *w).norm();
+        let lever = s.state.network.extents.lever(b);
+        let surfaces = s.shapes.surfaces.iter();
+        // The extent of the surface is unknown.
+        let sweeps = turn > TURNS * bodies.spin[b].norm().max(w.norm())
+            && surfaces.filter(|s| s.body as usize == b).any(|s| {
+                !s.shape
+                    .keeps_place(&S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]))
+            });
+        time * (jump + turn * lever) > s.state.network.fast || sweeps
+    })
+}

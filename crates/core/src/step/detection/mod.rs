@@ -1,0 +1,90 @@
+//! Contacts of a step: those at q_m, and those that close within the step.
+
+mod first_move;
+pub(super) mod mean_places;
+pub(super) mod projection;
+
+pub(super) use first_move::{watch_first_move, watch_push};
+
+use super::motion::Motion;
+use super::process::Process;
+use super::{Simulation, StepError};
+use crate::contact::{Contact, detect};
+use crate::geometry::space::Space;
+use crate::laws::columns::StepInfo;
+
+/// Finds the contacts at the current places of the bodies.
+pub(super) fn find_contacts<S: Space>(s: &mut Simulation<S>) {
+    let time = [s.state.time, s.options.scheme.h];
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    let parallel = s.options.solver.parallel;
+    detect::detect(network, &s.shapes, bodies, &s.table, time, parallel);
+    mean_places::find(s);
+}
+
+/// Adds the contacts that the free velocities (without contact impulses) would close in the step.
+pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
+    add_predicted(s, free);
+    mean_places::find_of_new_contacts(s);
+}
+
+fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
+    // Over a step that has grown nothing moves: what falls without contacts is held by those at hand. The velocities after the
+    // solve tell whether that is so.
+    if s.options.grown > 0 {
+        return;
+    }
+    let motion = detect::Motion {
+        velocities: free,
+        time: s.state.time,
+        h: s.options.scheme.h,
+        parallel: s.options.solver.parallel,
+    };
+    let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+    let (h, parallel) = (motion.h, motion.parallel);
+    if detect::is_calm(network, &s.shapes, bodies, |b| free[b], h, parallel) {
+        return;
+    }
+    detect::add_predicted(network, &s.shapes, bodies, &s.table, &motion);
+}
+
+/// Adds contacts that were found after a solve of the step, to the places of detection.
+pub(super) fn add_contacts<S: Space>(s: &mut Simulation<S>, found: Vec<Contact<S>>) {
+    s.state.network.merge_contacts(found);
+    mean_places::find_of_new_contacts(s);
+}
+
+/// Has processes see the contacts of the step, gives new ones their memory, and forms the bonds that are due.
+pub(super) fn prepare_contacts<S: Space>(
+    s: &mut Simulation<S>,
+    info: &StepInfo,
+) -> Result<(), StepError> {
+    s.act(Process::contacts_found)?;
+    let remembered = s.workspace.evaluator.initialise_contacts(
+        &s.laws,
+        &mut s.state.law_history,
+        &mut s.state.network,
+        info,
+    );
+    remembered.map_err(|e| s.law_error(e))
+}
+
+/// Records bodies that are stopped by the edges of neighbours that were flush.
+pub(super) fn watch_edges<S: Space>(s: &mut Simulation<S>) {
+    let tolerance = s.solver_in_force().tolerance;
+    let (solved, bodies) = (&s.workspace.solved, &s.state.bodies);
+    detect::record_edges(
+        &mut s.state.network,
+        &s.shapes,
+        bodies,
+        [s.state.time, s.options.scheme.h],
+        tolerance,
+        |k, contact| {
+            let compliant = solved.springs.get(k).is_some_and(Option::is_some);
+            (!compliant).then(|| detect::Impact {
+                before: solved.contact_steps[k].before,
+                mass: contact.effective_mass(bodies),
+            })
+        },
+    );
+}

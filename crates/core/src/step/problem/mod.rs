@@ -1,0 +1,150 @@
+//! The contact problem of a step: contacts in the standard form, solved until laws, damage and contacts
+//! agree with the velocities that they lead to.
+
+mod action;
+mod agreement;
+mod answers;
+mod asking;
+mod attraction;
+mod coupling;
+mod posing;
+mod sliding;
+pub(super) mod surfaces;
+mod swerve;
+mod systems;
+mod turning;
+
+use super::detection::{add_contacts, prepare_contacts};
+use super::motion::{Motion, StepStart, restart};
+use super::{Simulation, StepError, StepReport};
+use crate::contact::{Key, detect};
+use crate::geometry::space::{Space, VectorLike};
+use crate::laws::columns::StepInfo;
+use crate::threads::{count, fill, pays};
+use std::time::Instant;
+
+/// Maximum number of solves of a step: each may close contacts that the previous one did not.
+const MAX_SOLVES: usize = 6;
+/// About what it takes to copy the velocity of a body, and to look whether a contact carries an impulse (ns).
+const COPY: f64 = 3.0;
+const ACTS: f64 = 5.0;
+
+/// Solves the step, and repeats while the resulting velocities close contacts that were not part of the
+/// problem.
+pub(super) fn solve<S: Space>(
+    s: &mut Simulation<S>,
+    start: &StepStart<S>,
+    free: &[Motion<S>],
+    info: &StepInfo,
+    report: &mut StepReport,
+) -> Result<(), StepError> {
+    solve_with_all(s, start, free, info, report)?;
+    report_held_back(s);
+    Ok(())
+}
+
+fn solve_with_all<S: Space>(
+    s: &mut Simulation<S>,
+    start: &StepStart<S>,
+    free: &[Motion<S>],
+    info: &StepInfo,
+    report: &mut StepReport,
+) -> Result<(), StepError> {
+    let mut last: Vec<(Key, S::Vector)> = Vec::new();
+    systems::forget_system_contacts(s);
+    for solves in 1.. {
+        action::place_actions(s);
+        systems::find_system_contacts(s);
+        answers::relative_velocities(s);
+        posing::geometry_of_forms(s, free, info.h);
+        for (form, contact) in s.workspace.forms.iter_mut().zip(&s.state.network.contacts) {
+            // From the solve before.
+            if let Ok(at) = last.binary_search_by_key(&contact.key, |c| c.0) {
+                form.impulse = last[at].1;
+            }
+        }
+        coupling::couple(s, start, free, info, report)?;
+        report.solves = solves as u32;
+        let (network, bodies) = (&mut s.state.network, &s.state.bodies);
+        let velocity = |b: usize| (bodies.velocity[b], bodies.spin[b]);
+        let parallel = s.options.solver.parallel;
+        if detect::is_calm(network, &s.shapes, bodies, velocity, info.h, parallel) {
+            return Ok(());
+        }
+        let (mut velocities, divide) = (Vec::new(), pays(parallel, bodies.len(), COPY));
+        fill(divide, &mut velocities, bodies.len(), velocity);
+        let motion = detect::Motion {
+            velocities: &velocities,
+            time: s.state.time,
+            h: info.h,
+            parallel,
+        };
+        if solves == MAX_SOLVES {
+            detect::report_passing(network, &s.shapes, bodies, &s.table, &motion);
+            return Ok(());
+        }
+        let found = detect::find_missed(network, &s.shapes, bodies, &s.table, &motion);
+        if found.is_empty() {
+            return Ok(());
+        }
+        let solved = network
+            .contacts
+            .iter()
+            .zip(&s.workspace.solved.contact_steps);
+        last = solved.map(|(c, s)| (c.key, s.solution.impulse)).collect();
+        restart(s, start);
+        add_contacts(s, found);
+        prepare_contacts(s, info)?;
+    }
+    Ok(())
+}
+
+/// Reports impacts with restitution that were only kept from closing, because other impacts of the step
+/// preceded them.
+fn report_held_back<S: Space>(s: &mut Simulation<S>) {
+    for k in &s.workspace.evaluator.held_back {
+        if s.workspace.solved.contact_steps[*k].solution.impulse != S::Vector::zero() {
+            let pair = s.state.network.contacts[*k].bodies;
+            let step_size = &mut s.state.network.step_size;
+            step_size.record_held_back(s.state.time, &s.state.bodies, pair);
+        }
+    }
+}
+
+/// Forgets what the last step left in work arrays.
+pub(super) fn begin_step<S: Space>(s: &mut Simulation<S>) {
+    s.workspace.evaluator.parallel = s.options.solver.parallel;
+    s.workspace.surfaces.velocities.clear();
+    s.workspace.surfaces.work = 0.0;
+    s.workspace.pushed = false;
+    s.state.auto_state.begin_step();
+}
+
+/// Has laws update damage, bonds and wear with the impulses of the step, and counts its contacts.
+pub(super) fn commit_laws<S: Space>(
+    s: &mut Simulation<S>,
+    info: &StepInfo,
+    report: &mut StepReport,
+) -> Result<(), StepError> {
+    let clock = Instant::now();
+    let committed = s.workspace.evaluator.commit(
+        &s.laws,
+        &mut s.state.law_history,
+        &mut s.state.network,
+        &s.workspace.solved.step(info),
+    );
+    report.totals = committed.map_err(|e| s.law_error(e))?;
+    s.state.network.locate_breaks(&s.state.bodies);
+    report.timing.laws += clock.elapsed();
+    let steps = &s.workspace.solved.contact_steps;
+    let acts = |k: usize| steps[k].solution.impulse != S::Vector::zero();
+    report.active = count(s.options.solver.parallel, steps.len(), ACTS, acts);
+    let beyond = s.workspace.evaluator.beyond();
+    report.contacts = steps.len() - beyond.filter(|k| !acts(*k)).count();
+    debug_assert_eq!(
+        report.contacts,
+        s.state.network.contact_count(false),
+        "contacts of the step"
+    );
+    Ok(())
+}

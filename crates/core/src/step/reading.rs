@@ -1,0 +1,241 @@
+//! What a simulation holds at the end of a step, for those who read it: columns of bodies, rows of contacts.
+
+use super::Simulation;
+use super::change::{ContactForces, StepChange};
+use super::control::StepBounds;
+use super::detection::{mean_places, projection};
+use super::process::Process;
+use crate::bodies::Nodes;
+use crate::contact::Contact;
+use crate::energy::Energy;
+use crate::geometry::space::{Space, VectorLike};
+use crate::momentum::Momentum;
+use crate::solve;
+use crate::solve::local::LocalProblem;
+use std::any::Any;
+
+/// A contact at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRow<S: Space> {
+    /// The two bodies, by their places in the columns: candidate, antagonist.
+    pub bodies: [u32; 2],
+    /// Place of its interface in the case.
+    pub interface: u16,
+    /// Where it touches, seen from the candidate (m).
+    pub point: S::Vector,
+    /// Unit normal, from the antagonist to the candidate.
+    pub normal: S::Vector,
+    /// Distance at detection (m), positive when open.
+    pub gap: f64,
+    /// Mean force of the last step on the candidate (N; 2D N/m); the antagonist has its opposite.
+    pub force: S::Vector,
+    /// Its part along the normal (N; 2D N/m), positive in compression.
+    pub normal_force: f64,
+    /// Whether friction is at its bound.
+    pub slides: bool,
+}
+
+impl<S: Space> Simulation<S> {
+    /// Number of bodies, grains first, then first bodies: the length of every column.
+    pub fn body_count(&self) -> usize {
+        self.state.bodies.len()
+    }
+
+    /// The place of a first body in the columns, by its name.
+    pub fn body_named(&self, name: &str) -> Option<usize> {
+        let mut driven = self.state.bodies.driven.iter();
+        driven.find(|d| d.name == name).map(|d| d.body as usize)
+    }
+
+    /// Centres of mass (m).
+    pub fn positions(&self) -> &[S::Vector] {
+        &self.state.bodies.position
+    }
+
+    /// Velocities of the centres of mass (m/s).
+    pub fn velocities(&self) -> &[S::Vector] {
+        &self.state.bodies.velocity
+    }
+
+    /// Angular velocities (rad/s).
+    pub fn spins(&self) -> &[S::Spin] {
+        &self.state.bodies.spin
+    }
+
+    /// The contacts of the last step, open ones within the alert distance too; empty before the first step.
+    pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactRow<S>> + '_ {
+        let contacts = self.state.network.contacts.iter();
+        contacts.map(|contact| self.row(contact))
+    }
+
+    fn row(&self, contact: &Contact<S>) -> ContactRow<S> {
+        let force = contact.impulse * (1.0 / self.options.scheme.h);
+        let candidate = contact.bodies[0] as usize;
+        ContactRow {
+            bodies: contact.bodies,
+            interface: contact.law,
+            point: self.state.bodies.position[candidate] + contact.arms[0],
+            normal: contact.normal,
+            gap: contact.gap,
+            force,
+            normal_force: force.dot(&contact.normal),
+            slides: contact.slides,
+        }
+    }
+
+    /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its contacts on a first body;
+    /// none for a name that no first body has.
+    pub fn contact_force_on(&self, name: &str) -> Option<(S::Vector, S::Spin)> {
+        let place = self
+            .state
+            .bodies
+            .driven
+            .iter()
+            .position(|d| d.name == name)?;
+        let (impulse, moment) = self.state.received.get(place)?;
+        let rate = 1.0 / self.options.scheme.h;
+        Some((*impulse * rate, *moment * rate))
+    }
+
+    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its mesh; `None` where it has none or no heat is
+    /// computed.
+    pub fn temperature(&self, body: usize) -> Option<f64> {
+        self.mean_temperature(self.heat.as_ref()?.nodes.get(body)?.range())
+    }
+
+    /// Mean temperature of some nodes (K), see [`crate::heat::HeatState::mean_temperature`].
+    pub fn mean_temperature(&self, nodes: std::ops::Range<usize>) -> Option<f64> {
+        self.state.heat.as_ref()?.mean_temperature(nodes)
+    }
+
+    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
+    /// cohesion or friction against rotation was at work, which that form does not hold.
+    pub fn local_problem(&self) -> Option<LocalProblem> {
+        let (forms, contacts) = (&self.workspace.forms, &self.state.network.contacts);
+        let of_bodies = self.workspace.surfaces.forms_of_bodies(forms, contacts);
+        solve::choose::coulomb(
+            &self.workspace.problem,
+            of_bodies.as_ref().unwrap_or(forms),
+            &self.workspace.moments,
+        )
+    }
+
+    /// The ledger of momentum (N s, N m s; 2D per m).
+    pub fn momentum(&self) -> &Momentum {
+        &self.state.momentum
+    }
+
+    /// The energy ledger (J; 2D J/m).
+    pub fn energies(&self) -> &Energy {
+        &self.state.energy
+    }
+
+    /// Returns whether the current phase is repeated later.
+    pub fn phase_recurs(&self) -> bool {
+        let now = self.state.control.phase().checked_sub(1);
+        now.and_then(|k| self.phases.get(k))
+            .is_some_and(|p| p.recurs)
+    }
+
+    /// Returns whether the last phase has ended.
+    pub fn phases_finished(&self) -> bool {
+        let phase = self.state.control.phase();
+        phase > 0 && phase == self.phases.len() && self.state.control.turns()
+    }
+
+    /// Whether the next step is the first of a phase: what bounds it is known after it.
+    pub fn phase_begins(&self) -> bool {
+        self.state.control.turns() && self.state.control.phase() < self.phases.len()
+    }
+
+    /// What bounds the next step. Drives of deformable bodies are not looked at.
+    pub fn step_bounds(&self) -> StepBounds {
+        StepBounds::of(self)
+    }
+
+    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place that its point faces, or of the contact
+    /// point. None where that side, 0 of the candidate or 1 of the antagonist, is rigid.
+    pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
+        mean_places::nodes_of_side(self, contact, side)
+    }
+
+    /// The vertices of the surface of the antagonist below the facets of a point, with their shares of what is worn off there; none of a contact on
+    /// the nearest place.
+    pub(crate) fn worn_shares(&self, contact: &Contact<S>) -> Option<&[(u32, f64)]> {
+        mean_places::worn_shares(self, contact)
+    }
+
+    /// The contacts of points of deformable bodies with surfaces of others in the last step, no grains, and whether each acted on the place
+    /// that its point faces on average; the others acted on the nearest place.
+    pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
+        mean_places::acted_on_mean_places(self)
+    }
+
+    /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller body's
+    /// length (a grain's radius; walls do not count).
+    pub fn deepest_overlap(&self) -> f64 {
+        projection::deepest_overlap(self)
+    }
+
+    /// The forces of the contacts in the last step.
+    pub fn contact_forces(&self) -> ContactForces<S> {
+        let per = 1.0 / self.options.scheme.h;
+        let contacts = self.state.network.contacts.iter();
+        let carrying = contacts.filter(|c| c.impulse != S::Vector::zero());
+        ContactForces(carrying.map(|c| (c.key, c.impulse * per)).collect())
+    }
+
+    /// The largest displacement of a point of a body in a step at the current velocities, over the length of the smallest
+    /// grain, or the alert distance without grains. Infinite where a surface turns into another place, since its extent is
+    /// not known. A ball that turns in its place does not move.
+    pub fn largest_displacement(&self) -> f64 {
+        let (bodies, network) = (&self.state.bodies, &self.state.network);
+        let turning = self.shapes.surfaces.iter().any(|surface| {
+            let b = surface.body as usize;
+            let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
+            bodies.spin[b].norm() > 0.0 && !surface.shape.keeps_place(&spin)
+        });
+        if turning {
+            return f64::INFINITY;
+        }
+        let speed = |b: usize| {
+            let lever = network.extents.lever(b);
+            let turn = if lever > 0.0 {
+                lever * bodies.spin[b].norm()
+            } else {
+                0.0
+            };
+            bodies.velocity[b].norm() + turn
+        };
+        let present = (0..bodies.len()).filter(|b| !bodies.removed[*b]);
+        let grains = bodies.grains().filter(|b| !bodies.removed[*b]);
+        let smallest = grains
+            .map(|b| bodies.length[b])
+            .fold(f64::INFINITY, f64::min);
+        let size = if smallest.is_finite() {
+            smallest
+        } else {
+            network.alert
+        };
+        self.options.scheme.h * present.map(speed).fold(0.0, f64::max) / size
+    }
+
+    /// What the last step has changed; `before` are the forces of the step before.
+    pub fn change_since(&self, before: &ContactForces<S>) -> StepChange {
+        StepChange {
+            displacement: self.largest_displacement(),
+            forces: before.change(&self.contact_forces()),
+        }
+    }
+
+    /// The process of a type, the first where there are several.
+    pub fn process<P: Process<S>>(&self) -> Option<&P> {
+        let mut list = self.features.iter().chain(&self.processes);
+        list.find_map(|p| (p.as_ref() as &dyn Any).downcast_ref())
+    }
+
+    /// Whether the last phase has come to its end, or a process has reached what it was to reach.
+    pub fn finished(&self) -> bool {
+        self.phases_finished() || self.processes.iter().any(|p| p.finished())
+    }
+}
