@@ -238,3 +238,68 @@ fn modules_of_the_core_name_those_below_them() {
     }
     assert!(seen.contains(&("step".to_owned(), "laws".to_owned())));
 }
+
+/// The list of the stages of a step names nothing that only some scenes have: that acts at its stages.
+#[test]
+fn the_stepper_names_no_feature() {
+    let text = read("crates/core/src/step/one_step.rs").to_lowercase();
+    let features = [
+        "wear",
+        "worn",
+        "heat",
+        "thermal",
+        "temperature",
+        "expansion",
+        "system",
+        "circuit",
+        "jump",
+        "mean_place",
+        "mean place",
+        "recession",
+        "scar",
+        "debris",
+    ];
+    for word in features {
+        assert!(!text.contains(word), "one_step.rs names `{word}`");
+    }
+    for moment in ["at_start", "before_detection", "after_solve", "after_move"] {
+        assert!(text.contains(moment), "{moment}");
+    }
+}
+
+/// Folders of the step, each after those that it may name.
+const STAGES: [&str; 5] = ["motion", "detection", "control", "problem", "ledger"];
+
+/// Files of the step that hold data only.
+const DATA: [&str; 5] = ["options", "error", "report", "state", "workspace"];
+
+/// No stage of the step names one after it, and what holds data names no simulation.
+#[test]
+fn stages_of_the_step_name_those_before_them() {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/crates/core/src/step"));
+    let mut seen = BTreeSet::new();
+    for (place, stage) in STAGES.iter().enumerate() {
+        let mut files = Vec::new();
+        source_files(&root.join(stage), &mut files);
+        for file in files {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let is_folder = file.ends_with("mod.rs");
+            for (other, name) in STAGES.iter().enumerate() {
+                let by_path = text.contains(&format!("step::{name}::"));
+                let beside = is_folder && text.contains(&format!("use super::{name}::"));
+                if by_path || beside {
+                    assert!(other <= place, "{}: {name}", file.display());
+                    seen.insert((*stage, *name));
+                }
+            }
+        }
+    }
+    assert!(seen.contains(&("problem", "detection")), "{seen:?}");
+    for name in DATA {
+        let text = std::fs::read_to_string(root.join(format!("{name}.rs"))).unwrap();
+        let code = text.lines().filter(|l| !l.trim_start().starts_with("//"));
+        for line in code {
+            assert!(!line.contains("Simulation"), "{name}.rs: {line}");
+        }
+    }
+}

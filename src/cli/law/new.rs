@@ -67,12 +67,12 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
         )));
     }
     let template = match args.lang {
-        Language::Rust => templates.rust,
-        Language::C => templates.c,
-        Language::Fortran => templates.fortran,
+        Language::Rust => templates.rust.to_owned(),
+        Language::C => templates.whole_c(),
+        Language::Fortran => templates.whole_fortran(),
     };
     let new_law = NewLaw { kind, name, folder };
-    let (build, made) = new_law.write(args.lang, template)?;
+    let (build, made) = new_law.write(args.lang, &template)?;
     let NewLaw { name, folder, .. } = &new_law;
     inform(&format!(
         "{} holds the {kind} law `{name}`; fill in the two functions marked (1) and (2)\n\

@@ -2,6 +2,7 @@
 
 use super::nodes::Nodes;
 use crate::geometry::space::Space;
+use serde::{Deserialize, Serialize};
 
 /// A part of a system that can touch: it stands as a body of its own among [`super::Bodies`], which follows the system and has
 /// no inertia of its own. Detection, laws, bonds and files treat it as any other body.
@@ -44,4 +45,18 @@ pub struct ContactorMotion<S: Space> {
     pub velocity: S::Vector,
     /// Angular velocity of the frame (rad/s).
     pub spin: S::Spin,
+}
+
+/// Which contactor of which system a body stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Carrier {
+    /// Index of the system.
+    pub system: u32,
+    /// Index of the contactor in it.
+    pub contactor: u32,
+    /// Whether contactors of the system can touch each other.
+    pub touches_itself: bool,
+    /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a contact of two of them is found
+    /// from both sides.
+    pub grain: bool,
 }

@@ -1,166 +1,8 @@
-//! Driven degrees of freedom and their functions of time.
+//! Driven degrees of freedom, and sequences of drives on one of them, for example first pressing, then
+//! sliding.
 
-use super::integral;
-use super::stages::{self, Stage};
+use super::time_function::TimeFunction;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-
-/// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom over a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum TimeFunction {
-    /// A constant value.
-    Constant(f64),
-    /// Linear between two times, constant outside.
-    Ramp {
-        /// Value before `start`.
-        from: f64,
-        /// Value after `end`.
-        to: f64,
-        /// Start of the ramp (s).
-        start: f64,
-        /// End of the ramp (s).
-        end: f64,
-    },
-    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on; constant before, at the
-    /// value for `start`.
-    Sine {
-        /// Amplitude.
-        amplitude: f64,
-        /// Frequency (Hz).
-        frequency: f64,
-        /// Phase (rad).
-        #[serde(default)]
-        phase: f64,
-        /// Mean value.
-        #[serde(default)]
-        offset: f64,
-        /// Start of the oscillation (s).
-        #[serde(default)]
-        start: f64,
-    },
-    /// Points (time, value), linear between them, constant outside; times must increase.
-    Table(Vec<(f64, f64)>),
-}
-
-impl TimeFunction {
-    /// Returns the value at a time.
-    pub fn value(&self, t: f64) -> f64 {
-        match self {
-            Self::Constant(x) => *x,
-            Self::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0),
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                offset,
-                start,
-            } => offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin(),
-            Self::Table(points) => integral::value(points, t),
-        }
-    }
-
-    /// Returns the derivative at a time, from the left at a kink of a ramp or a table, from the right at the start of a sine.
-    pub fn rate(&self, t: f64) -> f64 {
-        match self {
-            Self::Constant(_) => 0.0,
-            Self::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => {
-                if t > *start && t <= *end {
-                    (to - from) / (end - start)
-                } else {
-                    0.0
-                }
-            }
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                start,
-                ..
-            } => {
-                if t < *start {
-                    return 0.0;
-                }
-                TAU * frequency * amplitude * (TAU * frequency * (t - start) + phase).cos()
-            }
-            Self::Table(points) => integral::slope(points, t),
-        }
-    }
-
-    /// Returns the period of a sine (s).
-    pub fn period(&self) -> Option<f64> {
-        match self {
-            Self::Sine { frequency, .. } if *frequency > 0.0 => Some(1.0 / frequency),
-            _ => None,
-        }
-    }
-
-    /// Returns the error in the numbers, if any.
-    pub fn fault(&self) -> Option<String> {
-        let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
-        match self {
-            Self::Constant(x) if !x.is_finite() => {
-                Some(format!("a constant must be finite, got {x}"))
-            }
-            Self::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => {
-                if !finite(&[*from, *to, *start, *end]) {
-                    Some("the numbers of a ramp must be finite".into())
-                } else if end <= start {
-                    Some(format!(
-                        "a ramp must end after it starts, got start {start} and end {end}"
-                    ))
-                } else {
-                    None
-                }
-            }
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                offset,
-                start,
-            } => {
-                if !finite(&[*amplitude, *frequency, *phase, *offset, *start]) {
-                    Some("the numbers of a sine must be finite".into())
-                } else if *frequency < 0.0 {
-                    Some(format!("a frequency must not be negative, got {frequency}"))
-                } else {
-                    None
-                }
-            }
-            Self::Table(points) => {
-                if points.is_empty() {
-                    Some("a table needs at least one (time, value)".into())
-                } else if !points.iter().all(|p| finite(&[p.0, p.1])) {
-                    Some("the numbers of a table must be finite".into())
-                } else if points.windows(2).any(|w| w[1].0 <= w[0].0) {
-                    Some(
-                        "the times of a table must rise; for a jump give two times that are close"
-                            .into(),
-                    )
-                } else {
-                    None
-                }
-            }
-            Self::Constant(_) => None,
-        }
-    }
-}
 
 /// Motion of one degree of freedom of a first body.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -192,11 +34,22 @@ pub enum Dof {
     Stages(Vec<Stage>),
 }
 
+/// A drive with its end time. Functions of time use the time of the case, not of the stage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
+    /// Time at which the next stage takes over (s); `None` for the last stage.
+    #[serde(default)]
+    pub until: Option<f64>,
+    /// The drive; stages cannot be nested.
+    pub drive: Dof,
+}
+
 impl Dof {
     /// Returns the active drive at a time; `self` where there are no stages.
     pub fn at(&self, t: f64) -> &Self {
         match self {
-            Self::Stages(stages) => stages::at(stages, t),
+            Self::Stages(stages) => active(stages, t),
             simple => simple,
         }
     }
@@ -210,7 +63,7 @@ impl Dof {
     /// Returns the index of the active stage at a time; 0 where there are no stages.
     pub fn stage_at(&self, t: f64) -> usize {
         match self {
-            Self::Stages(stages) => stages::index_at(stages, t),
+            Self::Stages(stages) => active_index(stages, t),
             _ => 0,
         }
     }
@@ -272,10 +125,78 @@ impl Dof {
     /// drive itself).
     pub fn fault(&self) -> Option<(String, String)> {
         match self {
-            Self::Stages(stages) => stages::fault(stages),
+            Self::Stages(stages) => fault_of_stages(stages),
             simple => simple.function()?.fault().map(|f| (String::new(), f)),
         }
     }
+
+    /// Returns the same drive, shifted to `by` seconds later.
+    pub fn delayed(&self, by: f64) -> Self {
+        let mut later = self.clone();
+        match &mut later {
+            Self::Free | Self::Fixed => {}
+            Self::Velocity(f) | Self::Displacement(f) | Self::Force(f) => *f = f.delayed(by),
+            Self::Pressure { value, .. } => *value = value.delayed(by),
+            Self::Stages(stages) => {
+                for Stage { until, drive } in stages {
+                    *until = until.map(|t| t + by);
+                    *drive = drive.delayed(by);
+                }
+            }
+        }
+        later
+    }
+}
+
+/// Returns the active drive at a time.
+fn active(stages: &[Stage], t: f64) -> &Dof {
+    stages
+        .get(active_index(stages, t))
+        .map_or(&Dof::Fixed, |s| &s.drive)
+}
+
+/// Returns the index of the active stage at a time.
+fn active_index(stages: &[Stage], t: f64) -> usize {
+    let found = stages
+        .iter()
+        .position(|s| s.until.is_none_or(|end| t < end));
+    found.unwrap_or(stages.len().saturating_sub(1))
+}
+
+/// Returns the error in a list of stages, if any, and the path of its key.
+fn fault_of_stages(stages: &[Stage]) -> Option<(String, String)> {
+    if stages.is_empty() {
+        return Some((String::new(), "stages need at least one drive".into()));
+    }
+    let mut before = 0.0;
+    // In the case file, stages have a single field, their list.
+    for (k, stage) in stages.iter().enumerate() {
+        let said = |field: &str, message: String| Some((format!("0.{k}.{field}"), message));
+        if matches!(stage.drive, Dof::Stages(_)) {
+            return said("drive", "a stage cannot hold stages again".into());
+        }
+        if let Some((_, message)) = stage.drive.fault() {
+            return said("drive", message);
+        }
+        match (stage.until, k + 1 == stages.len()) {
+            (None, false) => {
+                let message = "a stage that another one follows needs `until`, its end (s)";
+                return Some((format!("0.{k}"), message.into()));
+            }
+            (Some(_), true) => {
+                let message = "the last stage holds for ever; leave its `until` out";
+                return said("until", message.into());
+            }
+            (Some(end), false) if !(end.is_finite() && end > before) => {
+                let message =
+                    format!("stages must end one after another, got {end} after {before}");
+                return said("until", message);
+            }
+            (Some(end), false) => before = end,
+            (None, true) => {}
+        }
+    }
+    None
 }
 
 /// A first body with driven degrees of freedom: translations first, then rotations.
@@ -302,9 +223,34 @@ impl Driven {
 mod tests {
     use super::*;
 
+    fn pressed_then_moved() -> Dof {
+        Dof::Stages(vec![
+            Stage {
+                until: Some(0.3),
+                drive: Dof::Force(TimeFunction::Constant(-2.0)),
+            },
+            Stage {
+                until: None,
+                drive: Dof::Velocity(TimeFunction::Constant(-0.5)),
+            },
+        ])
+    }
+
     #[test]
-    fn rates_are_the_derivatives() {
+    fn a_step_belongs_to_the_stage_of_its_middle() {
+        let dof = pressed_then_moved();
+        // Times as summed in a run: 0.1 + 0.1 + 0.1 is above 0.3.
+        let end = 0.1 + 0.1 + 0.1;
+        assert!(dof.over(end - 0.1, 0.1).imposed_velocity(end).is_none());
+        assert_eq!(dof.over(end, 0.1).imposed_velocity(end + 0.1), Some(-0.5));
+        assert_eq!((dof.force(0.2), dof.force(0.4)), (-2.0, 0.0));
+        assert!(dof.yields() && dof.fault().is_none());
+    }
+
+    #[test]
+    fn a_delayed_drive_is_the_drive_of_the_time_since() {
         let functions = [
+            TimeFunction::Constant(2.0),
             TimeFunction::Ramp {
                 from: 1.0,
                 to: 3.0,
@@ -321,57 +267,25 @@ mod tests {
             TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
         ];
         for f in functions {
-            for t in [0.6, 0.95, 1.2] {
-                let e = 1e-6;
-                let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
-                assert!((difference - f.rate(t)).abs() < 1e-6, "{f:?} at {t}");
+            let dof = Dof::Stages(vec![
+                Stage {
+                    until: Some(0.8),
+                    drive: Dof::Velocity(f.clone()),
+                },
+                Stage {
+                    until: None,
+                    drive: Dof::Displacement(f),
+                },
+            ]);
+            for t in [0.05, 0.6, 0.9, 2.0] {
+                let (now, later) = (
+                    dof.imposed_velocity(t).unwrap_or(f64::NAN),
+                    dof.delayed(3.0)
+                        .imposed_velocity(t + 3.0)
+                        .unwrap_or(f64::NAN),
+                );
+                assert!((now - later).abs() < 1e-12, "{dof:?} at {t}");
             }
-            assert!(f.fault().is_none());
         }
-    }
-
-    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on with.
-    #[test]
-    fn rates_at_kinks_are_those_of_the_documented_side() {
-        let ramp = TimeFunction::Ramp {
-            from: 1.0,
-            to: 3.0,
-            start: 0.5,
-            end: 1.5,
-        };
-        let table = TimeFunction::Table(vec![(0.5, 1.0), (1.5, 3.0)]);
-        for f in [ramp, table] {
-            let rates = [0.4, 0.5, 0.6, 1.5, 1.6].map(|t| f.rate(t));
-            assert_eq!(rates, [0.0, 0.0, 2.0, 2.0, 0.0], "{f:?}");
-        }
-        let sine = TimeFunction::Sine {
-            amplitude: 2.0,
-            frequency: 1.0 / TAU,
-            phase: 0.0,
-            offset: 1.0,
-            start: 0.5,
-        };
-        assert_eq!([0.4, 0.5].map(|t| sine.rate(t)), [0.0, 2.0]);
-        assert_eq!([0.4, 0.5].map(|t| sine.value(t)), [1.0, 1.0]);
-    }
-
-    #[test]
-    fn bad_functions_say_why() {
-        assert!(
-            TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)])
-                .fault()
-                .is_some()
-        );
-        assert!(
-            TimeFunction::Ramp {
-                from: 0.0,
-                to: 1.0,
-                start: 1.0,
-                end: 1.0
-            }
-            .fault()
-            .is_some()
-        );
-        assert!(TimeFunction::Constant(f64::NAN).fault().is_some());
     }
 }

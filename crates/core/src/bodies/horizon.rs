@@ -1,6 +1,7 @@
 //! What lies ahead in functions of time and drives: the next kink, and the longest step that resolves them.
 
-use super::drive::{Dof, TimeFunction};
+use super::drive::Dof;
+use super::time_function::TimeFunction;
 
 /// Steps in a period of a sine or in a ramp that resolve it: linear interpolation between 20 points has an error of (pi/20)^2/2, 1.2 %
 /// of the amplitude.

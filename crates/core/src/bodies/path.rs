@@ -9,9 +9,9 @@
 //!
 //! At the end of a step the position is set from the function, so that errors do not accumulate.
 
-use super::drive::{Dof, TimeFunction};
-use super::state::Bodies;
-use crate::geometry::space::{Space, VectorLike};
+use super::drive::Dof;
+use super::time_function::TimeFunction;
+use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// Velocities at the start and the end of a step (m/s or rad/s).
@@ -63,18 +63,18 @@ impl Dof {
     }
 
     /// Returns whether it imposes a path.
-    fn imposes_path(&self) -> bool {
+    pub(super) fn imposes_path(&self) -> bool {
         matches!(self, Self::Velocity(_) | Self::Displacement(_))
     }
 }
 
 /// Start of the path of an imposed degree of freedom, and the displacement so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Path {
+pub(super) struct Path {
     /// Index of the stage of the drive that it follows.
-    stage: usize,
+    pub(super) stage: usize,
     /// Initial coordinate (m); zero for a rotation.
-    origin: f64,
+    pub(super) origin: f64,
     /// Time up to which the displacement is summed (s).
     since: f64,
     /// Displacement up to that time (m or rad), and its rounding compensation.
@@ -82,7 +82,7 @@ struct Path {
 }
 
 impl Path {
-    fn new(stage: usize, origin: f64, since: f64) -> Self {
+    pub(super) fn new(stage: usize, origin: f64, since: f64) -> Self {
         Self {
             stage,
             origin,
@@ -92,7 +92,7 @@ impl Path {
     }
 
     /// Returns the displacement at a time (m or rad); times must not decrease from call to call.
-    fn displacement(&mut self, drive: &Dof, t: f64) -> f64 {
+    pub(super) fn displacement(&mut self, drive: &Dof, t: f64) -> f64 {
         match drive {
             Dof::Displacement(f) => f.change(self.since, t),
             Dof::Velocity(f) => {
@@ -119,9 +119,9 @@ impl Path {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Paths<S: Space> {
-    along: Vec<Option<Path>>,
+    pub(super) along: Vec<Option<Path>>,
     /// Orientation relative to which the imposed rotation is measured.
-    reference_orientation: S::Rotation,
+    pub(super) reference_orientation: S::Rotation,
 }
 
 impl<S: Space> Paths<S> {
@@ -145,77 +145,6 @@ impl<S: Space> Paths<S> {
     /// Starts new paths of all degrees of freedom.
     pub(super) fn forget_all(&mut self) {
         self.along.fill(None);
-    }
-}
-
-impl<S: Space> Bodies<S> {
-    /// Starts the paths of the drives that take effect with the step from `time` on, at the current
-    /// positions, and sets the initial velocities of all imposed degrees of freedom.
-    pub fn begin_imposed_motion(&mut self, time: f64, h: f64, theta: f64) {
-        for place in 0..self.driven.len() {
-            self.begin_paths(place, time, h);
-            let driven = &self.driven[place];
-            let b = driven.body as usize;
-            for (k, dof) in driven.dofs.iter().enumerate() {
-                if let Some(speeds) = dof.over(time, h).speeds(time, h, theta) {
-                    if k < S::D {
-                        self.velocity[b][k] = speeds.start;
-                    } else {
-                        self.spin[b][k - S::D] = speeds.start;
-                    }
-                }
-            }
-        }
-    }
-
-    fn begin_paths(&mut self, place: usize, time: f64, h: f64) {
-        let driven = &self.driven[place];
-        let b = driven.body as usize;
-        let paths = &mut self.paths[place];
-        let mut turns_anew = false;
-        for (k, dof) in driven.dofs.iter().enumerate() {
-            let stage = dof.stage_at(time + 0.5 * h);
-            if !dof.over(time, h).imposes_path() {
-                turns_anew |= k >= S::D && paths.along[k].take().is_some();
-                paths.along[k] = None;
-                continue;
-            }
-            if paths.along[k].as_ref().is_none_or(|p| p.stage != stage) {
-                let origin = if k < S::D { self.position[b][k] } else { 0.0 };
-                paths.along[k] = Some(Path::new(stage, origin, time));
-                turns_anew |= k >= S::D;
-            }
-        }
-        if turns_anew {
-            paths.reference_orientation = self.rotation[b];
-            for path in paths.along[S::D..].iter_mut().flatten() {
-                *path = Path::new(path.stage, 0.0, time);
-            }
-        }
-    }
-
-    /// Sets imposed coordinates to their paths at the end of the step of `h` from `from` to `to` (s).
-    ///
-    /// A rotation about one axis follows its path; where rotations about several axes are imposed, which do
-    /// not commute, the orientation is that of the integrated velocities.
-    pub fn end_imposed_motion(&mut self, from: f64, to: f64, h: f64) {
-        for (driven, paths) in self.driven.iter().zip(&mut self.paths) {
-            let b = driven.body as usize;
-            let turning = paths.along[S::D..].iter().flatten().count();
-            for (k, dof) in driven.dofs.iter().enumerate() {
-                let Some(path) = &mut paths.along[k] else {
-                    continue;
-                };
-                let displacement = path.displacement(dof.over(from, h), to);
-                if k < S::D {
-                    self.position[b][k] = path.origin + displacement;
-                } else if turning == 1 {
-                    let mut angle = S::Spin::zero();
-                    angle[k - S::D] = displacement;
-                    self.rotation[b] = S::turned(&paths.reference_orientation, &angle);
-                }
-            }
-        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Positions, velocities and inertia of all bodies, as a structure of arrays.
 
+use super::contactor::Carrier;
 use super::drive::{Dof, Driven};
 use super::path::Paths;
-use super::systems::Carrier;
 use super::tensor::{self, Tensor};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::threads::sum;

@@ -1,7 +1,7 @@
 //! The dynamical systems of a scene, and the bodies that stand for their contactors.
 
 use super::compliance::Compliance;
-use super::contactor::{Contactor, ContactorShape};
+use super::contactor::{Carrier, Contactor, ContactorShape};
 use super::drive::Dof;
 use super::dynamical_system::{DynamicalSystem, SystemStep, SystemWork};
 use super::nodes::Nodes;
@@ -12,20 +12,6 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Which contactor of which system a body stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Carrier {
-    /// Index of the system.
-    pub system: u32,
-    /// Index of the contactor in it.
-    pub contactor: u32,
-    /// Whether contactors of the system can touch each other.
-    pub touches_itself: bool,
-    /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a contact of two of them is found
-    /// from both sides.
-    pub grain: bool,
-}
 
 /// A node that turns with a part of a system, see [`DynamicalSystem::turning_node`].
 #[derive(Clone, Copy, Debug, PartialEq)]

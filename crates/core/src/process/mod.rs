@@ -1,9 +1,10 @@
-//! What acts on a simulation at the named moments of its steps: wear recession, cycle jumps, the tribological circuit, and
-//! what a user of the library adds. The step knows none of them by name.
+//! What acts on a simulation at the named moments of its steps: heat, thermal expansion, wear
+//! recession, cycle jumps, the tribological circuit, and what a user of the library adds. The step
+//! knows none of them by name.
 //!
 //! ```text
-//! step:  imposed motion ─► before_detection ─► detect, laws, solve, commit ─► after_solve
-//!        ─► move ─► after_move
+//! step:  at_start ─► imposed motion ─► before_detection ─► detect ─► contacts_found
+//!        ─► laws, solve, commit ─► after_solve ─► ledger, move ─► after_move
 //! then:  (observers look at the step) ─► between_steps ─► the next step
 //! ```
 //! Phases, imposed motion, servo pressures and gravity belong to [`crate::step::control`]: they set velocities and forces whose

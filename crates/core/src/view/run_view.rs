@@ -16,6 +16,7 @@ use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use crate::heat::{Heat, HeatState};
 use crate::laws::Interface;
 use crate::momentum::Momentum;
+use crate::process::expansion::ThermalExpansion;
 use crate::solve;
 use crate::step::control::{Begun, GravityDrive};
 use crate::step::{Options, Simulation};
@@ -394,7 +395,7 @@ impl<S: Space> RunView for Simulation<S> {
         self.state.heat.as_ref()
     }
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)> {
-        let expansion = self.expansion()?;
+        let expansion = ThermalExpansion::of(self)?;
         let systems = expansion.systems.iter().map(|e| e.system).collect();
         Some((&expansion.coefficient, systems))
     }

@@ -157,10 +157,31 @@ pub enum CheckSet {
 pub struct Templates {
     /// Rust, with the crate `fretwork-law`.
     pub rust: &'static str,
-    /// C.
+    /// C, but for the parts that all laws share: see [`Self::whole_c`].
     pub c: &'static str,
-    /// Fortran.
+    /// Fortran, as `c`.
     pub fortran: &'static str,
+}
+
+impl Templates {
+    /// The template in C, with the shared parts that it names.
+    pub fn whole_c(&self) -> String {
+        framed(self.c, include_str!("templates/frame.c"))
+    }
+
+    /// The template in Fortran, with the shared parts that it names.
+    pub fn whole_fortran(&self) -> String {
+        framed(self.fortran, include_str!("templates/frame.f90"))
+    }
+}
+
+/// A template in which lines `@PART@` are replaced by the parts of a frame, each of which begins
+/// with a line `@@ PART`.
+fn framed(template: &str, frame: &str) -> String {
+    let parts = frame.split("@@ ").filter_map(|part| part.split_once('\n'));
+    parts.fold(template.to_owned(), |text, (name, part)| {
+        text.replace(&format!("@{name}@\n"), part)
+    })
 }
 
 /// The templates of a kind that has a set of files in this folder.

@@ -1,25 +1,11 @@
-/* @NAME@: a @KIND@ law for Fretwork. Fill in the two functions marked (1) and (2).
- * fretwork.h documents the content and unit of every column, and when each call is made. */
-#include <math.h>
-#include <string.h>
-#include "fretwork.h"
-
+@HEAD@
 enum { K_N, K_T };
 static const fw_field parameters[] = {
     {"k_n", "Pa/m", "normal stiffness of the intact bond", 1e12, 1.0, 1e30, 0},
     {"k_t", "Pa/m", "tangential stiffness of the intact bond", 1e12, 1.0, 1e30, 0},
 };
 
-/* Returns an error with a message; contacts are counted from 0. */
-static int32_t fail(fw_message *message, size_t contact, const char *text) {
-    message->contact = (int64_t)contact;
-    if (message->capacity > 0) {
-        strncpy(message->text, text, message->capacity - 1);
-        message->text[message->capacity - 1] = 0;
-    }
-    return FW_ERROR;
-}
-
+@FAIL@
 /* (1) Remaining stiffness fraction at damage D: traction = left(D) k x and psi = left(D) k x^2/2 must agree, and with
  * `degradation` in the table, left = (1 - D)^m. */
 static double left(double damage) { return 1.0 - damage; }
@@ -56,21 +42,10 @@ static int32_t energy(const fw_batch *b, fw_message *message) {
     return FW_OK;
 }
 
-static const fw_plugin table = {
-    .size = sizeof(fw_plugin),
-    .abi_major = FW_ABI_MAJOR,
-    .abi_minor = FW_ABI_MINOR,
-    .kind = FW_KIND_@KINDUP@,
+@TABLE@
     .flags = FW_FLAG_OPENING | FW_FLAG_TENSION_ONLY | FW_FLAG_FORMS,
-    .name = "@NAME@",
-    .version = "0.1.0",
     .doc = "linear bond",
-    .reference = "say where the equations come from",
-    .n_parameters = sizeof parameters / sizeof *parameters,
-    .parameters = parameters,
     .degradation = 1.0,
     .prepare = prepare,
     .energy = energy,
-};
-
-const fw_plugin *fretwork_plugin(void) { return &table; }
+@END@

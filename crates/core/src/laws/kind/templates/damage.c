@@ -1,25 +1,11 @@
-/* @NAME@: a @KIND@ law for Fretwork. Fill in the two functions marked (1) and (2).
- * fretwork.h documents the content and unit of every column, and when each call is made. */
-#include <math.h>
-#include <string.h>
-#include "fretwork.h"
-
+@HEAD@
 enum { STRENGTH, ENERGY };
 static const fw_field parameters[] = {
     {"strength", "Pa", "traction at which damage begins", 3e5, 1e-30, 1e30, 0},
     {"energy", "J/m^2", "fracture energy: area under the traction-opening curve", 0.5, 1e-30, 1e30, 0},
 };
 
-/* Returns an error with a message; contacts are counted from 0. */
-static int32_t fail(fw_message *message, size_t contact, const char *text) {
-    message->contact = (int64_t)contact;
-    if (message->capacity > 0) {
-        strncpy(message->text, text, message->capacity - 1);
-        message->text[message->capacity - 1] = 0;
-    }
-    return FW_ERROR;
-}
-
+@FAIL@
 /* (1) D at the end of the step, where t0 (Pa) is the traction that the undamaged bond would carry at the opening u
  * (m), so that psi = (1 - D)^m psi_0. Here: a line from the strength to zero. */
 static double damage(const double *p, double t0, double u, double m) {
@@ -48,20 +34,9 @@ static int32_t commit(const fw_batch *b, fw_message *message) {
     return FW_OK;
 }
 
-static const fw_plugin table = {
-    .size = sizeof(fw_plugin),
-    .abi_major = FW_ABI_MAJOR,
-    .abi_minor = FW_ABI_MINOR,
-    .kind = FW_KIND_@KINDUP@,
+@TABLE@
     .flags = 0,
-    .name = "@NAME@",
-    .version = "0.1.0",
     .doc = "linear softening",
-    .reference = "say where the equations come from",
-    .n_parameters = sizeof parameters / sizeof *parameters,
-    .parameters = parameters,
     .commit = commit,
     .fracture_energy = fracture_energy,
-};
-
-const fw_plugin *fretwork_plugin(void) { return &table; }
+@END@

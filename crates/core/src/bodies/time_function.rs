@@ -1,0 +1,252 @@
+//! Functions of time.
+
+use super::table;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom over a step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum TimeFunction {
+    /// A constant value.
+    Constant(f64),
+    /// Linear between two times, constant outside.
+    Ramp {
+        /// Value before `start`.
+        from: f64,
+        /// Value after `end`.
+        to: f64,
+        /// Start of the ramp (s).
+        start: f64,
+        /// End of the ramp (s).
+        end: f64,
+    },
+    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on; constant before, at the
+    /// value for `start`.
+    Sine {
+        /// Amplitude.
+        amplitude: f64,
+        /// Frequency (Hz).
+        frequency: f64,
+        /// Phase (rad).
+        #[serde(default)]
+        phase: f64,
+        /// Mean value.
+        #[serde(default)]
+        offset: f64,
+        /// Start of the oscillation (s).
+        #[serde(default)]
+        start: f64,
+    },
+    /// Points (time, value), linear between them, constant outside; times must increase.
+    Table(Vec<(f64, f64)>),
+}
+
+impl TimeFunction {
+    /// Returns the value at a time.
+    pub fn value(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant(x) => *x,
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => from + (to - from) * ((t - start) / (end - start)).clamp(0.0, 1.0),
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                offset,
+                start,
+            } => offset + amplitude * (TAU * frequency * (t - start).max(0.0) + phase).sin(),
+            Self::Table(points) => table::value(points, t),
+        }
+    }
+
+    /// Returns the derivative at a time, from the left at a kink of a ramp or a table, from the right at the start of a sine.
+    pub fn rate(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => {
+                if t > *start && t <= *end {
+                    (to - from) / (end - start)
+                } else {
+                    0.0
+                }
+            }
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                start,
+                ..
+            } => {
+                if t < *start {
+                    return 0.0;
+                }
+                TAU * frequency * amplitude * (TAU * frequency * (t - start) + phase).cos()
+            }
+            Self::Table(points) => table::slope(points, t),
+        }
+    }
+
+    /// Returns the period of a sine (s).
+    pub fn period(&self) -> Option<f64> {
+        match self {
+            Self::Sine { frequency, .. } if *frequency > 0.0 => Some(1.0 / frequency),
+            _ => None,
+        }
+    }
+
+    /// Returns the error in the numbers, if any.
+    pub fn fault(&self) -> Option<String> {
+        let finite = |values: &[f64]| values.iter().all(|v| v.is_finite());
+        match self {
+            Self::Constant(x) if !x.is_finite() => {
+                Some(format!("a constant must be finite, got {x}"))
+            }
+            Self::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => {
+                if !finite(&[*from, *to, *start, *end]) {
+                    Some("the numbers of a ramp must be finite".into())
+                } else if end <= start {
+                    Some(format!(
+                        "a ramp must end after it starts, got start {start} and end {end}"
+                    ))
+                } else {
+                    None
+                }
+            }
+            Self::Sine {
+                amplitude,
+                frequency,
+                phase,
+                offset,
+                start,
+            } => {
+                if !finite(&[*amplitude, *frequency, *phase, *offset, *start]) {
+                    Some("the numbers of a sine must be finite".into())
+                } else if *frequency < 0.0 {
+                    Some(format!("a frequency must not be negative, got {frequency}"))
+                } else {
+                    None
+                }
+            }
+            Self::Table(points) => {
+                if points.is_empty() {
+                    Some("a table needs at least one (time, value)".into())
+                } else if !points.iter().all(|p| finite(&[p.0, p.1])) {
+                    Some("the numbers of a table must be finite".into())
+                } else if points.windows(2).any(|w| w[1].0 <= w[0].0) {
+                    Some(
+                        "the times of a table must rise; for a jump give two times that are close"
+                            .into(),
+                    )
+                } else {
+                    None
+                }
+            }
+            Self::Constant(_) => None,
+        }
+    }
+
+    /// Returns the same function, shifted to `by` seconds later.
+    pub fn delayed(&self, by: f64) -> Self {
+        let mut later = self.clone();
+        match &mut later {
+            Self::Constant(_) => {}
+            Self::Ramp { start, end, .. } => (*start, *end) = (*start + by, *end + by),
+            Self::Sine { start, .. } => *start += by,
+            Self::Table(points) => points.iter_mut().for_each(|p| p.0 += by),
+        }
+        later
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_the_derivatives() {
+        let functions = [
+            TimeFunction::Ramp {
+                from: 1.0,
+                to: 3.0,
+                start: 0.5,
+                end: 1.5,
+            },
+            TimeFunction::Sine {
+                amplitude: 2.0,
+                frequency: 0.3,
+                phase: 0.2,
+                offset: 1.0,
+                start: 0.1,
+            },
+            TimeFunction::Table(vec![(0.0, 0.0), (0.7, 2.0), (1.4, -1.0)]),
+        ];
+        for f in functions {
+            for t in [0.6, 0.95, 1.2] {
+                let e = 1e-6;
+                let difference = (f.value(t + e) - f.value(t - e)) / (2.0 * e);
+                assert!((difference - f.rate(t)).abs() < 1e-6, "{f:?} at {t}");
+            }
+            assert!(f.fault().is_none());
+        }
+    }
+
+    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on with.
+    #[test]
+    fn rates_at_kinks_are_those_of_the_documented_side() {
+        let ramp = TimeFunction::Ramp {
+            from: 1.0,
+            to: 3.0,
+            start: 0.5,
+            end: 1.5,
+        };
+        let table = TimeFunction::Table(vec![(0.5, 1.0), (1.5, 3.0)]);
+        for f in [ramp, table] {
+            let rates = [0.4, 0.5, 0.6, 1.5, 1.6].map(|t| f.rate(t));
+            assert_eq!(rates, [0.0, 0.0, 2.0, 2.0, 0.0], "{f:?}");
+        }
+        let sine = TimeFunction::Sine {
+            amplitude: 2.0,
+            frequency: 1.0 / TAU,
+            phase: 0.0,
+            offset: 1.0,
+            start: 0.5,
+        };
+        assert_eq!([0.4, 0.5].map(|t| sine.rate(t)), [0.0, 2.0]);
+        assert_eq!([0.4, 0.5].map(|t| sine.value(t)), [1.0, 1.0]);
+    }
+
+    #[test]
+    fn bad_functions_say_why() {
+        assert!(
+            TimeFunction::Table(vec![(0.0, 1.0), (0.0, 2.0)])
+                .fault()
+                .is_some()
+        );
+        assert!(
+            TimeFunction::Ramp {
+                from: 0.0,
+                to: 1.0,
+                start: 1.0,
+                end: 1.0
+            }
+            .fault()
+            .is_some()
+        );
+        assert!(TimeFunction::Constant(f64::NAN).fault().is_some());
+    }
+}
