@@ -270,7 +270,7 @@ mod tests {
         s.drive(0, [Dof::Fixed, Dof::Free, Dof::Fixed]);
         s.state.bodies.velocity[0] = Vector2::new(2.0, 3.0);
         s.state.bodies.spin[0].x = 5.0;
-        let pushes = pushes(s, &[(Vector2::new(-7.0, 11.0), Vector1::new(-13.0))]);
+        let pushes = pushes(&s, &[(Vector2::new(-7.0, 11.0), Vector1::new(-13.0))]);
         let pushes: Vec<(u32, f64)> = pushes.iter().map(|p| (p.body, p.work)).collect();
         assert_eq!(pushes, [(0, 7.0 * 2.0 + 13.0 * 5.0)]);
     }

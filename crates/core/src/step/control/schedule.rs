@@ -100,6 +100,7 @@ mod tests {
     use crate::bodies::TimeFunction;
     use crate::geometry::space::Dim2;
     use crate::laws::sample_laws::interface;
+    use crate::step::Simulation;
 
     /// A state that was read is refused where it names a phase, a body, an axis or a parameter that the case has not. The case has no phases,
     /// a body that is driven along x and y, and a law with one parameter.
