@@ -239,7 +239,7 @@ fn modules_of_the_core_name_those_below_them() {
     assert!(seen.contains(&("step".to_owned(), "laws".to_owned())));
 }
 
-/// The list of the stages of a step names nothing that only some scenes have: that acts at its stages.
+/// The list of the stages of a step names nothing that only some scenes have: that acts at stages.
 #[test]
 fn the_stepper_names_no_feature() {
     let text = read("crates/core/src/step/one_step.rs").to_lowercase();
