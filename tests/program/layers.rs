@@ -162,7 +162,7 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 17] = [
+const MODULES: [&str; 18] = [
     "out_of_memory",
     "huge_pages",
     "threads",
@@ -180,6 +180,7 @@ const MODULES: [&str; 17] = [
     "heat",
     "step",
     "process",
+    "view",
 ];
 
 /// Modules of the core that a file's code names.

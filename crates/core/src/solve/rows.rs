@@ -4,7 +4,8 @@ use super::colour::Order;
 use super::error::{Scale, Sums};
 use super::form::{ContactForm, ContactSolution};
 use super::row::{
-    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, SolverBody, Update, Visit, visit,
+    self, Free, Kind, Load, Measure, Parts, RigidBodies, Row, SolverBodies, SolverBody, Update,
+    Visit, visit,
 };
 use crate::geometry::space::Space;
 use crate::threads::{fill, fill_places, map_ranges, pays};
@@ -131,7 +132,8 @@ impl<S: Space, K: Kind<S>> Rows<S, K> {
     /// Sorts the rows by colour.
     pub fn sort(&mut self, movable: &[bool]) {
         let pushed = self.pairs().to_vec();
-        self.order.update(pushed.len(), |k| pushed[k], movable, false);
+        self.order
+            .update(pushed.len(), |k| pushed[k], movable, false);
         let sorted = self.order.sequence().iter();
         self.rows = sorted.map(|k| self.rows[*k as usize].clone()).collect();
         self.sorted = true;

@@ -1,9 +1,9 @@
 //! Fields of grains and contacts as columns.
 
 use crate::contact::Contact;
-use crate::fields::{Field, FieldList, GrainPart, Value, orientation, removed};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
+use crate::step::fields::{Field, FieldList, GrainPart, Value, orientation, removed};
 
 /// How the values of a field are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,7 +9,6 @@ use super::systems::{Seen, SystemView};
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, StepSizeDiagnostics};
 use crate::energy::Energy;
-use crate::fields::GrainPart;
 use crate::geometry::convex::Core;
 use crate::geometry::periodic::Periodic;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -19,6 +18,7 @@ use crate::momentum::Momentum;
 use crate::process::expansion::ThermalExpansion;
 use crate::solve;
 use crate::step::control::{Begun, GravityDrive};
+use crate::step::fields::GrainPart;
 use crate::step::{Options, Simulation};
 use std::fmt::Debug;
 

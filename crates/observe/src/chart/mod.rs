@@ -225,8 +225,8 @@ impl Chart {
         )
     }
 
-    /// The chart as it is drawn: with the points of the lines across the other series; without others
-    /// there are no lines.
+    /// The chart as it is drawn: with the points of the lines across the other series; without
+    /// others there are no lines.
     pub fn with_lines(&self) -> Self {
         let line = |s: &&Series| matches!(s.source, Source::Level(_) | Source::Place(_));
         let others = self.series.iter().filter(|s| !line(s));
