@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 const COLUMNS: usize = 100;
 
 /// Folders and files, from the root of the repository.
-const CHECKED: [&str; 12] = [
+const CHECKED: [&str; 13] = [
+    "docs",
     "crates/math",
     "crates/view",
     "plugins",
@@ -50,6 +51,7 @@ fn long_lines(text: &str, rust: bool) -> Vec<usize> {
         };
         let fence = said.trim_start().starts_with("```");
         in_code ^= fence;
+        let in_code = in_code || (!rust && line.starts_with("    "));
         let whole = ["|", "#", "<", "[", "!["]
             .iter()
             .any(|s| said.trim_start().starts_with(s));
