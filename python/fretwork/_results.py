@@ -69,6 +69,12 @@ class Results:
         return told
 
     @property
+    def quantities(self) -> dict[str, dict[str, Any]]:
+        """What each path of the summary is, ``*`` standing for the places of a list: ``unit`` (``"1"`` for pure numbers, none of
+        texts), ``doc``, ``role``, ``topic``, ``label``, and ``estimate`` with half-widths by cause where they were estimated."""
+        return {entry["path"]: entry for entry in self.summary.get("quantities", [])}
+
+    @property
     def trustworthy(self) -> bool:
         """Whether all checks of the run passed."""
         return bool(self.summary["trustworthy"])

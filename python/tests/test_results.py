@@ -47,6 +47,8 @@ def test_fields_over_time_have_units(results):
 def test_the_summary_and_the_case(results, shear):
     assert results.summary["steps"] == 50 and results.case == shear.text
     assert results.trustworthy == results.summary["trustworthy"] and isinstance(results.warnings, list)
+    friction = results.quantities["energy.friction"]
+    assert friction["unit"] in ("J", "J/m") and friction["doc"] and friction["role"] in ("secondary", "detail")
     (results.folder / "summary.json").unlink()
     with pytest.raises(InputError, match="end of a run"):
         results.summary

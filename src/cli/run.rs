@@ -107,11 +107,16 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         ));
     }
     report(&options.out, args);
-    if let Some(why) = summary.stopped.as_ref().filter(|_| summary.interrupted) {
+    if let Some(why) = summary
+        .run
+        .stopped
+        .as_ref()
+        .filter(|_| summary.run.interrupted)
+    {
         let command = again::command(&["--resume"]);
         return Err(Failure::Failed(format!("{why}; to go on:\n  {command}")));
     }
-    strict(args, summary.reasons.first().map(String::as_str))
+    strict(args, summary.run.reasons.first().map(String::as_str))
 }
 
 /// Makes the report, unless it is not wanted.

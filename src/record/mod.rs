@@ -4,15 +4,14 @@ pub mod run;
 
 pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
-    biaxial, choice, code, coordination, first_bodies, fretting, friction, jump, layer, loops,
-    measure, mesh_fields, observer, output, placement, scars, scatter, solving, statistics, steady,
-    strain, stress, tractions,
+    biaxial, choice, circuit, code, coordination, first_bodies, fretting, friction,
+    friction_report, heat, jump, layer, loops, measure, mesh_fields, observer, output, placement,
+    quantity, scars, scatter, solving, statistics, steady, strain, stress, tractions, warning,
 };
-pub use fretwork_store::{
-    checkpoint, fclib, meshes, results, series, shapes, summary, views, warnings,
-};
+pub use fretwork_store::{checkpoint, fclib, meshes, results, series, shapes, summary, views};
 pub use fretwork_view::picture;
 
+pub use fretwork_observe::run_state::Missed;
 pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};
 pub use run::{
@@ -20,4 +19,3 @@ pub use run::{
     statistics_columns, stopped,
 };
 pub use summary::Summary;
-pub use warnings::Missed;

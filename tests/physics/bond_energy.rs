@@ -6,7 +6,8 @@ use fretwork::laws::bench::Bench;
 use fretwork::record::Observed;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
-use fretwork_observe::summary::{BondEnergies, Reference, Summary};
+use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
+use fretwork_observe::summary::Summary;
 use std::path::Path;
 
 /// Of the MAC bonds of the verification cases: w (J/m^2), u_0 = sqrt(w/C) (m), speed of the grip
@@ -52,7 +53,7 @@ fn pulled(case: &str, opening: f64, sets: &[&str]) -> (BondEnergies, Summary) {
     ];
     all.extend(sets.iter().map(|s| (*s).to_owned()));
     let summary = summary(case, &all);
-    let found = summary.fracture.as_ref().unwrap();
+    let found = summary.found.get::<FractureSummary>().unwrap();
     assert_eq!(found.interfaces.len(), 1, "{found:?}");
     let bond = found.interfaces[0].clone();
     assert_eq!((bond.broken, bond.torn), (1, 0), "{bond:?}");
@@ -141,15 +142,19 @@ fn a_slow_pull_releases_what_the_law_declares() {
             assert_eq!(bond.broken_at_once, Some(0.0));
             let slide = bond.slide_mean.unwrap() * CRITICAL / d;
             assert!((slide - 1.0).abs() < 1e-2, "{case}: slide {slide}");
-            let whole = summary.fracture.as_ref().unwrap().released_over_declared;
+            let whole = summary
+                .found
+                .get::<FractureSummary>()
+                .unwrap()
+                .released_over_declared;
             assert_eq!(whole, Some(ratio));
-            assert!(warning(&summary).is_none(), "{:?}", summary.warnings);
+            assert!(warning(&summary).is_none(), "{:?}", summary.run.warnings);
         }
     }
 }
 
 fn warning(summary: &Summary) -> Option<&String> {
-    let mut warnings = summary.warnings.iter();
+    let mut warnings = summary.run.warnings.iter();
     warnings.find(|w| w.starts_with("BONDS NOT RESOLVED"))
 }
 
@@ -170,7 +175,7 @@ fn a_bond_pulled_in_large_steps_releases_what_the_overshoot_says() {
             );
             let largest = bond.slide_largest.unwrap();
             assert!((largest / criticals - 1.0).abs() < 1e-2, "{largest}");
-            let text = warning(&summary).unwrap_or_else(|| panic!("{:?}", summary.warnings));
+            let text = warning(&summary).unwrap_or_else(|| panic!("{:?}", summary.run.warnings));
             assert!(text.contains("take a smaller time.step"), "{text}");
         }
     }
@@ -210,7 +215,7 @@ fn bonds_that_break_within_one_step_are_counted() {
     let exact = 1.0004f64.powi(2);
     let ratio = bond.released_over_declared.unwrap();
     assert!((ratio / exact - 1.0).abs() < 2e-3, "{ratio} for {exact}");
-    assert!(warning(&summary).is_none(), "{:?}", summary.warnings);
+    assert!(warning(&summary).is_none(), "{:?}", summary.run.warnings);
     // With friction the strength depends on the pressure: there is nothing to compare with.
     let pressed = [
         brittle[0],
@@ -220,7 +225,11 @@ fn bonds_that_break_within_one_step_are_counted() {
     ];
     let (bond, summary) = pulled("bond_mode_1", 1e-7, &pressed);
     assert!(bond.reference == Reference::SlowPull && !bond.comparable);
-    let whole = summary.fracture.as_ref().unwrap().released_over_declared;
+    let whole = summary
+        .found
+        .get::<FractureSummary>()
+        .unwrap()
+        .released_over_declared;
     assert_eq!(whole, None);
 }
 
@@ -324,7 +333,7 @@ fn turned<S: Dimensional + Observed>(
     );
     let loaded = load_text("turned.ron", &text, Path::new("."), &without_files());
     let summary = run::<S>(&loaded.unwrap_or_else(|e| panic!("{e}\n{text}")));
-    let found = summary.fracture.as_ref().unwrap();
+    let found = summary.found.get::<FractureSummary>().unwrap();
     (found.interfaces[0].clone(), found.warning())
 }
 

@@ -99,7 +99,12 @@ fn plane_shear_has_the_friction_of_its_inertial_number() {
         "measures.bulk.start=1.2",
     ];
     let summary = finished("plane_shear", &sets, |_| {});
-    let m = |name: &str| summary.measures[&format!("bulk_{name}")];
+    let m = |name: &str| {
+        summary
+            .found
+            .number(&format!("measures.bulk_{name}"))
+            .unwrap()
+    };
     let (i, mu, phi, p) = (m("I"), m("mu"), m("phi"), m("p"));
     let (expected, solid) = (0.262 + 0.878 / (1.0 + 0.57 / i), 0.813 - 0.304 * i);
     let averaging = m("mu_half_width");
@@ -117,7 +122,8 @@ fn plane_shear_has_the_friction_of_its_inertial_number() {
         "{mu} at {i}"
     );
     assert!((phi - solid).abs() < 0.008, "{phi} at {i}");
-    let phases: Vec<_> = summary.phases.iter().map(|p| p.name.as_str()).collect();
+    let names = (0..).map_while(|k| summary.found.text(&format!("phases.{k}.name")));
+    let phases: Vec<&str> = names.collect();
     assert_eq!(phases, ["press", "shear"]);
 }
 
@@ -148,7 +154,7 @@ fn a_drum_has_a_steady_slope_over_a_turning_bed() {
         }
         assert!(out.join("centre.png").exists() && out.join("slope.png").exists());
     });
-    let slope = summary.measures["slope"].to_degrees();
+    let slope = summary.found.number("measures.slope").unwrap().to_degrees();
     println!("slope {slope:.1} degrees");
     assert!((12.0..35.0).contains(&slope), "{slope}");
     // Slices: y, solid fraction, velocity along the slope and across, spin.
@@ -252,7 +258,8 @@ fn end_walls_make_a_narrow_drum_steeper() {
             more,
         ];
         let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets.concat());
-        scene::finished(&loaded, built, |_| {}).measures["slope"].to_degrees()
+        let summary = scene::finished(&loaded, built, |_| {});
+        summary.found.number("measures.slope").unwrap().to_degrees()
     };
     let walls = angle(&[]);
     let endless = angle(&["bodies.ends.vanishes=1e-6", "periodic=(y:0.043)"]);
@@ -463,6 +470,7 @@ fn a_first_body_that_is_a_ball_is_named() {
 #[test]
 fn collapse_on_teeth_sees_its_contacts_in_time() {
     let summary = finished("collapse", &["output.frames=0"], |_| {});
-    assert_eq!((summary.step_size.late, summary.step_size.passed), (0, 0));
-    assert!(summary.trustworthy, "{:?}", summary.reasons);
+    let count = |name: &str| summary.found.number(&format!("haste.{name}"));
+    assert_eq!((count("late"), count("passed")), (Some(0.0), Some(0.0)));
+    assert!(summary.run.trustworthy, "{:?}", summary.run.reasons);
 }

@@ -2,6 +2,7 @@
 //! under gravity, stress, and energies by place against the ledger.
 
 use crate::scene;
+use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::measure::measures;
 use fretwork::record::run::write_outputs;
@@ -114,9 +115,8 @@ fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> 
         let mut kept = first.iter();
         column.retain(|_| *kept.next().unwrap_or(&false));
     }
-    let mut summary = Summary::default();
-    observers.summarise(&end, &mut summary);
-    let regime = summary.findings["layer_regime"].clone();
+    let found = observers.report(&end);
+    let regime = found.text("findings.layer_regime").unwrap().to_owned();
     let _ = std::fs::remove_dir_all(out);
     Seen {
         row,
@@ -441,8 +441,10 @@ fn energies_by_place_are_those_of_the_ledger() {
     ];
     let mut table = BTreeMap::new();
     let summary = fretting(&sets, |out| table = read(&out.join("layer_energy.csv")));
-    let (e, m) = (&summary.energy, &summary.measures);
-    assert!(summary.broken > 0 && e.friction > 0.0);
+    let found = &summary.found;
+    let e = found.get::<Energy>().unwrap();
+    let m = |name: &str| found.number(&format!("measures.layer_{name}")).unwrap();
+    assert!(found.number("broken").unwrap() > 0.0 && e.friction > 0.0);
     let booked = [
         ("friction", e.friction),
         ("impact", e.impact + e.adhesion),
@@ -451,11 +453,7 @@ fn energies_by_place_are_those_of_the_ledger() {
         ("correction", e.correction),
     ];
     for (name, value) in booked {
-        close(
-            m[&format!("layer_dissipated_{name}")],
-            value,
-            1e-12 * e.scale,
-        );
+        close(m(&format!("dissipated_{name}")), value, 1e-12 * e.scale);
         // Five places, then the bins.
         let column = &table[name];
         close(column[..5].iter().sum(), value, 1e-12 * e.scale);
@@ -463,15 +461,15 @@ fn energies_by_place_are_those_of_the_ledger() {
     }
     let places = ["grain_grain", "rail_grain", "wheel_grain"];
     close(
-        places.iter().map(|p| m[&format!("layer_share_{p}")]).sum(),
+        places.iter().map(|p| m(&format!("share_{p}"))).sum(),
         1.0,
         1e-12,
     );
-    let forces = m["layer_mu_from_forces"];
-    close(m["layer_mu_from_dissipation"], forces, 1e-9 * forces.abs());
-    let mus: f64 = places.iter().map(|p| m[&format!("layer_mu_{p}")]).sum();
-    close(mus + m["layer_mu_kept"], forces, 1e-9 * forces.abs());
-    assert!(summary.findings.contains_key("layer_regime"));
+    let forces = m("mu_from_forces");
+    close(m("mu_from_dissipation"), forces, 1e-9 * forces.abs());
+    let mus: f64 = places.iter().map(|p| m(&format!("mu_{p}"))).sum();
+    close(mus + m("mu_kept"), forces, 1e-9 * forces.abs());
+    assert!(found.text("findings.layer_regime").is_some());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use crate::scene;
 use fretwork::geometry::space::Dim2;
+use fretwork::record::heat::HeatChecks;
 use fretwork::record::statistics::Table;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary, run_observers};
@@ -23,27 +24,32 @@ fn ran((loaded, built): (Loaded, Built<Dim2>)) -> Summary {
     scene::finished(&loaded, built, |_| {})
 }
 
+fn residual(summary: &Summary) -> f64 {
+    let found = &summary.found;
+    found.number("measures.heat_residual_relative").unwrap()
+}
+
 /// Warnings of a category.
 fn of<'a>(summary: &'a Summary, category: &str) -> Vec<&'a String> {
     let start = format!("{category}: ");
-    let all = summary.warnings.iter();
+    let all = summary.run.warnings.iter();
     all.filter(|w| w.starts_with(&start)).collect()
 }
 
 #[test]
 fn an_account_of_heat_that_does_not_close_is_a_reason() {
     let summary = ran(built("half_space", &[]));
-    assert!(summary.measures["heat_residual_relative"] < 1e-9);
-    assert!(summary.trustworthy, "{:?}", summary.warnings);
+    assert!(residual(&summary) < 1e-9);
+    assert!(summary.run.trustworthy, "{:?}", summary.run.warnings);
     // A joule that nothing put in, to the ten that flow.
     let (loaded, mut built) = built("half_space", &[]);
     let heat = built.simulation.state.heat.as_mut().unwrap();
     heat.ledger.imposed += 1.0;
     let summary = ran((loaded, built));
-    let off = summary.measures["heat_residual_relative"];
+    let off = residual(&summary);
     assert!((off - 1.0 / 11.0).abs() < 1e-6, "{off}");
-    assert!(!summary.trustworthy);
-    let reasons: Vec<&String> = summary.reasons.iter().collect();
+    assert!(!summary.run.trustworthy);
+    let reasons: Vec<&String> = summary.run.reasons.iter().collect();
     assert_eq!(reasons, of(&summary, "HEAT DOES NOT ADD UP"));
     assert!(reasons[0].contains("9.1e-2"), "{reasons:?}");
 }
@@ -51,13 +57,13 @@ fn an_account_of_heat_that_does_not_close_is_a_reason() {
 #[test]
 fn a_transport_law_without_heat_is_told_once() {
     let with = ran(built("two_half_spaces", &["time.end=1e-4"]));
-    assert!(of(&with, "NO HEAT").is_empty(), "{:?}", with.warnings);
+    assert!(of(&with, "NO HEAT").is_empty(), "{:?}", with.run.warnings);
     let without = ["time.end=1e-4", "heat=None"];
     let summary = ran(built("two_half_spaces", &without));
     let told = of(&summary, "NO HEAT");
     assert_eq!(told.len(), 1);
     assert!(told[0].contains("transport law of `contact`") && told[0].contains("`heat: ()`"));
-    assert!(summary.trustworthy, "{:?}", summary.reasons);
+    assert!(summary.run.trustworthy, "{:?}", summary.run.reasons);
 }
 
 #[test]
@@ -67,7 +73,7 @@ fn half_spaces_that_heat_reaches_the_depth_of_are_told() {
         let depth = depth.map(|d: f64| d * reach);
         let set = format!("heat.bodies.rail.store.depth={depth:?}");
         let summary = ran(built("half_space", &[&set]));
-        let found = &summary.heat.as_ref().unwrap().half_spaces[0];
+        let found = &summary.found.get::<HeatChecks>().unwrap().half_spaces[0];
         assert!((found.reach / reach - 1.0).abs() < 1e-9);
         let given = depth.unwrap_or(6.0 * reach);
         // To the next point of the grid.
@@ -88,7 +94,7 @@ fn heat_that_contacts_conduct_beside_half_spaces_is_told() {
         "heat.bodies.floor.store.over=[(-0.5e-3, 1.5e-3)]",
     ];
     let summary = ran(built("two_half_spaces", &sets));
-    let spaces = &summary.heat.as_ref().unwrap().half_spaces;
+    let spaces = &summary.found.get::<HeatChecks>().unwrap().half_spaces;
     let shares: Vec<f64> = spaces.iter().map(|h| h.outside).collect();
     assert!((shares[0] - 0.5).abs() < 1e-9 && shares[1] == 0.0);
     let told = of(&summary, "HEAT OUT OF RANGE");
@@ -126,8 +132,7 @@ fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
         uncertainty: &Uncertainty::default(),
         wall: Duration::ZERO,
     };
-    let mut summary = Summary::default();
-    observers.summarise(&end, &mut summary);
+    let found = observers.report(&end);
     let floor = s.body_named("floor").unwrap() as u32;
     let (mut beside, mut all) = (0.0, 0.0);
     for contact in &s.state.network.contacts {
@@ -139,7 +144,7 @@ fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
         }
     }
     assert!(beside > 0.0 && beside < all);
-    let found = summary.heat.unwrap().half_spaces[0].outside;
+    let found = found.number("heat.half_spaces.0.outside").unwrap();
     assert!(
         (found - beside / all).abs() < 1e-9,
         "{found} {beside} {all}"

@@ -29,6 +29,7 @@ mod layers;
 mod line_length;
 mod material_laws;
 mod plugin_loading;
+mod quantities;
 mod report;
 mod results;
 mod resume;

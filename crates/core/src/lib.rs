@@ -65,6 +65,7 @@ pub mod program;
 pub mod solve;
 pub mod step;
 pub mod threads;
+pub mod unit;
 pub mod view;
 pub mod wear;
 

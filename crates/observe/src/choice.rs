@@ -1,34 +1,37 @@
 //! Statistics of the solvers that `auto` chose during a run.
 
+use super::quantity::unit::ONE;
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::solve::{Attempt, Report, SolvePath};
 use serde::{Deserialize, Serialize};
 
-/// Counts over the steps of a run.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct SolverStats {
-    /// Steps in which Newton or the interior point solver was tried.
-    pub factorised: u64,
-    /// Steps in which Newton was tried.
-    pub newton_tried: u64,
-    /// Steps in which Newton converged.
-    pub newton_ended: u64,
-    /// Steps in which the interior point solver was tried.
-    pub interior_tried: u64,
-    /// Steps in which it converged.
-    pub interior_ended: u64,
-    /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the steps in which
-    /// either solver was tried.
-    pub hyperstaticity_mean: f64,
-    /// Mean number of NLGS iterations before they were tried.
-    pub sweeps_before_mean: f64,
-    /// Steps in which NLGS converged after Newton would have been tried on other contact sets; on hyperstatic
-    /// sets it is tried later.
-    pub swept_longer: u64,
-    /// Steps that stayed with NLGS because Newton does not support friction against rotation.
-    pub newton_unserved: u64,
-    /// Steps that stayed with NLGS because there were too many contacts to factorise.
-    pub too_large: u64,
+crate::described! {
+    /// Counts over the steps of a run.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct SolverStats {
+        /// Steps in which Newton or the interior point solver was tried.
+        pub factorised: u64 => ONE,
+        /// Steps in which Newton was tried.
+        pub newton_tried: u64 => ONE,
+        /// Steps in which Newton converged.
+        pub newton_ended: u64 => ONE,
+        /// Steps in which the interior point solver was tried.
+        pub interior_tried: u64 => ONE,
+        /// Steps in which it converged.
+        pub interior_ended: u64 => ONE,
+        /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the steps in which
+        /// either solver was tried.
+        pub hyperstaticity_mean: f64 => ONE,
+        /// Mean number of NLGS iterations before they were tried.
+        pub sweeps_before_mean: f64 => ONE,
+        /// Steps in which NLGS converged after Newton would have been tried on other contact sets; on hyperstatic
+        /// sets it is tried later.
+        pub swept_longer: u64 => ONE,
+        /// Steps that stayed with NLGS because Newton does not support friction against rotation.
+        pub newton_unserved: u64 => ONE,
+        /// Steps that stayed with NLGS because there were too many contacts to factorise.
+        pub too_large: u64 => ONE,
+    }
 }
 
 impl SolverStats {

@@ -7,10 +7,12 @@ use super::nearest_places::NearestPlaces;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
+use super::quantity::unit::{FORCE, ONE, RADIAN, WORD};
+use super::quantity::{Findings, Role, Topic};
 use super::resolution::{self, Resolution};
 use super::statistics::Column;
-use super::summary::Summary;
 use super::tractions::{SurfaceState, loaded, signed};
+use super::warning::Warning;
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -49,15 +51,17 @@ const LARGE: f64 = 0.02;
 /// up to there (`tests/physics/elastic/soft_strain.rs`); rotations are those against their frame.
 const LARGE_IN_GRAINS: f64 = 0.1;
 
-/// A body in small strain, and how large its strain was.
-#[derive(Clone, Debug, Serialize)]
-pub struct SmallStrain {
-    /// Name of the body; none of grains.
-    pub body: Option<String>,
-    /// Largest principal strain of an element, by its size, at the rows of the statistics.
-    pub strain: f64,
-    /// Largest rotation of an element (rad).
-    pub rotation: f64,
+crate::described! {
+    /// A body in small strain, and how large its strain was.
+    #[derive(Clone, Debug, Serialize)]
+    pub struct SmallStrain {
+        /// Name of the body; none of grains.
+        pub body: Option<String> => WORD,
+        /// Largest principal strain of an element, by its size, at the rows of the statistics.
+        pub strain: f64 => ONE,
+        /// Largest rotation of an element.
+        pub rotation: f64 => RADIAN,
+    }
 }
 
 impl SmallStrain {
@@ -92,13 +96,15 @@ impl SmallStrain {
 /// Share of the largest force of a cell that a cell on the border may carry.
 const BORDER: f64 = 0.01;
 
-/// Largest force on the border of what of a half-space can be loaded.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BorderLoad {
-    /// Name of the body.
-    pub body: String,
-    /// Force on a cell of the border over the largest on a cell.
-    pub share: f64,
+crate::described! {
+    /// Largest force on the border of what of a half-space can be loaded.
+    #[derive(Clone, Debug, PartialEq, Serialize)]
+    pub struct BorderLoad {
+        /// Name of the body.
+        pub body: String => WORD,
+        /// Force on a cell of the border over the largest on a cell.
+        pub share: f64 => ONE,
+    }
 }
 
 impl BorderLoad {
@@ -171,6 +177,39 @@ fn larger(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
     Some([a[0].max(b[0]), a[1].max(b[1])])
 }
 
+impl Deformable {
+    /// Largest strains of what is computed in small strain, and loads on borders, with those of the current state.
+    fn distortions<S: Space>(&self, s: &Simulation<S>) -> (Vec<SmallStrain>, Vec<BorderLoad>) {
+        let (mut strains, mut borders) = (Vec::new(), Vec::new());
+        for (k, name) in self.bodies.iter().enumerate() {
+            let system = s.state.systems.get(k);
+            let now = system.and_then(DynamicalSystem::small_strain);
+            if let Some([strain, rotation]) = larger(self.distortions[k], now) {
+                strains.push(SmallStrain {
+                    body: Some(name.clone()),
+                    strain,
+                    rotation,
+                });
+            }
+            let now = system.and_then(DynamicalSystem::load_at_border);
+            if let Some(share) = now.map(|share| share.max(self.borders[k])) {
+                borders.push(BorderLoad {
+                    body: name.clone(),
+                    share,
+                });
+            }
+        }
+        if let Some([strain, rotation]) = larger(self.grains, strain_of_grains(s)) {
+            strains.push(SmallStrain {
+                body: None,
+                strain,
+                rotation,
+            });
+        }
+        (strains, borders)
+    }
+}
+
 impl<S: Space> Observer<S> for Deformable {
     fn name(&self) -> String {
         "deformable bodies".to_owned()
@@ -198,7 +237,7 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let newton = if S::D == 2 { "N/m" } else { "N" };
+        let newton = FORCE.symbol(S::D);
         let of = |name: &String| {
             [
                 Column::new(name.clone(), "m", "displacement of the held part"),
@@ -249,35 +288,25 @@ impl<S: Space> Observer<S> for Deformable {
         vec!["stress", "slip"]
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        for (k, name) in self.bodies.iter().enumerate() {
-            let system = end.simulation.state.systems.get(k);
-            let now = system.and_then(DynamicalSystem::small_strain);
-            if let Some([strain, rotation]) = larger(self.distortions[k], now) {
-                summary.small_strain.push(SmallStrain {
-                    body: Some(name.clone()),
-                    strain,
-                    rotation,
-                });
-            }
-            let now = system.and_then(DynamicalSystem::load_at_border);
-            if let Some(share) = now.map(|share| share.max(self.borders[k])) {
-                summary.border_loads.push(BorderLoad {
-                    body: name.clone(),
-                    share,
-                });
-            }
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        found.begin(Topic::Run, Role::Diagnostic);
+        let (strains, borders) = self.distortions(end.simulation);
+        if !strains.is_empty() {
+            found.parts::<SmallStrain>("small_strain", &strains, "");
         }
+        if !borders.is_empty() {
+            found.parts::<BorderLoad>("border_loads", &borders, "");
+        }
+        let strains = strains.iter().filter_map(SmallStrain::warning);
+        found.warn(strains.map(|text| Warning::serious("NOT SMALL STRAIN", text)));
+        let borders = borders.iter().filter_map(BorderLoad::warning);
+        found.warn(borders.map(|text| Warning::serious("LOAD AT BORDER", text)));
         let touch = self.resolutions.iter().filter(|r| r.across > 0.0);
-        summary.resolution.extend(touch.cloned());
-        summary.nearest_places = Some(self.nearest).filter(|n| n.contacts > 0);
-        let strain = larger(self.grains, strain_of_grains(end.simulation));
-        if let Some([strain, rotation]) = strain {
-            summary.small_strain.push(SmallStrain {
-                body: None,
-                strain,
-                rotation,
-            });
+        resolution::report(touch.cloned().collect(), found);
+        if self.nearest.contacts > 0 {
+            found.part("nearest_places", &self.nearest, "");
+            let text = self.nearest.warning();
+            found.warn(text.map(|text| Warning::note("NEAREST PLACES", text)));
         }
     }
 
@@ -472,7 +501,7 @@ fn has_tractions<S: Space>(s: &Simulation<S>, system: usize) -> bool {
 /// The contacts of a system as a table. Where a surface touches by its points also pressure and shear.
 fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
     let axes = &["x", "y", "z"][..S::D];
-    let newton = if S::D == 2 { "N/m" } else { "N" };
+    let newton = FORCE.symbol(S::D);
     let mut out: Vec<String> = axes.iter().map(|a| format!("{a} [m]")).collect();
     out.extend(axes.iter().map(|a| format!("force_{a} [{newton}]")));
     out.extend(["normal_force", "tangential_force"].map(|n| format!("{n} [{newton}]")));
@@ -521,4 +550,27 @@ fn traction_chart<S: Space>(s: &Simulation<S>, system: usize, name: &str) -> Cha
         .with(Series::new("shear", curve(1, false)))
         .with(Series::new("shear where it slips", curve(1, true)).style(Style::Markers));
     chart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bodies_that_strain_or_are_loaded_at_their_border_are_told() {
+        let strained = |body: &str, strain, rotation| SmallStrain {
+            body: Some(body.to_owned()),
+            strain,
+            rotation,
+        };
+        let text = strained("bent", 1e-3, 0.3).warning().unwrap();
+        assert!(text.contains("`bent`") && text.contains("strain: Corotational"));
+        assert_eq!(strained("stiff", 1e-3, 1e-3).warning(), None);
+        let loaded = |share| BorderLoad {
+            body: "wide".to_owned(),
+            share,
+        };
+        assert!(loaded(0.5).warning().unwrap().contains("`wide`"));
+        assert_eq!(loaded(1e-3).warning(), None);
+    }
 }

@@ -1,24 +1,26 @@
 //! Wear of the individual first bodies.
 
+use super::quantity::unit::{METRE, VOLUME, WEAR_RATE, WORD};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Wear of a first body.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BodyWear {
-    /// Its name.
-    pub body: String,
-    /// Volume (m^3; m^3/m in 2D).
-    pub volume: f64,
-    /// Mean depth over the worn area (m); null if none of its surfaces recedes.
-    pub depth_mean: Option<f64>,
-    /// Largest depth (m); null if none of its surfaces recedes.
-    pub depth_max: Option<f64>,
-    /// Specific wear rate k = V/(P s) (m^3/(N m), also in 2D, where volume and force are both per metre of
-    /// depth); null without a friction test.
-    pub specific_rate: Option<f64>,
+crate::described! {
+    /// Wear of a first body.
+    #[derive(Clone, Debug, PartialEq, Serialize)]
+    pub struct BodyWear {
+        /// Its name.
+        pub body: String => WORD,
+        /// Volume.
+        pub volume: f64 => VOLUME,
+        /// Mean depth over the worn area; null if none of its surfaces recedes.
+        pub depth_mean: Option<f64> => METRE,
+        /// Largest depth; null if none of its surfaces recedes.
+        pub depth_max: Option<f64> => METRE,
+        /// Specific wear rate k = V/(P s); null without a friction test.
+        pub specific_rate: Option<f64> => WEAR_RATE,
+    }
 }
 
 /// What each first body lost: volume and depths of its scars. A friction test adds the specific wear rate.

@@ -1,6 +1,8 @@
 //! Evaluation of all cycles of a fretting test: sliding regime, and wear against dissipated energy.
 
 use super::friction::Cycle;
+use super::quantity::part;
+use super::quantity::unit::{ENERGY, VOLUME, WEAR_PER_ENERGY, WORD};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -54,27 +56,31 @@ impl Regime {
     }
 }
 
-/// A ratio of sums over cycles with its 95 % confidence interval.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Slope {
-    /// The ratio.
-    pub value: f64,
-    /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
-    pub half_width: Option<f64>,
+crate::described! {
+    /// A ratio of sums over cycles with its 95 % confidence interval.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+    pub struct Slope {
+        /// The ratio.
+        pub value: f64 => WEAR_PER_ENERGY,
+        /// Half-width of its interval, by the jackknife over cycles; `None` for one cycle.
+        pub half_width: Option<f64> => WEAR_PER_ENERGY,
+    }
 }
 
-/// Result of a fretting test.
-#[derive(Clone, Debug, Serialize)]
-pub struct Outcome {
-    /// Regime over all complete cycles.
-    pub regime: Regime,
-    /// Energy dissipated in all complete cycles, the sum of E_d (J; J/m in 2D), including cycles jumped over.
-    pub energy: f64,
-    /// Volume worn off first bodies in these cycles (m^3; m^3/m).
-    pub wear_volume: f64,
-    /// Slope alpha of wear volume against cumulative energy (m^3/J); `None` without wear. E_d is the area of
-    /// the loop: if bodies also collide or move normally, the energy dissipated by friction alone is smaller.
-    pub alpha: Option<Slope>,
+crate::described! {
+    /// Result of a fretting test.
+    #[derive(Clone, Debug, Serialize)]
+    pub struct Outcome {
+        /// Regime over all complete cycles.
+        pub regime: Regime => WORD,
+        /// Energy dissipated in all complete cycles, the sum of E_d, including cycles jumped over.
+        pub energy: f64 => ENERGY,
+        /// Volume worn off first bodies in these cycles.
+        pub wear_volume: f64 => VOLUME,
+        /// Slope alpha of wear volume against cumulative energy; `None` without wear. E_d is the area of
+        /// the loop: if bodies also collide or move normally, the energy dissipated by friction alone is smaller.
+        pub alpha: Option<Slope> = part::<Slope>(),
+    }
 }
 
 impl Outcome {

@@ -3,6 +3,7 @@
 use super::fretting::Regime;
 use super::layer::Balance;
 use super::loops::Loop;
+use super::quantity::unit::{ENERGY, FORCE, METRE, ONE, VOLUME, WORD};
 use super::scatter::{self, Scatter};
 use super::steady::BLOCKS;
 use fretwork_core::process::cycle::CycleClock;
@@ -23,50 +24,51 @@ pub struct Sample {
     pub work: f64,
 }
 
-/// One cycle, or the evaluated part of the run if there are no cycles.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Cycle {
-    /// Number, from 1.
-    pub cycle: u32,
-    /// Whether it was completed.
-    pub complete: bool,
-    /// Work of the tangential force over the cycle, E_d (J; J/m in 2D).
-    pub work: f64,
-    /// Mean normal force (N; N/m).
-    pub normal_force: f64,
-    /// Largest tangential force (N; N/m).
-    pub tangential_amplitude: f64,
-    /// Length of the sliding path (m).
-    pub path: f64,
-    /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from forces; 0 if the
-    /// body was not pressed.
-    pub friction_coefficient: f64,
-    /// (dissipation + change of stored energy - other work) / integral of P |d delta|: from the energy
-    /// ledger; the other work is that of the driven bodies, see [`super::layer`].
-    pub friction_from_dissipation: f64,
-    /// Bonds broken in the cycle.
-    pub broken: u64,
-    /// Damage ratio at the end of the cycle.
-    pub damage_ratio: f64,
-    /// A = E_d / (4 Q delta).
-    pub energy_ratio: f64,
-    /// Half the stroke, delta* (m).
-    pub amplitude: f64,
-    /// Half of the loop's width at Q = 0, the sliding amplitude (m).
-    pub sliding: f64,
-    /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
-    pub stick_ratio: f64,
-    /// Mean of |Q|/P at the reversals of the motion.
-    pub reversal_ratio: f64,
-    /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal; 0 before the first reversal.
-    pub plateau_ratio: f64,
-    /// Partial or gross slip, from the energy ratio.
-    pub regime: Regime,
-    /// Volume worn off first bodies (m^3; m^3/m in 2D).
-    pub wear_volume: f64,
-    /// Number of further cycles that it represents, see [`fretwork_core::wear::jump`]: wear and damage are of
-    /// all of them, the rest is of one.
-    pub jumped: u32,
+crate::described! {
+    /// One cycle, or the evaluated part of the run if there are no cycles.
+    #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+    pub struct Cycle {
+        /// Number, from 1.
+        pub cycle: u32 => ONE,
+        /// Whether it was completed.
+        pub complete: bool => WORD,
+        /// Work of the tangential force over the cycle, E_d.
+        pub work: f64 => ENERGY,
+        /// Mean normal force.
+        pub normal_force: f64 => FORCE,
+        /// Largest tangential force.
+        pub tangential_amplitude: f64 => FORCE,
+        /// Length of the sliding path.
+        pub path: f64 => METRE,
+        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from forces; 0 if the
+        /// body was not pressed.
+        pub friction_coefficient: f64 => ONE,
+        /// From the energy ledger: (dissipation + change of stored energy - other work of the driven bodies) over the
+        /// integral of P |d delta|.
+        pub friction_from_dissipation: f64 => ONE,
+        /// Bonds broken in the cycle.
+        pub broken: u64 => ONE,
+        /// Damage ratio at the end of the cycle.
+        pub damage_ratio: f64 => ONE,
+        /// A = E_d / (4 Q delta).
+        pub energy_ratio: f64 => ONE,
+        /// Half the stroke, delta*.
+        pub amplitude: f64 => METRE,
+        /// Half of the loop's width at Q = 0, the sliding amplitude.
+        pub sliding: f64 => METRE,
+        /// Fraction of the stroke without sliding: 1 - sliding/amplitude.
+        pub stick_ratio: f64 => ONE,
+        /// Mean of |Q|/P at the reversals of the motion.
+        pub reversal_ratio: f64 => ONE,
+        /// |Q|/P over the second half of the strokes, without the elastic travel after a reversal; 0 before the first reversal.
+        pub plateau_ratio: f64 => ONE,
+        /// Partial or gross slip, from the energy ratio.
+        pub regime: Regime => WORD,
+        /// Volume worn off first bodies.
+        pub wear_volume: f64 => VOLUME,
+        /// Number of further cycles that it represents by a jump: wear and damage are of all of them, the rest is of one.
+        pub jumped: u32 => ONE,
+    }
 }
 
 /// Observer of the cycles of a friction test.

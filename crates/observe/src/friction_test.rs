@@ -2,13 +2,16 @@
 
 use super::figures;
 use super::fretting;
-use super::friction::{Cycle, Cycles, Sample, State};
+use super::friction::{Cycles, Sample, State};
+use super::friction_report;
 use super::layer::Layer;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::quantity::unit::{FORCE, LOAD_PATH};
+use super::quantity::{Findings, Role, Topic};
 use super::run_state::damage_ratio;
 use super::statistics::Column;
-use super::summary::Summary;
+use super::wear::WearSummary;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
@@ -118,7 +121,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let newton = if S::D == 2 { "N/m" } else { "N" };
+        let newton = FORCE.symbol(S::D);
         let c = |name, unit, doc| Column::new(name, unit, doc);
         vec![
             c("delta", "m", "displacement of the body under test"),
@@ -153,25 +156,21 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         caption
     }
 
-    fn summarise(&self, _: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
         let path = self.state.load_path;
-        summary.wear.load_path = Some(path);
-        for body in &mut summary.wear.bodies {
-            body.specific_rate = (path > 0.0).then(|| body.volume / path);
+        let doc = "normal force times sliding distance: the integral of P |ds| over the run";
+        found.begin(Topic::Wear, Role::Detail);
+        found.add("wear.load_path", path, LOAD_PATH, doc);
+        if let Some(mut wear) = found.get::<WearSummary>().cloned().filter(|_| path > 0.0) {
+            wear.rate(path, found);
         }
-        Observer::<S>::summarise_so_far(self, summary);
+        Observer::<S>::report_so_far(self, found);
     }
 
-    fn summarise_so_far(&self, summary: &mut Summary) {
+    fn report_so_far(&self, found: &mut Findings) {
         let cycles = &self.state.cycles;
-        summary.friction_coefficient = cycles.last().map(|c| c.friction_coefficient);
-        summary.friction_from_dissipation = cycles.last().map(|c| c.friction_from_dissipation);
-        summary.peak_friction = cycles.last().and_then(Cycle::peak_ratio);
-        let plateau = cycles.last().map(|c| c.plateau_ratio);
-        summary.plateau_friction = plateau.filter(|p| *p > 0.0);
-        summary.cycles.clone_from(&cycles.list);
-        summary.fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
-        summary.friction_scatter = cycles.scatter();
+        let fretting = fretting::Outcome::new(&cycles.list).filter(|_| cycles.oscillates());
+        friction_report::report(cycles, fretting, found);
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

@@ -6,11 +6,12 @@ pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
 
 use super::chart::{Axis, Series};
 use super::figures::history;
-use super::observer::{Observer, RunEnd, put_measures};
+use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
-use super::statistics::{Column, Table};
-use super::summary::Summary;
+use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE};
+use super::quantity::{Findings, Role, Topic};
+use super::statistics::Column;
 use checks::{ContactShares, checks};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
@@ -42,7 +43,6 @@ pub struct HeatObserver {
     /// Names of the first bodies, in the order of [`Heat::first_bodies`].
     names: Vec<String>,
     circuit: bool,
-    flat: bool,
     state: State,
 }
 
@@ -54,7 +54,6 @@ impl HeatObserver {
         Some(Self {
             names: heat.first_bodies.iter().map(|b| b.0.clone()).collect(),
             circuit: heat.circuit.is_some(),
-            flat: S::D == 2,
             state: State {
                 lowest: temperatures().fold(f64::INFINITY, f64::min),
                 highest: temperatures().fold(0.0, f64::max),
@@ -141,10 +140,8 @@ impl<S: Space> Observer<S> for HeatObserver {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let [joule, watt, ohm, ampere] = match self.flat {
-            true => ["J/m", "W/m", "ohm m", "A/m"],
-            false => ["J", "W", "ohm", "A"],
-        };
+        let units = [ENERGY, POWER, RESISTANCE, CURRENT];
+        let [joule, watt, ohm, ampere] = units.map(|unit| unit.symbol(S::D));
         let mut all = vec![
             Column::new(
                 "temperature_max",
@@ -221,32 +218,11 @@ impl<S: Space> Observer<S> for HeatObserver {
         vec!["temperature"]
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let last = |name: &str| table.column(name).last().copied().filter(|x| x.is_finite());
-        let mut out = vec![
-            ("temperature_max".to_owned(), self.state.highest),
-            ("heat_residual_relative".to_owned(), self.state.off),
-        ];
-        let mut add = |name: &str| out.extend(last(name).map(|x| (format!("{name}_end"), x)));
-        add("temperature_mean");
-        add("resistance");
-        out
-    }
-
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        put_measures(self, end, summary);
-        summary.heat = checks(end.simulation, self.state.off, &self.state.shares);
-    }
-
-    fn summarise_so_far(&self, summary: &mut Summary) {
-        summary.heat = Some(HeatChecks {
-            residual_relative: self.state.off,
-            ..HeatChecks::default()
-        });
-    }
-
-    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
-        let last = |name: &str| table.column(name).last().copied().filter(|x| x.is_finite());
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        let last = |name: &str| {
+            let column = end.table.column(name);
+            column.last().copied().filter(|x| x.is_finite())
+        };
         let mut ends: Vec<String> = self
             .names
             .iter()
@@ -259,10 +235,10 @@ impl<S: Space> Observer<S> for HeatObserver {
             ends.join(", "),
             self.state.highest
         );
-        let mut out = vec![("temperatures".to_owned(), text)];
+        found.finding("temperatures", text, "temperatures at the end");
+        let unit = RESISTANCE.symbol(S::D);
         if self.circuit {
-            let unit = if self.flat { "ohm m" } else { "ohm" };
-            let column = table.column("resistance");
+            let column = end.table.column("resistance");
             let mut closed = column.iter().filter(|r| r.is_finite());
             let text = match (closed.next(), last("resistance")) {
                 (Some(first), Some(end)) => {
@@ -273,17 +249,41 @@ impl<S: Space> Observer<S> for HeatObserver {
                 }
                 (None, _) => "never closed".to_owned(),
             };
-            out.push(("contact resistance".to_owned(), text));
+            found.finding("contact resistance", text, "resistance of the circuit");
         }
-        out
+        let doc = "highest temperature over the run";
+        found.measure("temperature_max", self.state.highest, KELVIN, doc);
+        let doc = "residual of the account of heat over the largest heat";
+        found.measure("heat_residual_relative", self.state.off, ONE, doc);
+        for (name, unit, doc) in [
+            (
+                "temperature_mean",
+                KELVIN,
+                "mean temperature of the grains at the end",
+            ),
+            (
+                "resistance",
+                RESISTANCE,
+                "resistance of the circuit at the end",
+            ),
+        ] {
+            if let Some(value) = last(name) {
+                found.measure(&format!("{name}_end"), value, unit, doc);
+            }
+        }
+        if let Some(checks) = checks(end.simulation, self.state.off, &self.state.shares) {
+            found.begin(Topic::Run, Role::Diagnostic);
+            found.part("heat", &checks, "");
+            found.warn(checks.warnings());
+        }
     }
 
-    fn units(&self) -> Vec<(String, &'static str)> {
-        let ohm = if self.flat { "ohm m" } else { "ohm" };
-        vec![
-            ("temperature_mean_end".to_owned(), "K"),
-            ("resistance_end".to_owned(), ohm),
-        ]
+    fn report_so_far(&self, found: &mut Findings) {
+        let checks = HeatChecks {
+            residual_relative: self.state.off,
+            ..HeatChecks::default()
+        };
+        found.warn(checks.warnings());
     }
 
     fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

@@ -3,8 +3,9 @@
 use super::figures;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::quantity::unit::{ONE, VOLUME, WORD};
+use super::quantity::{Field, Findings, Role, Schema, Topic, field};
 use super::statistics::Column;
-use super::summary::Summary;
 use super::warning::{NOT_REACHED, Warning};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
@@ -33,9 +34,21 @@ impl<S: Space> Observer<S> for CycleJumps {
         vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.state.time))]
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let s = end.simulation;
-        summary.jump = s.process::<Jumps>().map(|j| j.outcome(s));
+        let Some(jump) = s.process::<Jumps>().map(|j| j.outcome(s)) else {
+            // The process is not installed yet.
+            report_none(found);
+            return found.edit("jump", |q| q.lacks = None);
+        };
+        found.begin(Topic::Wear, Role::Detail);
+        found.fields("jump", &jump, &FIELDS, "jumps over cycles");
+        found.edit("jump.error_estimate", |q| {
+            q.secondary("error of the jumps");
+            q.sentence("cycle jump", sentence(&jump));
+        });
+        found.warn(warnings(&jump));
+        found.keep(jump);
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
@@ -57,22 +70,94 @@ impl<S: Space> Observer<S> for CycleJumps {
 /// Relative change of the work per cycle over a jump above which the jump may have passed into another state.
 const CHANGED: f64 = 0.2;
 
-/// Report lines.
-pub fn lines(jump: &JumpSummary) -> Vec<(&'static str, String)> {
+/// What is said of a checked jump, and of the state at the end of a computed cycle.
+const JUMP: [Field; 4] = [
+    field(
+        "after",
+        ONE,
+        "cycles before the jump, including those jumped over",
+    ),
+    field("cycles", ONE, "cycles that its computed cycle represents"),
+    field(
+        "error",
+        ONE,
+        "its error, relative to what it added and to the scar at the end",
+    ),
+    field(
+        "work_change",
+        ONE,
+        "relative change of the work of a cycle over the jump",
+    ),
+];
+const POINT: [Field; 4] = [
+    field("cycles", ONE, "cycles so far, including those jumped over"),
+    field(
+        "cycle_multiplier",
+        ONE,
+        "cycles that the last one represents",
+    ),
+    field("wear_volume", VOLUME, "volume worn off first bodies"),
+    field("mean_damage", ONE, "mean damage of the bonds"),
+];
+
+/// What is said of the jumps.
+const FIELDS: [Field; 10] = [
+    field("computed_cycles", ONE, "completed computed cycles"),
+    field("represented_cycles", ONE, "cycles that they represent"),
+    field("asked_cycles", ONE, "cycles that the case asks for"),
+    field("tolerance", ONE, "error of a jump that is aimed at"),
+    field(
+        "error_estimate",
+        ONE,
+        "estimated error of all jumps, relative to the wear or the growth of damage, whichever is worse",
+    ),
+    field(
+        "unchecked_cycles",
+        ONE,
+        "cycles of a jump that the run ended before it was checked",
+    ),
+    field(
+        "not_jumped",
+        WORD,
+        "variables of laws that advance with the computed cycles only",
+    ),
+    field(
+        "wear_volume",
+        VOLUME,
+        "volume worn off first bodies over all cycles",
+    ),
+    Field {
+        name: "jumps",
+        doc: "checked jumps",
+        schema: Schema::Part(&JUMP),
+    },
+    Field {
+        name: "points",
+        doc: "states after the computed cycles",
+        schema: Schema::Part(&POINT),
+    },
+];
+
+/// Adds what cases without jumps lack.
+pub(crate) fn report_none(found: &mut Findings) {
+    found.begin(Topic::Wear, Role::Detail);
+    let none = found.add("jump", (), WORD, "jumps over cycles; null without");
+    none.lacks("the case has no jumps over cycles (`jump`)");
+}
+
+/// Sentence of the terminal.
+fn sentence(jump: &JumpSummary) -> String {
     let longest = jump.jumps.iter().map(|j| j.cycles).max().unwrap_or(0);
-    vec![(
-        "cycle jump",
-        format!(
-            "{} cycles from {} computed ones, {} jumps of at most {longest}; {}",
-            jump.represented_cycles,
-            jump.computed_cycles,
-            jump.jumps.len(),
-            match jump.error_estimate {
-                Some(e) => format!("estimated error {:.1} %", 100.0 * e),
-                None => "error unknown".to_owned(),
-            }
-        ),
-    )]
+    format!(
+        "{} cycles from {} computed ones, {} jumps of at most {longest}; {}",
+        jump.represented_cycles,
+        jump.computed_cycles,
+        jump.jumps.len(),
+        match jump.error_estimate {
+            Some(e) => format!("estimated error {:.1} %", 100.0 * e),
+            None => "error unknown".to_owned(),
+        }
+    )
 }
 
 /// Warnings where the error estimate of the jumps does not hold.

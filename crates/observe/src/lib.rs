@@ -8,6 +8,7 @@
 
 pub mod accuracy;
 pub mod biaxial;
+mod case_checks;
 pub mod chart;
 pub mod choice;
 pub mod circuit;
@@ -19,6 +20,7 @@ pub mod first_bodies;
 pub mod fracture;
 pub mod fretting;
 pub mod friction;
+pub mod friction_report;
 pub mod friction_test;
 pub mod heat;
 pub mod jump;

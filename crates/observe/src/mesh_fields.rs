@@ -5,6 +5,7 @@ use super::tractions::{SurfaceState, Zone, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
+use fretwork_core::unit::AREA;
 
 /// What the values of a field stand at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -279,7 +280,7 @@ pub fn of_surfaces<S: Space>() -> [MeshField<SurfaceState<S>>; 8] {
         },
         MeshField {
             name: "area",
-            unit: if S::D == 2 { "m" } else { "m^2" },
+            unit: AREA.symbol(S::D),
             doc: "area (length in 2D) that the point stands for: pressure times area sums up to the force",
             at: At::Points,
             width: 1,

@@ -1,5 +1,6 @@
 //! Contacts between deformable bodies that act on the nearest place, where the mean one is not to be found.
 
+use super::quantity::unit::ONE;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -7,23 +8,25 @@ use serde::{Deserialize, Serialize};
 /// Share of the load that may act on nearest places without a warning: that of a touch in passing.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Contacts of points of deformable bodies with surfaces of others that act on the nearest place, over the rows of the statistics.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct NearestPlaces {
-    /// Loaded contacts that act on the nearest place, at the row where these carry most.
-    pub contacts: usize,
-    /// All loaded contacts between deformable bodies at that row.
-    pub of: usize,
-    /// Share of these contacts' forces that those on nearest places carry, over all rows.
-    pub share: f64,
-    /// Force on nearest places at that row (N; N/m in 2D).
-    #[serde(skip)]
-    most: f64,
-    /// Sum over the rows of the forces on nearest places, and of all (N; N/m in 2D).
-    #[serde(skip)]
-    near: f64,
-    #[serde(skip)]
-    all: f64,
+crate::described! {
+    /// Contacts of points of deformable bodies with surfaces of others that act on the nearest place, over the rows of the statistics.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct NearestPlaces {
+        /// Loaded contacts that act on the nearest place, at the row where these carry most.
+        pub contacts: usize => ONE,
+        /// All loaded contacts between deformable bodies at that row.
+        pub of: usize => ONE,
+        /// Share of these contacts' forces that those on nearest places carry, over all rows.
+        pub share: f64 => ONE,
+        /// Force on nearest places at that row.
+        #[serde(skip)]
+        most: f64,
+        /// Sum over the rows of the forces on nearest places, and of all.
+        #[serde(skip)]
+        near: f64,
+        #[serde(skip)]
+        all: f64,
+    }
 }
 
 impl NearestPlaces {

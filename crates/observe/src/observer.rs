@@ -2,12 +2,13 @@
 //! their types; users of the library can add their own.
 //!
 //! After a step: `before_step` ─► the step ─► `after_step` ─► the processes act between the steps ─► `after_processes` ─► where
-//! a row of the statistics is due `sample`. At the end: `files`, `figures` and `summarise`.
+//! a row of the statistics is due `sample`. At the end: `report`, `files` and `figures`.
 
 use super::output::Output;
 use super::picture::Picture;
+use super::quantity::{Findings, Role, Topic};
 use super::statistics::{Column, Table};
-use super::summary::{Summary, Uncertainty};
+use super::summary::Uncertainty;
 use fretwork_core::code::CodeError;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
@@ -29,18 +30,29 @@ pub struct RunEnd<'a, S: Space> {
     pub wall: Duration,
 }
 
-/// An event for a table of events in `results.h5`, `/events/TABLE`.
+/// A table of events in `results.h5`, `/events/NAME`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EventTable {
+    /// Its name.
+    pub name: &'static str,
+    /// Its columns, one value an event.
+    pub columns: Vec<Column>,
+    /// A column of which an event has any number of values, one event after another; none where there is none.
+    pub list: Option<Column>,
+}
+
+/// An event for a table of events.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// The table: `broken` or `debris`.
+    /// The table, see [`EventTable`].
     pub table: &'static str,
     /// One value a column.
     pub row: Vec<f64>,
-    /// Identities of the grains it is of, where the table lists them.
-    pub grains: Vec<f64>,
+    /// Its values in the list of the table.
+    pub list: Vec<f64>,
 }
 
-/// Something that looks at a run and leaves columns, files, and what the summary says. All but its name may be left out.
+/// Something that looks at a run and leaves columns, events, quantities and files. All but its name may be left out.
 pub trait Observer<S: Space>: Debug + Send {
     /// Its name: tells the observers of a run apart in checkpoints.
     fn name(&self) -> String;
@@ -54,7 +66,7 @@ pub trait Observer<S: Space>: Debug + Send {
         false
     }
 
-    /// Whether what it says in the summary, or its files, are made of the rows of the statistics: they are read back at the end
+    /// Whether what it reports, or its files, are made of the rows of the statistics: they are read back at the end
     /// where an observer says so, or where figures are drawn.
     fn reads_statistics(&self) -> bool {
         true
@@ -65,6 +77,11 @@ pub trait Observer<S: Space>: Debug + Send {
 
     /// After each step.
     fn after_step(&mut self, _: &Simulation<S>, _: &StepReport) {}
+
+    /// Its tables of events; the same over the run.
+    fn event_tables(&self) -> Vec<EventTable> {
+        Vec::new()
+    }
 
     /// After the processes have acted between two steps: the events of the step.
     fn after_processes(&mut self, _: &Simulation<S>) -> Vec<Event> {
@@ -112,30 +129,13 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// What it says in the summary, by name.
-    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
-        Vec::new()
-    }
+    /// Adds what it found to that of a run at its end: quantities and warnings. Observers come in their order, so that what
+    /// earlier ones found is there.
+    fn report(&self, _: &RunEnd<'_, S>, _: &mut Findings) {}
 
-    /// Units of what it says in the summary that is no mean of a column; what is not named is a pure number.
-    fn units(&self) -> Vec<(String, &'static str)> {
-        Vec::new()
-    }
-
-    /// What it says in the summary in words, by name.
-    fn verdict(&self, _: &Table) -> Vec<(String, String)> {
-        Vec::new()
-    }
-
-    /// Puts what it found into the summary of a run: by default outcome, units and verdict as measures. Observers come in their
-    /// order, so that what earlier ones found is there.
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        put_measures(self, end, summary);
-    }
-
-    /// Puts what it knows without the simulation, as of its last [`Observer::before_step`], into a summary: of a run that a law
-    /// ends within a step, and for what is said of a run as it goes.
-    fn summarise_so_far(&self, _: &mut Summary) {}
+    /// Adds what it knows without the simulation, as of its last [`Observer::before_step`]: of a run that a law ends within a
+    /// step, and for what is said of a run as it goes.
+    fn report_so_far(&self, _: &mut Findings) {}
 
     /// Files that it writes at the end of a run, independently of `output.figures`.
     fn files(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
@@ -178,24 +178,6 @@ pub trait Observer<S: Space>: Debug + Send {
     fn set_end(&mut self, _end: f64, _later: bool) -> Result<(), &'static str> {
         Ok(())
     }
-}
-
-/// Puts outcome, units and verdict of an observer into a summary as measures.
-pub(crate) fn put_measures<S: Space, O: Observer<S> + ?Sized>(
-    observer: &O,
-    end: &RunEnd<'_, S>,
-    summary: &mut Summary,
-) {
-    let columns = observer.columns().into_iter().map(|c| (c.name, c.unit));
-    let units = columns.chain(observer.units());
-    let units = units.filter(|(_, u)| !u.is_empty());
-    let found = observer.outcome(end.table);
-    let found_here = |name: &String| found.iter().any(|(n, _)| n == name);
-    summary
-        .measure_units
-        .extend(units.filter(|(name, _)| found_here(name)));
-    summary.measures.extend(found);
-    summary.findings.extend(observer.verdict(end.table));
 }
 
 /// The state of one observer: its name and its bytes.
@@ -304,14 +286,29 @@ impl<S: Space> Observers<S> {
         self.list.iter().flat_map(|o| o.file_names()).collect()
     }
 
-    /// See [`Observer::summarise`].
-    pub fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        self.list.iter().for_each(|o| o.summarise(end, summary));
+    /// What all found, see [`Observer::report`].
+    pub fn report(&self, end: &RunEnd<'_, S>) -> Findings {
+        let mut found = Findings::new(S::D);
+        for observer in &self.list {
+            found.begin(Topic::default(), Role::default());
+            observer.report(end, &mut found);
+        }
+        found
     }
 
-    /// See [`Observer::summarise_so_far`].
-    pub fn summarise_so_far(&self, summary: &mut Summary) {
-        self.list.iter().for_each(|o| o.summarise_so_far(summary));
+    /// What all know without the simulation, see [`Observer::report_so_far`].
+    pub fn report_so_far(&self) -> Findings {
+        let mut found = Findings::new(S::D);
+        for observer in &self.list {
+            found.begin(Topic::default(), Role::default());
+            observer.report_so_far(&mut found);
+        }
+        found
+    }
+
+    /// The tables of events of all, see [`Observer::event_tables`].
+    pub fn event_tables(&self) -> Vec<EventTable> {
+        self.list.iter().flat_map(|o| o.event_tables()).collect()
     }
 
     /// See [`Observer::files`].

@@ -7,7 +7,10 @@
 //!
 //! (`tests/physics/elastic/resolution.rs`; `docs/half_spaces.md`). A strip of less than an element may have no heat at all.
 
+use super::quantity::unit::{ONE, WORD};
+use super::quantity::{Findings, Topic};
 use super::tractions::loaded;
+use super::warning::Warning;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -28,29 +31,31 @@ const FEW: f64 = 8.0;
 /// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
 const LIMITS: [f64; 2] = [0.05, 0.2];
 
-/// Elements across the contact of a deformable body, over the rows of the statistics.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Resolution {
-    /// Name of the body.
-    pub body: String,
-    /// Loaded elements over the width of the contact, in 3D over its mean diameter, at the row where these are fewest while it slips in
-    /// part, and otherwise at the last row with a load.
-    pub across: f64,
-    /// Elements over what sticks there, and over the width of each strip that slips; none where it never sticks and slips at once.
-    pub stick: Option<f64>,
-    /// See `stick`.
-    pub slip: Option<f64>,
-    /// Estimated error of the heat of friction over the run, as a share: too low in rolling.
-    pub heat_error: f64,
-    /// Heat over the rows, and that times its error (J; J/m).
-    #[serde(skip)]
-    sums: [f64; 2],
-    /// Heat of all contacts up to the last row (J; J/m).
-    #[serde(skip)]
-    before: f64,
-    /// Whether its material, or that of what touches it, passes, at the last row with a load.
-    #[serde(skip)]
-    rolls: bool,
+crate::described! {
+    /// Elements across the contact of a deformable body, over the rows of the statistics.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct Resolution {
+        /// Name of the body.
+        pub body: String => WORD,
+        /// Loaded elements over the width of the contact, in 3D over its mean diameter, at the row where these are fewest while it slips in
+        /// part, and otherwise at the last row with a load.
+        pub across: f64 => ONE,
+        /// Elements over what sticks there; null where it never sticks and slips at once.
+        pub stick: Option<f64> => ONE,
+        /// Elements over the width of each strip that slips there; null where it never sticks and slips at once.
+        pub slip: Option<f64> => ONE,
+        /// Estimated error of the heat of friction over the run, as a share: too low in rolling.
+        pub heat_error: f64 => ONE,
+        /// Heat over the rows, and that times its error.
+        #[serde(skip)]
+        sums: [f64; 2],
+        /// Heat of all contacts up to the last row.
+        #[serde(skip)]
+        before: f64,
+        /// Whether its material, or that of what touches it, passes, at the last row with a load.
+        #[serde(skip)]
+        rolls: bool,
+    }
 }
 
 /// What is kept over a pause.
@@ -165,6 +170,26 @@ impl Resolution {
             (self.heat_error > reason, text)
         })
     }
+}
+
+/// Adds the contacts of all bodies, with a sentence and a warning of the one whose elements leave most doubt of the heat. Two
+/// bodies that touch each other have one contact.
+pub(crate) fn report(contacts: Vec<Resolution>, found: &mut Findings) {
+    let all = contacts.iter().enumerate();
+    let Some((k, worst)) = all.max_by(|(_, a), (_, b)| a.heat_error.total_cmp(&b.heat_error))
+    else {
+        return;
+    };
+    found.parts::<Resolution>("resolution", &contacts, "");
+    found.edit(&format!("resolution.{k}.across"), |q| {
+        q.about(Topic::Measures)
+            .secondary(format!("elements across the contact of {}", worst.body));
+        q.sentence("elements across", worst.line());
+    });
+    found.warn(worst.warning().map(|(reason, text)| match reason {
+        true => Warning::serious("COARSE CONTACT", text),
+        false => Warning::note("COARSE CONTACT", text),
+    }));
 }
 
 fn share([all, off]: [f64; 2]) -> f64 {

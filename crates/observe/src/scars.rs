@@ -3,37 +3,39 @@
 use super::figures;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
-use super::quantity::quantity;
+use super::quantity::unit::{METRE, VOLUME, WORD};
+use super::quantity::{Findings, Role, Topic, quantity};
 use super::statistics::Column;
-use super::summary::Summary;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, Scar, shape};
 use serde::Serialize;
 
-/// One scar in the summary (SI).
-#[derive(Clone, Debug, Serialize)]
-pub struct ScarSummary {
-    /// Name of the body, with a number if several of its surfaces wear.
-    pub body: String,
-    /// Volume worn off (m^3; m^3/m).
-    pub volume: f64,
-    /// Largest depth (m).
-    pub depth: f64,
-    /// Position of the largest depth along x, in the body's frame (m).
-    pub deepest_at: f64,
-    /// `U`, `W` or `None`; see [`fretwork_core::wear::shape`].
-    pub form: Form,
-    /// Start of the scar along x (m); null if there is no scar.
-    pub from: Option<f64>,
-    /// End of the scar along x (m); null if there is no scar.
-    pub to: Option<f64>,
-    /// Depth at its middle (m).
-    pub middle: f64,
-    /// Depth of the deepest slice on the left and on the right of the middle (m).
-    pub sides: [f64; 2],
-    /// Depth at which the surface is worn through (m).
-    pub thickness: f64,
+crate::described! {
+    /// One scar in the summary (SI).
+    #[derive(Clone, Debug, Serialize)]
+    pub struct ScarSummary {
+        /// Name of the body, with a number if several of its surfaces wear.
+        pub body: String => WORD,
+        /// Volume worn off.
+        pub volume: f64 => VOLUME,
+        /// Largest depth.
+        pub depth: f64 => METRE,
+        /// Position of the largest depth along x, in the body's frame.
+        pub deepest_at: f64 => METRE,
+        /// `U` deepest in the middle, `W` deeper on both sides, `None`.
+        pub form: Form => WORD,
+        /// Start of the scar along x; null if there is no scar.
+        pub from: Option<f64> => METRE,
+        /// End of the scar along x; null if there is no scar.
+        pub to: Option<f64> => METRE,
+        /// Depth at its middle.
+        pub middle: f64 => METRE,
+        /// Depth of the deepest slice on the left and on the right of the middle.
+        pub sides: [f64; 2] => METRE,
+        /// Depth at which the surface is worn through.
+        pub thickness: f64 => METRE,
+    }
 }
 
 impl ScarSummary {
@@ -100,7 +102,7 @@ impl<S: Space> Observer<S> for Scars {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+        let volume = VOLUME.symbol(S::D);
         let two = |name: &String| {
             let (worn, depth) = (format!("{name}_worn"), format!("{name}_depth"));
             [
@@ -116,14 +118,22 @@ impl<S: Space> Observer<S> for Scars {
         s.state.scars.iter().flat_map(two).collect()
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        summary.scars = end
-            .simulation
-            .state
-            .scars
-            .iter()
-            .map(ScarSummary::of)
-            .collect();
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        let scars = end.simulation.state.scars.iter();
+        let scars: Vec<ScarSummary> = scars.map(ScarSummary::of).collect();
+        found.begin(Topic::Wear, Role::Detail);
+        found.parts::<ScarSummary>("scars", &scars, "scars of the surfaces that recede");
+        for (k, scar) in scars.iter().enumerate().filter(|(_, s)| s.volume > 0.0) {
+            found.edit(&format!("scars.{k}.depth"), |q| {
+                q.secondary(format!("depth of the scar of {}", scar.body));
+                q.sentence(format!("scar of {}", scar.body), scar.outline());
+            });
+        }
+        if scars.is_empty() {
+            found.edit("scars", |q| {
+                q.lacks("no surface of the case recedes by wear (`wears`)");
+            });
+        }
     }
 
     /// The tables of all scars, `scar_NAME.csv`.

@@ -1,21 +1,25 @@
 //! Solver statistics of a run.
 
 use super::choice::SolverStats;
+use super::quantity::part;
+use super::quantity::unit::{ENERGY, ONE, WORD};
 use fretwork_core::solve::error::ErrorParts;
 use fretwork_core::step::Agreement;
 use serde::{Deserialize, Serialize};
 
-/// Parts of the error over the steps of a run, each weighted by the heat of slip of its step: what matters for friction.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ErrorPartsOfRun {
-    /// Mean unbalanced share of the work of a step.
-    pub force_balance: f64,
-    /// Mean of the residual velocities over the relative velocities of the contacts.
-    pub velocity: f64,
-    /// Mean energy that residuals make in violation of the contact law, over the heat of slip (the error of the norm `Power`).
-    pub contact_law: f64,
-    /// Heat of slip of all steps (J; J/m in 2D).
-    pub slip_energy: f64,
+crate::described! {
+    /// Parts of the error over the steps of a run, each weighted by the heat of slip of its step: what matters for friction.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct ErrorPartsOfRun {
+        /// Mean unbalanced share of the work of a step.
+        pub force_balance: f64 => ONE,
+        /// Mean of the residual velocities over the relative velocities of the contacts.
+        pub velocity: f64 => ONE,
+        /// Mean energy that residuals make in violation of the contact law, over the heat of slip (the error of the norm `Power`).
+        pub contact_law: f64 => ONE,
+        /// Heat of slip of all steps.
+        pub slip_energy: f64 => ENERGY,
+    }
 }
 
 impl ErrorPartsOfRun {
@@ -32,18 +36,20 @@ impl ErrorPartsOfRun {
     }
 }
 
-/// How friction that depends on the velocity of sliding, and attraction that depends on the gap, agree with the steps of a run, each of which is
-/// solved until they do.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct LawsOfRun {
-    /// Mean number of solves per step; 1 where no law asks for more.
-    pub solves_mean: f64,
-    /// Mean over the steps of the share of the friction by which it differs from that of the laws at the velocities reached.
-    pub friction_mean: f64,
-    /// Largest share of a step's attractions and loads by which attractions differ from those over the gaps passed.
-    pub attraction_max: f64,
-    /// Steps.
-    pub steps: u64,
+crate::described! {
+    /// How friction that depends on the velocity of sliding, and attraction that depends on the gap, agree with the steps of a run, each of which is
+    /// solved until they do.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct LawsOfRun {
+        /// Mean number of solves per step; 1 where no law asks for more.
+        pub solves_mean: f64 => ONE,
+        /// Mean over the steps of the share of the friction by which it differs from that of the laws at the velocities reached.
+        pub friction_mean: f64 => ONE,
+        /// Largest share of a step's attractions and loads by which attractions differ from those over the gaps passed.
+        pub attraction_max: f64 => ONE,
+        /// Steps.
+        pub steps: u64 => ONE,
+    }
 }
 
 impl LawsOfRun {
@@ -57,60 +63,58 @@ impl LawsOfRun {
     }
 }
 
-/// Solver statistics over the steps of a run.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct SolverSummary {
-    /// Mean number of iterations per step.
-    pub iterations_mean: f64,
-    /// Largest number of iterations in a step.
-    pub iterations_max: u32,
-    /// Largest error at the end of a step.
-    pub error_max: f64,
-    /// What the solutions got wrong, in parts.
-    pub error_parts: ErrorPartsOfRun,
-    /// Steps that did not reach the tolerance.
-    pub unconverged_steps: u64,
-    /// Steps of which another solution was found, of more energy than the one that was taken, in which a loaded contact slides that holds in the
-    /// other.
-    pub several_steps: u64,
-    /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek another solution.
-    #[serde(default)]
-    pub not_searched_steps: u64,
-    /// Those of them in which it was a contact of a grain that first bodies squeeze.
-    #[serde(default)]
-    pub pinched_steps: u64,
-    /// Steps in which damage and opening did not reach the coupling's tolerance.
-    pub uncoupled_steps: u64,
-    /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
-    pub coupling_iterations_mean: f64,
-    /// What the laws at the velocities and gaps reached in the steps differ from what the steps used.
-    pub laws: LawsOfRun,
-    /// First unconverged step; 0 if there is none.
-    pub first_unconverged: u64,
-    /// Steps in which penetrations were removed by projection.
-    pub projected_steps: u64,
-    /// Largest penetration before a projection, as a fraction of the smaller body's length.
-    pub overlap_before: f64,
-    /// Largest penetration after a projection, as a fraction of the smaller body's length.
-    pub overlap_after: f64,
-    /// Deepest overlap of rigid contacts at a detection, over the radius of the smaller grain.
-    pub overlap_max: f64,
-    /// Tolerance.
-    pub tolerance: f64,
-    /// Formula of the error.
-    pub error_formula: String,
-    /// Requested solver.
-    pub method: String,
-    /// Number of steps by the solver that converged.
-    pub steps_by_method: std::collections::BTreeMap<String, u64>,
-    /// Reason for the choice, as a sentence.
-    pub why: String,
-    /// Statistics of the solvers that `auto` chose.
-    pub choice: SolverStats,
-    /// Steps written as FCLIB problems.
-    pub fclib_written: u64,
-    /// Steps that could not be written as FCLIB problems, since the format cannot represent them.
-    pub fclib_skipped: u64,
+crate::described! {
+    /// Solver statistics over the steps of a run.
+    #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+    pub struct SolverSummary {
+        /// Mean number of iterations per step.
+        pub iterations_mean: f64 => ONE,
+        /// Largest number of iterations in a step.
+        pub iterations_max: u32 => ONE,
+        /// Largest error at the end of a step.
+        pub error_max: f64 => ONE,
+        /// What the solutions got wrong, in parts.
+        pub error_parts: ErrorPartsOfRun = part::<ErrorPartsOfRun>(),
+        /// Steps that did not reach the tolerance.
+        pub unconverged_steps: u64 => ONE,
+        /// Steps of which another solution was found, of more energy than the one that was taken, in which a loaded contact slides that holds in the
+        /// other.
+        pub several_steps: u64 => ONE,
+        /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek another solution.
+        #[serde(default)]
+        pub not_searched_steps: u64 => ONE,
+        /// Those of them in which it was a contact of a grain that first bodies squeeze.
+        #[serde(default)]
+        pub pinched_steps: u64 => ONE,
+        /// Steps in which damage and opening did not reach the coupling's tolerance.
+        pub uncoupled_steps: u64 => ONE,
+        /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
+        pub coupling_iterations_mean: f64 => ONE,
+        /// What the laws at the velocities and gaps reached in the steps differ from what the steps used.
+        pub laws: LawsOfRun = part::<LawsOfRun>(),
+        /// First unconverged step; 0 if there is none.
+        pub first_unconverged: u64 => ONE,
+        /// Steps in which penetrations were removed by projection.
+        pub projected_steps: u64 => ONE,
+        /// Largest penetration before a projection, as a fraction of the smaller body's length.
+        pub overlap_before: f64 => ONE,
+        /// Largest penetration after a projection, as a fraction of the smaller body's length.
+        pub overlap_after: f64 => ONE,
+        /// Deepest overlap of rigid contacts at a detection, over the radius of the smaller grain.
+        pub overlap_max: f64 => ONE,
+        /// Tolerance.
+        pub tolerance: f64 => ONE,
+        /// Formula of the error.
+        pub error_formula: String => WORD,
+        /// Requested solver.
+        pub method: String => WORD,
+        /// Number of steps by the solver that converged.
+        pub steps_by_method: std::collections::BTreeMap<String, u64> => ONE,
+        /// Reason for the choice, as a sentence.
+        pub why: String => WORD,
+        /// Statistics of the solvers that `auto` chose.
+        pub choice: SolverStats = part::<SolverStats>(),
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! What a run of a case is observed by.
 
-use super::accuracy::ChosenSettings;
+use super::accuracy::{ChosenSettings, report_accuracy};
 use super::biaxial::Biaxial;
+use super::case_checks::CaseChecks;
 use super::circuit::{BrokenBonds, CircuitAccount};
 use super::deformable::Deformable;
 use super::fracture::Fracture;
@@ -10,16 +11,21 @@ use super::friction_test::FrictionTest;
 use super::heat::HeatObserver;
 use super::jump::CycleJumps;
 use super::measure::measures;
-use super::observer::Observers;
+use super::observer::{Observers, RunEnd};
+use super::quantity::Findings;
 use super::run_state::{DrivenBodies, Phases, RunState};
 use super::scars::Scars;
+use super::statistics::Table;
 use super::strain::LocalShear;
+use super::summary::{RunFacts, Summary, Uncertainty};
 use super::wear::Wear;
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
+use fretwork_core::laws::Kind;
 use fretwork_core::step::Simulation;
 use fretwork_scene::build::Dimensional;
-use fretwork_scene::case::Case;
+use fretwork_scene::case::{Case, InterfaceSpec};
 use fretwork_scene::processes;
+use std::time::Duration;
 
 /// A dimension for which this crate compiles the observers, so that the program does not compile them again.
 pub trait Observed: Dimensional {
@@ -45,16 +51,36 @@ pub fn observers<S: Observed>(case: &Case, s: &Simulation<S>, density: f64) -> O
     S::observers(case, s, density)
 }
 
+/// What a run of a case will say, as far as it is known before its first step: values are those of the start, and what a case
+/// cannot have says why.
+pub fn declared<S: Observed>(case: &Case, s: &Simulation<S>) -> Findings {
+    let observers = observers(case, s, 0.0);
+    let end = RunEnd {
+        simulation: s,
+        table: &Table::new(observers.columns()),
+        title: "",
+        uncertainty: &Uncertainty::default(),
+        wall: Duration::ZERO,
+    };
+    let mut found = observers.report(&end);
+    Uncertainty::default().report(&mut found);
+    report_accuracy(None, &mut found);
+    let run = RunFacts {
+        dimension: S::D,
+        ..RunFacts::default()
+    };
+    Summary { run, found }.quantities()
+}
+
 fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
     let test = processes::FrictionTest::of(case, s);
     let mut all = Observers::default();
-    all.push(Box::new(RunState::new(
-        &s.options.solver,
-        test.map(|t| t.clock),
-    )));
+    all.push(Box::new(CaseChecks::of(case, s)));
+    all.push(Box::new(RunState::new(s, test.map(|t| t.clock))));
     let start = test.map_or(0.0, |t| t.start);
     let along = case.friction.as_ref().map_or(0, |t| t.along);
-    let wear = Wear::new(start, along, case.inertia_scaling, density);
+    let wears = s.laws.iter().any(|l| l.wear().is_some());
+    let wear = Wear::new([start, case.inertia_scaling, density], along, wears);
     all.push(Box::new(wear));
     if let Some(test) = test {
         let cycles = Cycles::of(test.clock, case.time.end);
@@ -81,7 +107,9 @@ fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> 
     if case.accuracy.is_some() {
         all.push(Box::new(ChosenSettings));
     }
-    all.push(Box::new(BrokenBonds::default()));
+    let cohesion = |i: &InterfaceSpec| i.law(Kind::COHESION).is_some();
+    let bonds = case.interfaces.iter().any(cohesion);
+    all.push(Box::new(BrokenBonds::new(bonds)));
     all.push(Box::new(Fracture::of(case, s)));
     if let Some(circuit) = &case.circuit {
         all.push(Box::new(CircuitAccount::new(circuit.start)));

@@ -1,5 +1,7 @@
 //! Table of statistics: one row every few steps, in `statistics.csv` and `results.h5`.
 
+use super::quantity::Unit;
+use super::quantity::unit::ONE;
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -22,6 +24,16 @@ impl Column {
             name: name.into(),
             unit,
             doc,
+        }
+    }
+}
+
+impl Column {
+    /// Its unit as that of a quantity.
+    pub fn unit(&self) -> Unit {
+        match self.unit {
+            "" => ONE,
+            symbol => Unit::of(symbol),
         }
     }
 }

@@ -4,25 +4,28 @@
 //! interval (batch means: A. M. Law, Simulation Modeling and Analysis, section 9.5.3); a trend is tested with
 //! the Mann-Kendall test (M. G. Kendall, Rank Correlation Methods, 1975).
 
+use super::quantity::unit::{MASS_FLOW, ONE, WORD};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Number of blocks in a window.
 pub const BLOCKS: usize = 10;
 
-/// A mean flow over a window.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Flow {
-    /// Mean rate, in units of the table per second.
-    pub mean: f64,
-    /// Half-width of its 95 % confidence interval.
-    pub half_width: f64,
-    /// Correlation of neighbouring blocks: if it is far above zero, the interval is too narrow.
-    pub correlation: f64,
-    /// p-value of the trend test: probability of a trend at least this strong in a steady flow.
-    pub trend_probability: f64,
-    /// Whether no trend was found: the probability is above 5 %.
-    pub steady: bool,
+crate::described! {
+    /// A mean flow over a window.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct Flow {
+        /// Mean rate, in units of the table per second.
+        pub mean: f64 => MASS_FLOW,
+        /// Half-width of its 95 % confidence interval.
+        pub half_width: f64 => MASS_FLOW,
+        /// Correlation of neighbouring blocks: if it is far above zero, the interval is too narrow.
+        pub correlation: f64 => ONE,
+        /// p-value of the trend test: probability of a trend at least this strong in a steady flow.
+        pub trend_probability: f64 => ONE,
+        /// Whether no trend was found: the probability is above 5 %.
+        pub steady: bool => WORD,
+    }
 }
 
 impl Flow {

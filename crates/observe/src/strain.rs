@@ -6,10 +6,9 @@
 //! amount of simple shear that has the same ratio of stretches, at finite strain. Rotation and dilation do
 //! not contribute.
 
-use super::observer::{Observer, RunEnd};
+use super::observer::Observer;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
-use super::summary::Summary;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::detect::centre;
 use fretwork_core::geometry::grid::pairs;
@@ -136,8 +135,6 @@ impl<S: Space> Observer<S> for LocalShear<S> {
             },
         }]
     }
-
-    fn summarise(&self, _: &RunEnd<'_, S>, _: &mut Summary) {}
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         encode(&self.strain)

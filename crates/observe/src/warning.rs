@@ -22,12 +22,70 @@ impl Warning {
         Self { of, text, serious }
     }
 
+    /// The warning of energies or forces that are no numbers.
+    pub fn infinite() -> Self {
+        let text = "energies or friction are not finite: forces, speeds or sizes of the case exceed the range of double precision";
+        Self::serious("NOT FINITE", text)
+    }
+
     /// A note that does not affect trust in the run.
     pub fn note(of: &'static str, text: impl Into<String>) -> Self {
         let text = text.into();
         let serious = false;
         Self { of, text, serious }
     }
+}
+
+/// Categories in the order in which they are told; those of other observers follow.
+const ORDER: [&str; 42] = [
+    "INTERRUPTED",
+    "STOPPED",
+    "NOT FINITE",
+    "ENERGY DOES NOT ADD UP",
+    "FRICTION GIVES ENERGY",
+    "HEAT DOES NOT ADD UP",
+    "IMPOSSIBLE MOTION",
+    "TOO FAST",
+    "FOUND OVERLAPPING",
+    "OVERLAP",
+    "MOTION LOST",
+    "NOT SMALL STRAIN",
+    "LOAD AT BORDER",
+    "COARSE CONTACT",
+    "ALIASED DRIVE",
+    "NOT CONVERGED",
+    "LOOSE VELOCITIES",
+    "NOT COUPLED",
+    "LAWS NOT MET",
+    "NOT CERTIFIED",
+    "GRAINS DO NOT ADD UP",
+    NOT_REACHED,
+    "NOT JUMPED",
+    "JUMP ERROR UNKNOWN",
+    "NOT CHECKED",
+    "CYCLES CHANGE",
+    "JUMPS TOO LONG",
+    "EDGES MET",
+    "TIME INTEGRATION",
+    "BONDS NOT RESOLVED",
+    "NO COMPLETE CYCLE",
+    "NOT STEADY",
+    "NO HEAT",
+    "SHALLOW HALF-SPACES",
+    "HEAT OUT OF RANGE",
+    "NEAREST PLACES",
+    "COARSE DRIVE",
+    "POSITION CORRECTION",
+    "ACCURACY NOT SHOWN",
+    "ESTIMATED ERROR",
+    "ERROR NOT KNOWN",
+    "NOT UNIQUE",
+];
+
+/// Puts reasons before notes, and both in the order of their categories.
+pub fn sort(list: &mut [Warning]) {
+    let place = |w: &Warning| ORDER.iter().position(|of| *of == w.of);
+    list.sort_by_key(|w| (!w.serious, place(w).unwrap_or(ORDER.len())));
 }
 
 impl std::fmt::Display for Warning {

@@ -1,19 +1,201 @@
-//! Wear of first and third bodies, and mean flows of matter, from the start of the friction test on: what came before it, placing grains and pressing them
-//! together, is no flow of the contact.
+//! Wear of first and third bodies, and mean flows of matter, from the start of the friction test on: what came
+//! before it, placing grains and pressing them together, is no flow of the contact.
 
 use super::chart::Axis;
 use super::figures::history;
-use super::first_bodies;
+use super::first_bodies::{self, BodyWear};
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WORD};
+use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
 use super::statistics::Column;
-use super::summary::{self, Summary};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
 use fretwork_core::step::{Simulation, StepReport};
 use fretwork_core::threads::{map_ranges, pays};
 use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+
+crate::described! {
+    /// Wear and mean mass flows since the start of the friction test, or of the run without one.
+    #[derive(Clone, Debug, Default, Serialize)]
+    #[allow(non_snake_case)]
+    pub struct WearSummary {
+        /// Unit of the flows: kg/s; in 2D kg/(m s), per metre of depth.
+        pub unit: &'static str => WORD,
+        /// Start of Qs (of the wear law) and Qi; flows of a circuit start with the circuit.
+        pub start: f64 => SECOND,
+        /// Source: mass worn off first bodies by the wear law, or, with a circuit, mass of the grains that came
+        /// loose from them.
+        pub Qs: f64 => MASS_FLOW,
+        /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
+        pub Qi: f64 => MASS_FLOW,
+        /// Ejected: with a circuit the mass that reached its zones; without one zero in a contact that is
+        /// periodic along the sliding, and null (not measured) in an open one.
+        pub Qe: Option<f64> => MASS_FLOW,
+        /// Lost: ejected and not recirculated; as `Qe`.
+        pub Qw: Option<f64> => MASS_FLOW,
+        /// Volume worn off first bodies by the wear law.
+        pub volume_first_bodies: f64 => VOLUME,
+        /// Volume worn between grains.
+        pub volume_third_body: f64 => VOLUME,
+        /// Normal force times sliding distance: the integral of P |ds| over the run; null without
+        /// a friction test.
+        pub load_path: Option<f64> => LOAD_PATH,
+        /// Wear of the first bodies that lost material.
+        pub bodies: Vec<BodyWear> = part::<BodyWear>(),
+    }
+}
+
+/// Why a case has no wear.
+pub(crate) const NO_WEAR: &str = "no interface of the case has a wear law";
+/// Why a case has no flows of grains.
+pub(crate) const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
+
+/// Names and explanations of the flows, in the order of the terminal.
+const FLOWS: [(&str, &str, &str); 4] = [
+    (
+        "Qs",
+        "source flow Qs",
+        "mass that comes loose from the first bodies, per time",
+    ),
+    (
+        "Qe",
+        "ejected flow Qe",
+        "mass that leaves the contact, per time",
+    ),
+    (
+        "Qw",
+        "wear flow Qw",
+        "mass that is lost: ejected and not recirculated, per time",
+    ),
+    (
+        "Qi",
+        "internal flow Qi",
+        "mass of third body that crosses a section of the contact, per time",
+    ),
+];
+
+impl WearSummary {
+    /// Adds wear and flows; `wears` says whether the case has a wear law.
+    pub(crate) fn report(&self, wears: bool, found: &mut Findings) {
+        found.begin(Topic::Wear, Role::Detail);
+        found.part("wear", self, "wear and mean flows of matter");
+        let volume = VOLUME.symbol(found.dimension());
+        for (k, body) in self
+            .bodies
+            .iter()
+            .enumerate()
+            .filter(|(_, b)| b.volume != 0.0)
+        {
+            let doc = format!("volume worn off `{}`", body.body);
+            let added = found.add(&format!("wear.bodies.{k}.volume"), body.volume, VOLUME, doc);
+            added.secondary(format!("worn off {}", body.body));
+            added.sentence(format!("wear of {}", body.body), of_body(body, volume));
+        }
+        let third = self.volume_third_body;
+        found.edit("wear.volume_third_body", |q| {
+            if third > 0.0 {
+                q.secondary("wear between grains");
+            }
+            if !wears {
+                q.lacks(NO_WEAR);
+            }
+        });
+        let (first, bodies) = (self.volume_first_bodies, self.bodies.len());
+        found.edit("wear.volume_first_bodies", |q| {
+            if first > 0.0 {
+                q.secondary("wear of first bodies");
+            }
+            if bodies < 2 {
+                q.silent();
+            }
+            if !wears {
+                q.lacks(NO_WEAR);
+            }
+        });
+        if wears {
+            show_flows(found);
+        } else {
+            found.edit("wear.Qs", |q| {
+                q.lacks(NO_WEAR);
+            });
+        }
+        for name in ["wear.Qe", "wear.Qw"] {
+            found.edit(name, |q| {
+                q.lacks(NO_CIRCUIT);
+            });
+        }
+    }
+}
+
+impl WearSummary {
+    /// Puts in the specific wear rates of the bodies, by the integral of P |ds|.
+    pub(crate) fn rate(&mut self, load_path: f64, found: &mut Findings) {
+        let volume = VOLUME.symbol(found.dimension());
+        for (k, body) in self.bodies.iter_mut().enumerate() {
+            let rate = body.volume / load_path;
+            body.specific_rate = Some(rate);
+            let doc = format!("specific wear rate k = V/(P s) of `{}`", body.body);
+            let path = format!("wear.bodies.{k}.specific_rate");
+            let added = found.add(&path, rate, WEAR_RATE, doc);
+            if body.volume != 0.0 {
+                let label = format!("specific wear rate of {}", body.body);
+                added.secondary(label).silent();
+            }
+            found.edit(&format!("wear.bodies.{k}.volume"), |q| {
+                if let Wording::Sentence(label, _) = q.wording.clone() {
+                    q.sentence(label, of_body(body, volume));
+                }
+            });
+        }
+    }
+}
+
+/// Makes the flows results of the case, with one sentence for all.
+pub(crate) fn show_flows(found: &mut Findings) {
+    let unit = MASS_FLOW.symbol(found.dimension());
+    let known = FLOWS.map(|(name, ..)| match found.number(&format!("wear.{name}")) {
+        Some(q) => format!("{name} {} {unit}", number(q, 3)),
+        None => format!("{name} not measured"),
+    });
+    let [source, ejected, lost, internal] = known;
+    for (name, label, doc) in FLOWS {
+        found.edit(&format!("wear.{name}"), |q| {
+            if q.value.as_f64().is_some_and(|x| x != 0.0) {
+                q.secondary(label).silent();
+            }
+            doc.clone_into(&mut q.doc);
+        });
+    }
+    let any = found.number("wear.Qs").is_some_and(|q| q > 0.0);
+    let circuit = found.number("circuit.start").is_some();
+    found.edit("wear.Qs", |q| {
+        q.lacks = None;
+        q.headline("source flow Qs").silent();
+        if any || circuit {
+            q.sentence("flows", format!("{source}, {ejected}, {lost}; {internal}"));
+        }
+    });
+}
+
+/// Volume, depths and specific wear rate.
+fn of_body(w: &BodyWear, volume: &str) -> String {
+    let mut text = quantity(w.volume, volume);
+    if let (Some(mean), Some(most)) = (w.depth_mean, w.depth_max) {
+        let _ = write!(
+            text,
+            ", {} deep on average where worn, {} at most",
+            quantity(mean, "m"),
+            quantity(most, "m")
+        );
+    }
+    if let Some(k) = w.specific_rate {
+        let _ = write!(text, "; k = V/(P s) = {}", quantity(k, "m^3/(N m)"));
+    }
+    text
+}
 
 /// Observes what wears.
 #[derive(Clone, Debug)]
@@ -24,6 +206,8 @@ pub struct Wear {
     scaling: f64,
     /// Density of the first bodies (kg/m^3).
     density: f64,
+    /// Whether an interface of the case has a wear law.
+    wears: bool,
     state: Worn,
 }
 
@@ -37,9 +221,10 @@ struct Worn {
 
 impl Wear {
     /// Wear of first bodies of a density (kg/m^3), with flows along an axis from a time (s) on; masses of the bodies are larger
-    /// than they are by `scaling`.
-    pub fn new(start: f64, along: usize, scaling: f64, density: f64) -> Self {
+    /// than they are by `scaling`; `wears` says whether an interface has a wear law.
+    pub fn new([start, scaling, density]: [f64; 3], along: usize, wears: bool) -> Self {
         Self {
+            wears,
             along,
             scaling,
             density,
@@ -70,7 +255,7 @@ impl<S: Space> Observer<S> for Wear {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let volume = if S::D == 2 { "m^3/m" } else { "m^3" };
+        let volume = VOLUME.symbol(S::D);
         vec![
             Column::new("worn_first", volume, "volume worn off first bodies"),
             Column::new("worn_third", volume, "volume worn between grains"),
@@ -81,15 +266,15 @@ impl<S: Space> Observer<S> for Wear {
         vec![self.state.volumes.0, self.state.volumes.1]
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let (s, state) = (end.simulation, &self.state);
         // Wear goes on over the cycles that were jumped over.
         let jumps = s.process::<Jumps>();
         let over = jumps.map_or(0.0, |j| j.jumped_at(s.state.time) * j.period());
         // Nothing leaves a contact that is periodic along the sliding.
         let closed = s.shapes.periodic.period[self.along].map(|_| 0.0);
-        summary.wear = summary::Wear {
-            unit: summary::Wear::unit(S::D),
+        let summary = WearSummary {
+            unit: MASS_FLOW.symbol(S::D),
             start: state.flows.start,
             Qs: state.flows.source(over) * self.density,
             Qi: state.flows.internal(),
@@ -100,6 +285,7 @@ impl<S: Space> Observer<S> for Wear {
             load_path: None,
             bodies: first_bodies::wear(s),
         };
+        summary.report(self.wears, found);
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

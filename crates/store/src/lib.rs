@@ -9,7 +9,6 @@ pub mod meshes;
 pub mod results;
 pub mod shapes;
 pub mod views;
-pub mod warnings;
 mod write_advice;
 
 pub use fretwork_observe::{series, summary};

@@ -1,14 +1,13 @@
 //! Converts the state of a simulation to the views of `results.h5`.
 
 use super::results::{Header, Part, Results, ResultsError};
-use super::summary::Summary;
+use super::summary::RunFacts;
 use super::{meshes, shapes};
 use fretwork_core::fields::{Field, FieldList, Fields, GrainPart, Value, orientation, removed};
 use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::laws::Kind;
 use fretwork_core::step::{InDimension, Simulation};
-use fretwork_observe::placement;
 use fretwork_observe::statistics::Column;
+use fretwork_observe::{Observers, placement};
 use fretwork_scene::build::Loaded;
 use fretwork_scene::recorded::ShapedGrain;
 
@@ -25,39 +24,29 @@ pub struct Made<'a, S: Space> {
     pub deforming: &'a [ShapedGrain],
 }
 
-/// What the file says before the first step, with the columns of the statistics and those of the grains that observers have.
+/// What the file says before the first step, with the columns and tables of the observers.
 pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
-    summary: &Summary,
-    statistics: &[Column],
-    grain_columns: &[Column],
+    run: &RunFacts,
+    observers: &Observers<S>,
 ) -> Header {
     let fields = fields(built.simulation, loaded.case.circuit.is_some());
-    let mut interfaces = loaded.case.interfaces.iter();
-    let bonds = interfaces.any(|i| i.law(Kind::COHESION).is_some());
     Header {
-        broken: match bonds {
-            true => broken_columns(S::D),
-            false => Vec::new(),
-        },
-        debris: match loaded.case.circuit {
-            Some(_) => debris_columns(S::D),
-            None => Vec::new(),
-        },
+        events: observers.event_tables(),
         case_name: loaded.case.name.clone(),
         case_text: loaded.source.text().to_owned(),
         materials: built.materials.to_vec(),
-        plugins: summary.plugins.clone(),
+        plugins: run.plugins.clone(),
         seed: loaded.case.seed,
         dimension: S::D,
         shapes: shapes::of(built.simulation, built.densities, built.deforming),
         meshes: meshes::of(&loaded.case, built.simulation),
-        version: summary.version.clone(),
-        statistics: statistics.to_vec(),
+        version: run.version.clone(),
+        statistics: observers.columns(),
         fields: [
             columns(&fields.grains, Kept::Number)
-                .chain(grain_columns.iter().cloned())
+                .chain(observers.grain_columns())
                 .collect(),
             columns(&fields.contacts, Kept::Number).collect(),
             vec![Column::new("body", "", "identity of the body")],
@@ -73,77 +62,6 @@ pub fn header<S: Space>(
             Vec::new(),
         ],
     }
-}
-
-/// Coordinates of the place of an event.
-fn place_columns() -> [Column; 3] {
-    ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
-}
-
-fn energy_unit(dimension: usize) -> &'static str {
-    if dimension == 2 { "J/m" } else { "J" }
-}
-
-/// Columns of the table of broken bonds.
-fn broken_columns(dimension: usize) -> Vec<Column> {
-    let (c, at) = (Column::new, place_columns());
-    let joule = energy_unit(dimension);
-    let area = if dimension == 2 { "m" } else { "m^2" };
-    let broken = [
-        c("id", "", "number of the break, from 1"),
-        c("time", "s", "end of the step in which it broke"),
-        c("body_1", "", "identity of the candidate"),
-        c("body_2", "", "identity of the antagonist"),
-        c("interface", "", "index of the interface"),
-    ];
-    let columns = broken.into_iter().chain(at).chain([
-        c(
-            "mode_mix",
-            "",
-            "fraction of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
-        ),
-        c("opening_normal", "m", "elongation at the end"),
-        c("opening_tangential", "m", "norm of the tangential opening"),
-        c("area", area, "area of the bond"),
-        c("work", joule, "work done on the bond since it formed"),
-        c("fracture", joule, "energy released by damage"),
-        c("viscous", joule, "dissipated by its damping"),
-        c(
-            "friction",
-            joule,
-            "dissipated by friction at the contact while it was intact",
-        ),
-        c(
-            "cause",
-            "",
-            "0 damage, 1 its bodies moved out of range or one was removed",
-        ),
-    ]);
-    columns.collect()
-}
-
-/// Columns of the table of debris.
-fn debris_columns(dimension: usize) -> Vec<Column> {
-    let (c, at) = (Column::new, place_columns());
-    let joule = energy_unit(dimension);
-    let kg = if dimension == 2 { "kg/m" } else { "kg" };
-    let debris = [
-        c("id", "", "number of the piece, from 1"),
-        c("time", "s", "time at which the account found it loose"),
-        c("size", "", "grains in it"),
-        c("mass", kg, "its mass"),
-    ];
-    let columns = debris.into_iter().chain(at).chain([
-        c("first_body", "", "identity of the first body that lost it"),
-        c(
-            "mode_mix",
-            "",
-            "fraction of sliding in the work on the bonds that freed it",
-        ),
-        c("energy", joule, "energy released by damage of these bonds"),
-        c("bonds", "", "number of these bonds"),
-    ]);
-    columns.collect()
 }
 
 /// The fields of a simulation's views: those it registers, orientations where there are grains that are no lone balls, and

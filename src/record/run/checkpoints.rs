@@ -102,7 +102,7 @@ impl<S: Observed> Recorder<'_, S> {
             done: self.done,
             wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
             processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
-            time_spent: self.summary.time_spent,
+            time_spent: self.summary.run.time_spent,
         })?)
     }
 
@@ -131,7 +131,7 @@ impl<S: Observed> Recorder<'_, S> {
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();
         self.elapsed_before_resume = (state.wall, state.processor);
-        self.summary.time_spent = state.time_spent;
+        self.summary.run.time_spent = state.time_spent;
         self.results.take_over(&stop.results, &state.rows)?;
         let names: Vec<String> = self.table.columns.iter().map(|c| c.name.clone()).collect();
         // The columns of the statistics are declared first.

@@ -5,17 +5,16 @@
 //! back after it. What happens then to the program is decided by whoever started the watch.
 
 use super::end::{self, LAST};
-use super::notice;
 use super::{Recorder, RunError};
 use crate::geometry::space::Space;
 use crate::laws::watch::{self, Ready};
 use crate::record::results::Results;
 use crate::record::statistics::Table;
-use crate::record::summary::Summary;
-use crate::record::warnings;
+use crate::record::summary::{Summary, Uncertainty};
 use crate::step::StepReport;
 use cpu_time::ProcessTime;
 use fretwork_observe::Observers;
+use fretwork_observe::error_estimate::Repeats;
 use fretwork_store::folder_lock::FolderLock;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -47,8 +46,8 @@ impl<S: Space> EmergencySave<S> {
             let outputs = place.lock().ok().and_then(|mut l| l.take());
             outputs.is_some_and(|mut outputs| {
                 let spent = outputs.spent;
-                outputs.summary.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
-                outputs.summary.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
+                outputs.summary.run.wall_seconds = (spent.0 + clock.elapsed()).as_secs_f64();
+                outputs.summary.run.cpu_seconds = (spent.1 + processor.elapsed()).as_secs_f64();
                 lock.kept().is_ok() && outputs.write(who, &out)
             })
         });
@@ -63,11 +62,11 @@ impl<S: Space> UnsavedOutputs<S> {
     /// Writes it; whether all of it is on disk.
     fn write(&mut self, who: &str, out: &Path) -> bool {
         let summary = &mut self.summary;
-        summary.stopped = Some(who.to_owned());
-        self.observers.summarise_so_far(summary);
-        summary.complete();
-        let list = warnings::of(summary, None);
-        notice::judge(summary, &list);
+        summary.run.stopped = Some(who.to_owned());
+        summary.found = self.observers.report_so_far();
+        let estimate = Uncertainty::new(&summary.found, Repeats::default());
+        estimate.report(&mut summary.found);
+        summary.check();
         let text = serde_json::to_string_pretty(summary).unwrap_or_default();
         let table = self.table.flush().is_ok();
         let results = self.results.finish(out).is_ok();

@@ -1,12 +1,17 @@
 //! End of a run: summary, figures and final output.
 
 use super::error::unreadable;
+use super::notice::band;
 use super::{Recorder, RunError, unwritable};
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
+use crate::record::quantity::unit::ONE;
+use crate::record::quantity::{Findings, Role, Topic};
+use crate::record::summary::Uncertainty;
 use crate::view::{Figure, TableColumns, draw_panels, noted};
 use fretwork_observe::RunEnd;
+use fretwork_observe::accuracy::report_accuracy;
 use fretwork_observe::standard::Observed;
 use fretwork_observe::statistics::Table;
 use std::path::Path;
@@ -19,32 +24,54 @@ impl<S: Observed> Recorder<'_, S> {
         self.lock.kept()?;
         let statistics_read = self.timed(|t| &mut t.files, Self::read_statistics);
         let wall = self.elapsed_before_resume.0 + self.clock.elapsed();
-        let mut summary = std::mem::take(&mut self.summary);
-        summary.wall_seconds = wall.as_secs_f64();
-        summary.cpu_seconds =
-            (self.elapsed_before_resume.1 + self.processor.elapsed()).as_secs_f64();
-        self.observers.summarise(&self.end(wall), &mut summary);
-        let solver = &mut summary.solver;
-        (solver.fclib_written, solver.fclib_skipped) = self.problems;
+        let run = &mut self.summary.run;
+        run.wall_seconds = wall.as_secs_f64();
+        run.cpu_seconds = (self.elapsed_before_resume.1 + self.processor.elapsed()).as_secs_f64();
+        let mut found = self.observers.report(&self.end(wall));
+        self.report_problems(&mut found);
         let state = &self.simulation.state;
         let driven = state.bodies.driven.iter();
         let driven = driven
             .map(|d| state.bodies.energy_of(d.body as usize))
             .sum();
-        summary.repeats = self.estimate.report(&state.energy, driven);
-        summary.accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));
-        summary.complete();
-        self.summary = summary;
-        let notice = self.warn();
+        let repeats = self.estimate.report(&state.energy, driven);
+        self.uncertainty = Uncertainty::new(&found, repeats);
+        self.uncertainty.report(&mut found);
+        let accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));
+        report_accuracy(accuracy.as_ref(), &mut found);
+        self.summary.found = found;
+        let notice = band(&self.summary.check());
         let files = noted(notice, || self.files(wall)).and(statistics_read);
-        if let (Err(e), None) = (&files, &self.summary.stopped) {
-            self.summary.stopped = Some(e.to_string());
-            self.warn();
+        if let (Err(e), None) = (&files, &self.summary.run.stopped) {
+            self.summary.run.stopped = Some(e.to_string());
+            self.summary.check();
         }
         self.lock.kept()?;
         let text = serde_json::to_string_pretty(&self.summary).unwrap_or_default();
         write_atomic(&self.out.join(LAST), &(text + "\n"))?;
         files
+    }
+
+    /// Adds the steps that were written as FCLIB problems.
+    fn report_problems(&self, found: &mut Findings) {
+        let (written, skipped) = self.problems;
+        found.begin(Topic::Run, Role::Diagnostic);
+        let doc = "steps written as FCLIB problems";
+        let problems = found.add("solver.fclib_written", written, ONE, doc);
+        if written + skipped > 0 {
+            let skipped = match skipped {
+                0 => String::new(),
+                n => format!(
+                    "; {n} not, since they have bonds, cohesion or friction against rotation, which FCLIB cannot represent"
+                ),
+            };
+            problems.sentence(
+                "problems",
+                format!("{written} steps written in fclib/{skipped}"),
+            );
+        }
+        let doc = "steps that FCLIB cannot represent";
+        found.add("solver.fclib_skipped", skipped, ONE, doc);
     }
 
     /// What observers see of the run now that it has ended.
@@ -53,7 +80,7 @@ impl<S: Observed> Recorder<'_, S> {
             simulation: &self.simulation,
             table: &self.table,
             title: &self.loaded.case.name,
-            uncertainty: &self.summary.uncertainty,
+            uncertainty: &self.uncertainty,
             wall,
         }
     }
@@ -98,7 +125,7 @@ impl<S: Observed> Recorder<'_, S> {
 
     /// Closes the results file, and marks it complete if the run reached its end.
     fn end_results(&mut self) -> Result<(), RunError> {
-        if self.summary.stopped.is_none() {
+        if self.summary.run.stopped.is_none() {
             let (number, bytes) = self.checkpoint_writer.frame(Kind::Ended, Vec::new());
             self.results.set_final_checkpoint(number, &bytes);
         }

@@ -25,19 +25,19 @@ use self::schedule::due;
 use self::stamps::{density_of, stamps};
 use super::checkpoint::{CheckpointWriter, Found, Identity, Kind, ResumePoint, find};
 use super::picture::Camera;
+use super::quantity::Findings;
 use super::results::Results;
 use super::statistics::{Column, Table};
-use super::summary::Summary;
+use super::summary::{RunFacts, Summary, Uncertainty};
 use super::views;
 use crate::geometry::space::Space;
 use crate::scene::build::{Built, Dimensional, Loaded, Scene};
 use crate::scene::case::Case;
-use crate::scene::{processes, sampling};
+use crate::scene::processes;
 use crate::step::{InDimension, Simulation, StepReport};
 use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
-use fretwork_observe::heat::without_heat;
 use fretwork_observe::run_state::damage_ratio;
 use fretwork_observe::standard::{self, Observed};
 use fretwork_observe::{Observer, Observers};
@@ -102,7 +102,9 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 ///     }
 ///     ControlFlow::Continue(())
 /// })?;
-/// println!("{} J of friction", summary.energy.friction);
+/// if let Some(friction) = summary.found.number("energy.friction") {
+///     println!("{friction} J of friction");
+/// }
 /// # Ok(())
 /// # }
 /// ```
@@ -160,11 +162,11 @@ impl<'a, S: Observed> Run<'a, S> {
     pub fn execute(self, progress: &mut OnProgress<'_>) -> Result<Summary, RunError> {
         let mut recorder = Recorder::new(self)?;
         let outcome = recorder.run_steps(progress).map(|stopped| {
-            recorder.summary.interrupted = stopped.is_some();
-            recorder.summary.stopped = stopped;
+            recorder.summary.run.interrupted = stopped.is_some();
+            recorder.summary.run.stopped = stopped;
         });
         if let Err(e) = &outcome {
-            recorder.summary.stopped = Some(e.to_string());
+            recorder.summary.run.stopped = Some(e.to_string());
         }
         let outcome = match outcome {
             Err(e) if e.is_last() => return Err(e),
@@ -267,6 +269,8 @@ struct Recorder<'a, S: Space> {
     clock: Instant,
     processor: ProcessTime,
     summary: Summary,
+    /// How well the main results are known, at the end.
+    uncertainty: Uncertainty,
     /// See [`Run::hurry`].
     hurry: Option<&'a AtomicBool>,
     /// Why rows of `statistics.csv` are missing, which is made of the results again when the run goes on.
@@ -299,7 +303,7 @@ impl<'a, S: Observed> Recorder<'a, S> {
         };
         let frames = options.out.join("frames");
         std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
-        let summary = Summary {
+        let facts = RunFacts {
             case: case.name.clone(),
             dimension: S::D,
             plugins: stamps(&simulation.laws),
@@ -307,15 +311,13 @@ impl<'a, S: Observed> Recorder<'a, S> {
             threads: options.threads,
             seed: case.seed,
             identity: checkpoint_writer.name(),
-            unresolved_drives: sampling::unresolved(case),
-            without_heat: without_heat(simulation),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            ..Summary::default()
+            ..RunFacts::default()
         };
         let columns = observers.columns();
         // The file of results comes first: it alone says what the folder holds.
         let part = options.out.join("results.h5.part");
-        let mut results = create_results(&part, loaded, &built, &summary, &observers)?;
+        let mut results = create_results(&part, loaded, &built, &facts, &observers)?;
         results.owned_by(lock.clone());
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
@@ -340,7 +342,11 @@ impl<'a, S: Observed> Recorder<'a, S> {
             emergency: EmergencySave::new(options.out.clone(), lock.clone()),
             clock: Instant::now(),
             processor: ProcessTime::now(),
-            summary,
+            summary: Summary {
+                run: facts,
+                found: Findings::new(S::D),
+            },
+            uncertainty: Uncertainty::default(),
             simulation,
             loaded,
             hurry: run.hurry,
@@ -513,7 +519,7 @@ fn create_results<S: Dimensional>(
     part: &Path,
     loaded: &Loaded,
     built: &Built<S>,
-    summary: &Summary,
+    facts: &RunFacts,
     observers: &Observers<S>,
 ) -> Result<Results, RunError> {
     let made = views::Made {
@@ -522,7 +528,6 @@ fn create_results<S: Dimensional>(
         densities: &built.densities,
         deforming: &built.deforming,
     };
-    let (statistics, grains) = (observers.columns(), observers.grain_columns());
-    let header = views::header(loaded, &made, summary, &statistics, &grains);
+    let header = views::header(loaded, &made, facts, observers);
     Ok(Results::create(part, &header)?)
 }

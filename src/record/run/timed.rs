@@ -15,7 +15,7 @@ impl<S: Space> Recorder<'_, S> {
     ) -> T {
         let begun = Instant::now();
         let result = action(self);
-        *part(&mut self.summary.time_spent) += begun.elapsed().as_secs_f64();
+        *part(&mut self.summary.run.time_spent) += begun.elapsed().as_secs_f64();
         result
     }
 
@@ -23,6 +23,9 @@ impl<S: Space> Recorder<'_, S> {
     pub(super) fn add_step(&mut self, begun: Instant, report: &StepReport) {
         let timing = &report.timing;
         let stages = [timing.detect, timing.laws, timing.solve];
-        self.summary.time_spent.add_steps(begun.elapsed(), stages);
+        self.summary
+            .run
+            .time_spent
+            .add_steps(begun.elapsed(), stages);
     }
 }

@@ -476,9 +476,9 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let (summary, rows) = ran(20.0);
     assert!(
-        summary.warnings.iter().all(|w| !w.contains("DRIVE")),
+        summary.run.warnings.iter().all(|w| !w.contains("DRIVE")),
         "{:?}",
-        summary.warnings
+        summary.run.warnings
     );
     let mut lines = rows.lines().filter(|l| !l.starts_with('#'));
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
@@ -502,7 +502,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
         (1000.0, "ALIASED DRIVE", "ALIASES"),
     ] {
         let (summary, _) = ran(frequency);
-        let told = summary.warnings.iter().find(|w| w.starts_with(heading));
+        let told = summary.run.warnings.iter().find(|w| w.starts_with(heading));
         let told = told.expect("a warning");
         assert!(
             told.contains("`pin` along x") && told.contains(words),
@@ -512,7 +512,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
         // A coarse path is a note; another frequency than the one asked for is a reason.
         let aliased = heading == "ALIASED DRIVE";
         assert_eq!(
-            summary.reasons.iter().any(|r| r.starts_with(heading)),
+            summary.run.reasons.iter().any(|r| r.starts_with(heading)),
             aliased
         );
         let name = format!("fretwork-drives-{}-{frequency}.ron", std::process::id());

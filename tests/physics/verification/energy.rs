@@ -2,7 +2,9 @@
 
 use super::Table;
 use crate::scene;
+use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::record::friction_report::Friction;
 
 pub fn all(table: &mut Table) {
     ledger(table);
@@ -14,17 +16,19 @@ pub fn all(table: &mut Table) {
 fn ledger(table: &mut Table) {
     let sets = ["output.frames=0", "output.figures=false"];
     let summary = scene::ran::<Dim2>("verification/energy", &sets, |_| {});
-    let e = &summary.energy;
+    let found = &summary.found;
+    let e = found.get::<Energy>().unwrap();
+    let cycles = &found.get::<Friction>().unwrap().cycles;
     assert!(
         e.elastic > 0.0 && e.friction > 0.0,
         "bonds and friction are at work"
     );
-    assert_eq!(summary.cycles.len(), 2);
-    let steps = summary.solver.unconverged_steps as f64;
+    assert_eq!(cycles.len(), 2);
+    let steps = found.number("solver.unconverged_steps").unwrap();
     table.compare("energy", "steps not converged", 0.0, steps, 0.0);
     let off = e.residual / e.external_work.abs();
     table.compare("energy", "residual over external work", 0.0, off, 1e-6);
-    for c in &summary.cycles {
+    for c in cycles {
         let name = format!("cycle {}: mu from heat is mu from forces", c.cycle);
         let (forces, heat) = (c.friction_coefficient, c.friction_from_dissipation);
         table.compare("energy", &name, forces, heat, 1e-9);
@@ -34,7 +38,7 @@ fn ledger(table: &mut Table) {
 /// A frictionless bond pulled away and sheared: there is no pressure, so no friction coefficient.
 fn pulled(table: &mut Table) {
     let summary = scene::ran::<Dim2>("verification/pulled_friction", &[], |_| {});
-    let mu = summary.friction_coefficient.unwrap_or(0.0);
+    let mu = summary.found.number("friction_coefficient").unwrap_or(0.0);
     table.compare(
         "pulled_friction",
         "friction coefficient under tension",

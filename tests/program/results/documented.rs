@@ -4,10 +4,11 @@ use fretwork::fields::{Fields, orientation, removed};
 use fretwork::geometry::space::{Dim2, Dim3};
 use fretwork::record::Observed;
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
-use fretwork::record::{Summary, statistics_columns};
+use fretwork::record::statistics_columns;
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
 use fretwork::shipped::search_path;
+use fretwork_observe::standard::declared;
 use std::collections::BTreeSet;
 
 /// What stands between backticks in the page.
@@ -124,7 +125,15 @@ fn every_field_of_the_views_is_documented() {
 #[test]
 fn every_key_of_the_summary_is_documented() {
     let page = documented();
-    let summary = serde_json::to_value(Summary::default()).unwrap();
+    let path = format!(
+        "{}/cases/wheel_rail_fretting.ron",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
+    let built = loaded.build_in::<Dim2>(&search_path());
+    let built = built.unwrap_or_else(|e| panic!("{e}"));
+    let found = declared(&loaded.case, &built.simulation);
+    let summary = serde_json::to_value(&found).unwrap();
     let keys = summary.as_object().unwrap().keys();
     let missing: Vec<&String> = keys.filter(|key| !page.contains(*key)).collect();
     assert!(missing.is_empty(), "docs/outputs.md lacks {missing:?}");

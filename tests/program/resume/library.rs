@@ -2,13 +2,17 @@
 //! files, its checkpoints and its summary, and a callback stops it.
 
 use super::common::{Folder, marked, same};
+use fretwork::energy::Energy;
 use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::process::{Process, ProcessError};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
+use fretwork::record::quantity::Findings;
+use fretwork::record::quantity::unit::METRE;
 use fretwork::record::results::PreviousResults;
-use fretwork::record::statistics::{Column, Table};
+use fretwork::record::statistics::Column;
+use fretwork::record::summary::Uncertainty;
 use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, Summary, stopped};
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
@@ -46,12 +50,9 @@ impl<S: Space> Observer<S> for MeanGap {
         vec![mean_gap(s)]
     }
 
-    fn outcome(&self, _: &Table) -> Vec<(String, f64)> {
-        vec![("mean_gap_of_run".to_owned(), self.sum / self.steps as f64)]
-    }
-
-    fn units(&self) -> Vec<(String, &'static str)> {
-        vec![("mean_gap_of_run".to_owned(), "m")]
+    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
+        let mean = self.sum / self.steps as f64;
+        found.measure("mean_gap_of_run", mean, METRE, "mean gap of the run");
     }
 
     fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
@@ -160,7 +161,7 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     let options = options(&folder);
     let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
-    assert!(summary.stopped.is_none());
+    assert!(summary.run.stopped.is_none());
     // Three pairs of balls are half a millimetre apart; half a step, at whose end gaps are
     // measured, takes the ball that is pushed nearer to one of them by h v/2, v = h F0/m.
     let kept = PreviousResults::open(&folder.0.join("results.h5")).unwrap();
@@ -170,22 +171,23 @@ fn an_observer_and_a_process_of_a_user_are_recorded() {
     assert!((columns[0][0] - gap).abs() < 1e-12, "{}", columns[0][0]);
     let text = std::fs::read_to_string(folder.0.join("statistics.csv")).unwrap();
     assert!(text.lines().next().unwrap().ends_with(",mean_gap [m]"));
-    let found = summary.measures["mean_gap_of_run"];
+    let found = summary.found.number("measures.mean_gap_of_run").unwrap();
     let mean = columns[0].iter().sum::<f64>() / 600.0;
     assert!((found / mean - 1.0).abs() < 1e-12);
-    assert_eq!(summary.measure_units["mean_gap_of_run"], "m");
+    let unit = summary.found.text("measure_units.mean_gap_of_run");
+    assert_eq!(unit, Some("m"));
     assert!(folder.0.join("mean_gap.txt").exists());
     // J = J0 (1 - (1 - h F0/J0)^n), and the work of the push is the gain of kinetic energy: impacts
     // with e = 1 lose none.
     let given = LIMIT * (1.0 - (1.0 - 1e-4 * FORCE / LIMIT).powi(600));
     assert!(given > 0.5 * LIMIT && mass > 0.0);
-    let e = &summary.energy;
+    let e = summary.found.get::<Energy>().unwrap();
     let gain = e.kinetic - mass;
     assert!(
         e.external_work > 0.0 && (gain / e.external_work - 1.0).abs() < 1e-6,
         "{gain} {e:?}"
     );
-    assert!(summary.energy_residual_relative < 1e-9);
+    assert!(e.relative_residual() < 1e-9);
 }
 
 #[test]
@@ -197,9 +199,9 @@ fn a_callback_stops_a_run_with_all_its_files_and_it_goes_on_with_the_same_bits()
     run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
 
     let summary = stop_after(&folder, 250);
-    let said = summary.stopped.unwrap();
+    let said = summary.run.stopped.unwrap();
     assert_eq!(said, "had enough after step 250 of 600");
-    assert!(summary.interrupted && summary.steps == 250);
+    assert!(summary.run.interrupted && summary.found.number("steps") == Some(250.0));
     let text = std::fs::read_to_string(folder.0.join("summary.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["stopped"], said);
@@ -238,7 +240,7 @@ fn steps_with_a_process_that_does_not_permit_it_are_not_repeated() {
     let options = options(&folder);
     let run = Run::new(&loaded, built, &options);
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();
-    let repeats = &summary.uncertainty.repeats;
+    let repeats = &summary.found.get::<Uncertainty>().unwrap().repeats;
     let reason = repeats.reason.as_deref().unwrap_or_default();
     assert!(repeats.places == 0 && reason.contains("`push`"), "{reason}");
 }

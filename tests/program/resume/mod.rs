@@ -2,7 +2,7 @@
 //! that was not.
 
 mod cases;
-mod common;
+pub(crate) mod common;
 mod ending;
 mod faults;
 mod folder;

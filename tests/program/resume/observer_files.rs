@@ -122,7 +122,7 @@ fn a_table_of_an_observer_goes_on_over_a_resumption() {
         let speed: f64 = line.split_once(',').unwrap().1.parse().unwrap();
         assert!((speed - 1.0).abs() < 1e-6, "{line}");
     }
-    assert!(run(&parts, Some(255), false).interrupted);
+    assert!(run(&parts, Some(255), false).run.interrupted);
     assert_eq!(table(&parts).lines().count(), 1 + 25);
     run(&parts, None, true);
     same(&whole.0, &parts.0);

@@ -3,6 +3,7 @@
 use super::range::Range;
 use crate::runs::stored::numerical_error;
 use fretwork_math::statistics::interval::Mean;
+use fretwork_observe::quantity::Catalogue;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +51,7 @@ fn of(folder: &Path) -> Result<Run, String> {
             folder.display()
         )
     })?;
+    let catalogue = Catalogue::of(&summary);
     let uncertainty = &summary["uncertainty"];
     let worn = uncertainty["wear"]["value"].as_f64().filter(|v| *v > 0.0);
     let bodies = summary["wear"]["bodies"].as_array();
@@ -60,9 +62,9 @@ fn of(folder: &Path) -> Result<Run, String> {
     Ok(Run {
         friction: value.abs(),
         scatter: uncertainty["friction_coefficient"]["scatter"].as_f64(),
-        numerical: numerical_error(&summary, "friction_coefficient"),
+        numerical: numerical_error(&catalogue, "friction_coefficient"),
         wear: bodies.into_iter().flatten().filter_map(rate).collect(),
-        wear_error: numerical_error(&summary, "wear")
+        wear_error: numerical_error(&catalogue, "wear.volume_first_bodies")
             .zip(worn)
             .map(|(e, v)| e / v),
     })

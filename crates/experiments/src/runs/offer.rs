@@ -1,128 +1,69 @@
 //! Outputs that a case has, determined before anything runs.
 
-use super::quantity::{Quantity, flatten, listed};
-use fretwork_core::laws::Interface;
+use super::quantity::{Quantity, listed};
+use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
 use fretwork_observe::standard::{self, Observed};
 use fretwork_scene::Scene;
 use fretwork_scene::build::Built;
 use fretwork_scene::case::Case;
 use fretwork_scene::measures::MeasureSpec;
-use fretwork_store::Summary;
 use serde_json::Value;
 
 /// The outputs of a case.
 #[derive(Clone, Debug)]
 pub struct Offer {
-    /// A summary for this kind of case, without values.
-    summary: Value,
+    /// What its runs report, as of the start.
+    found: Findings,
     /// Columns of the statistics.
     columns: Vec<String>,
     /// Names of its measures.
     measures: Vec<String>,
-    /// Names and groups that its runs leave empty, and what the case lacks for them.
-    absent: Vec<(&'static str, &'static str)>,
-    /// Whether the case has bonds.
-    bonded: bool,
 }
-
-const NO_TEST: &str = "the case has no friction test (`friction`)";
-const NO_BONDS: &str = "no interface of the case makes bonds";
-const NO_DAMAGE: &str = "no interface of the case has a damage law";
-const NO_WEAR: &str = "no interface of the case has a wear law";
-const OF_THE_RUN: &str = "it describes the course of the run, not a result of the case";
-const NO_CIRCUIT: &str = "the case has no circuit of grains (`circuit`)";
 
 impl Offer {
     /// The outputs of a case and its scene.
     pub fn of<S: Observed>(case: &Case, built: &Built<S>) -> Self {
-        let s = &built.simulation;
-        let bonds =
-            |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
-        let bonded = s.laws.iter().any(bonds) || s.state.network.bonds_made() > 0;
-        let damaged = bonded && s.laws.iter().any(Interface::damages);
-        let wears = s.laws.iter().any(|l| l.wear().is_some());
-        let circuit = case.circuit.is_some();
-        let needs: [(&[&str], bool, &str); 10] = [
-            (&["haste", "uncertainty", "energy.scale"], false, OF_THE_RUN),
-            (
-                &[
-                    "friction_coefficient",
-                    "friction_from_dissipation",
-                    "peak_friction",
-                    "plateau_friction",
-                    "cycles",
-                    "fretting",
-                ],
-                case.friction.is_some(),
-                NO_TEST,
-            ),
-            (
-                &["bonds", "broken", "damage_ratio", "energy.elastic"],
-                bonded,
-                NO_BONDS,
-            ),
-            (&["mean_damage", "energy.fracture"], damaged, NO_DAMAGE),
-            (&["wear.Qs"], wears || circuit, NO_WEAR),
-            (
-                &["wear.volume_first_bodies", "wear.volume_third_body"],
-                wears,
-                NO_WEAR,
-            ),
-            (&["wear.Qe", "wear.Qw", "circuit"], circuit, NO_CIRCUIT),
-            (
-                &["biaxial"],
-                case.biaxial.is_some(),
-                "the case has no biaxial test (`biaxial`)",
-            ),
-            (
-                &["jump"],
-                case.jump.is_some(),
-                "the case has no jumps over cycles (`jump`)",
-            ),
-            (
-                &["scars"],
-                !s.state.scars.is_empty(),
-                "no surface of the case recedes by wear (`wears`)",
-            ),
-        ];
-        let lacking = needs.iter().filter(|n| !n.1);
-        let absent = lacking.flat_map(|(names, _, why)| names.iter().map(|n| (*n, *why)));
         Self {
-            summary: serde_json::to_value(Summary::default()).unwrap_or_default(),
+            found: standard::declared(case, &built.simulation),
             columns: columns_of(case, built),
             measures: case.measures.iter().map(|m| m.name().to_owned()).collect(),
-            absent: absent.collect(),
-            bonded,
         }
     }
 
-    /// Names of the default outputs: friction if the case has a friction test, the damage ratio if it has a damage law, the
-    /// source flow if it has a wear law.
-    pub fn usual(&self) -> Vec<&'static str> {
-        let names = ["friction_coefficient", "damage_ratio", "wear.Qs"];
-        let damaged = self.bonded && self.lack(&["mean_damage".to_owned()]).is_none();
-        let there = names.into_iter().filter(|n| {
-            let path: Vec<String> = n.split('.').map(str::to_owned).collect();
-            self.lack(&path).is_none() && (*n != "damage_ratio" || damaged)
-        });
-        there.collect()
+    /// Names of the default outputs: the main results that the case has.
+    pub fn usual(&self) -> Vec<String> {
+        let all = self.found.all().iter();
+        let main = all.filter(|q| q.role == Role::Headline && q.lacks.is_none());
+        let mut main: Vec<_> = main.collect();
+        main.sort_by_key(|q| q.topic);
+        main.into_iter().map(|q| q.name()).collect()
     }
 
-    /// What the case lacks for an output.
-    fn lack(&self, path: &[String]) -> Option<&'static str> {
-        let name = path.join(".");
-        let below = |group: &str| {
-            let rest = name.strip_prefix(group);
-            rest.is_some_and(|r| r.is_empty() || r.starts_with('.'))
-        };
-        self.absent.iter().find(|a| below(a.0)).map(|a| a.1)
+    /// What the case lacks for an output: for itself, the group it is in, or all that is in it.
+    fn lack(&self, name: &str) -> Option<&'static str> {
+        let mut at_or_below = false;
+        let mut why = None;
+        for q in self.found.all() {
+            let own = q.name();
+            if within(name, &own) && q.lacks.is_some() {
+                return q.lacks;
+            }
+            if within(&own, name) {
+                let first = !std::mem::replace(&mut at_or_below, true);
+                why = if first || why.is_some() {
+                    q.lacks
+                } else {
+                    None
+                };
+            }
+        }
+        why
     }
 
     /// The names of the outputs in the summary.
     fn names(&self) -> Vec<String> {
-        let mut names = Vec::new();
-        flatten(&self.summary, "", &mut names);
-        names.retain(|n| self.lack(std::slice::from_ref(n)).is_none());
+        let mut names = Catalogue::new(&self.found).comparable();
+        names.retain(|n| self.lack(n).is_none());
         names.extend(self.measures.iter().map(|m| format!("measures.{m}")));
         names
     }
@@ -139,42 +80,55 @@ impl Offer {
                 Err(output.unknown(&self.columns, "statistics.", column))
             };
         }
-        let path = output.summary_path().unwrap_or_default();
-        let unknown = || Err(output.unknown(&self.names(), "", &output.name));
-        if let Some(why) = self.lack(path) {
+        let name = output.name.as_str();
+        let unknown = || Err(output.unknown(&self.names(), "", name));
+        if let Some(why) = self.lack(name) {
             return Err(format!(
                 "{why}, so there is nothing to compare; {}",
                 listed(&self.names(), "")
             ));
         }
-        if path.first().is_some_and(|p| p == "measures") {
-            let measures: Vec<&str> = self.measures.iter().map(String::as_str).collect();
-            return match output.measured(&measures) {
-                true => Ok(()),
-                false => unknown(),
-            };
+        let measures: Vec<&str> = self.measures.iter().map(String::as_str).collect();
+        if output.measured(&measures) {
+            return Ok(());
         }
-        let mut at = &self.summary;
-        for part in path {
-            match at {
-                // Filled by a run only; checked later on a run of two steps.
-                Value::Null | Value::Array(_) => return Ok(()),
-                Value::Object(map) if map.is_empty() => return Ok(()),
-                _ => match at.get(part) {
-                    Some(next) => at = next,
-                    None => return unknown(),
-                },
+        for q in self.found.all() {
+            let own = q.name();
+            if own == name {
+                return match &q.value {
+                    Value::Array(_) | Value::Object(_) => Err(output.is_group()),
+                    _ if q.unit == unit::WORD && !q.value.is_null() => unknown(),
+                    _ => Ok(()),
+                };
+            }
+            if within(&own, name) {
+                return Err(output.is_group());
+            }
+            // Filled by a run only; checked later on a run of two steps.
+            if within(name, &own) && (q.value.is_null() || q.value.is_array()) {
+                return match self.found.expects(name) {
+                    Some(false) => unknown(),
+                    Some(true) | None => Ok(()),
+                };
             }
         }
-        match at {
-            Value::Number(_) | Value::Null => Ok(()),
-            Value::Object(_) | Value::Array(_) => Err(format!(
-                "it is not a number but a group; name one of its entries, as {}.NAME",
-                output.name
-            )),
+        // A list of which the start has other entries than the end.
+        match self.found.expects(name) {
+            Some(true) => Ok(()),
             _ => unknown(),
         }
     }
+}
+
+/// Whether a path is in a group, or is the group.
+fn within(path: &str, group: &str) -> bool {
+    let rest = path.strip_prefix(group);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Names of the measures of a case.
+pub fn measure_names(case: &Case) -> Vec<&str> {
+    case.measures.iter().map(MeasureSpec::name).collect()
 }
 
 /// Names of the columns of the statistics of a case.
@@ -188,9 +142,4 @@ pub fn columns(case: &Case, scene: &Scene) -> Vec<String> {
 fn columns_of<S: Observed>(case: &Case, built: &Built<S>) -> Vec<String> {
     let observers = standard::observers(case, &built.simulation, 0.0);
     observers.columns().into_iter().map(|c| c.name).collect()
-}
-
-/// Names of the measures of a case.
-pub fn measure_names(case: &Case) -> Vec<&str> {
-    case.measures.iter().map(MeasureSpec::name).collect()
 }

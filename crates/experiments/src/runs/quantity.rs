@@ -1,5 +1,6 @@
 //! Numbers that a run leaves: from `summary.json` or a column of `statistics.csv`.
 
+use fretwork_observe::quantity::{Catalogue, find};
 use fretwork_scene::source::nearest;
 use serde_json::Value;
 use std::path::Path;
@@ -67,14 +68,6 @@ impl Quantity {
         })
     }
 
-    /// Path of its name in `summary.json`; `None` if it is a column of the statistics.
-    pub(super) fn summary_path(&self) -> Option<&[String]> {
-        match &self.place {
-            Place::Summary(path) => Some(path),
-            Place::Column(..) => None,
-        }
-    }
-
     /// Its column of the statistics, if it is one.
     pub fn column_name(&self) -> Option<&str> {
         match &self.place {
@@ -87,11 +80,7 @@ impl Quantity {
     pub fn read(&self, summary: &Value, folder: &Path) -> Option<f64> {
         match &self.place {
             Place::Summary(path) => {
-                let step = |v: &Value, part: &String| match v {
-                    Value::Array(list) => list.get(part.parse::<usize>().ok()?).cloned(),
-                    _ => v.get(part).cloned(),
-                };
-                let found = path.iter().try_fold(summary.clone(), |v, p| step(&v, p))?;
+                let found = find(summary, &path.join("."))?;
                 found.as_f64().filter(|x| x.is_finite())
             }
             Place::Column(name, take) => {
@@ -125,6 +114,14 @@ impl Quantity {
         group == "measures" && measures.iter().any(begins)
     }
 
+    /// What to say of a name that is that of a group.
+    pub(super) fn is_group(&self) -> String {
+        format!(
+            "it is not a number but a group; name one of its entries, as {}.NAME",
+            self.name
+        )
+    }
+
     /// What to say of an output that a case does not have, with the nearest existing one.
     pub(super) fn unknown(&self, names: &[String], prefix: &str, wanted: &str) -> String {
         let close = nearest(wanted, names.iter().map(String::as_str))
@@ -156,8 +153,7 @@ impl Quantity {
                             Some(next) => next,
                             None if self.measured(measures) => return Ok(()),
                             None => {
-                                let mut names = Vec::new();
-                                flatten(summary, "", &mut names);
+                                let names = names_of(summary);
                                 return Err(self.unknown(&names, "", &self.name));
                             }
                         },
@@ -165,10 +161,7 @@ impl Quantity {
                 }
                 match at {
                     Value::Number(_) | Value::Null => Ok(()),
-                    _ => Err(format!(
-                        "it is not a number but a group; name one of its entries, as {}.NAME",
-                        self.name
-                    )),
+                    _ => Err(self.is_group()),
                 }
             }
             Place::Column(name, _) => {
@@ -196,39 +189,22 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
     format!("there are {}{more}", names.join(", "))
 }
 
-/// Paths of the numbers in a summary.
-pub(super) fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
-    // Not useful for a comparison.
-    if [
-        "solver",
-        "bodies",
-        "biaxial",
-        "circuit",
-        "fretting",
-        "jump",
-        "stopped",
-        "cpu_seconds",
-        "time_spent",
-        "plugins",
-        "version",
-        "seed",
-        "threads",
-        "steps",
-        "time",
-        "wall_seconds",
-        "dimension",
-    ]
-    .contains(&path)
-    {
-        return;
+/// Paths of the numbers of a summary that can be compared; all numbers of a run that says of none what it is.
+fn names_of(summary: &Value) -> Vec<String> {
+    let mut names = Catalogue::of(summary).comparable();
+    if names.is_empty() {
+        flatten(summary, "", &mut names);
     }
+    names
+}
+
+fn flatten(value: &Value, path: &str, out: &mut Vec<String>) {
     match value {
         Value::Object(map) => {
             for (key, inner) in map {
-                let path = if path.is_empty() {
-                    key.clone()
-                } else {
-                    format!("{path}.{key}")
+                let path = match path {
+                    "" => key.clone(),
+                    path => format!("{path}.{key}"),
                 };
                 flatten(inner, &path, out);
             }
@@ -250,14 +226,16 @@ fn header(path: &Path) -> Vec<String> {
         .unwrap_or_default()
 }
 
-/// Unit of a column of a table of statistics.
+/// Unit of a column of a table of statistics, `1` for pure numbers; none without such a column.
 pub fn column_unit(path: &Path, name: &str) -> Option<String> {
     let mut reader = csv::Reader::from_path(path).ok()?;
     let headings = reader.headers().ok()?.clone();
-    headings.iter().find_map(|h| {
-        let (bare, unit) = h.split_once(" [")?;
-        (bare == name).then(|| unit.trim_end_matches(']').to_owned())
-    })
+    headings
+        .iter()
+        .find_map(|heading| match heading.split_once(" [") {
+            Some((bare, unit)) => (bare == name).then(|| unit.trim_end_matches(']').to_owned()),
+            None => (heading == name).then(|| "1".to_owned()),
+        })
 }
 
 /// Values of a column; only complete rows are read, since the table may still be written to.

@@ -2,6 +2,8 @@
 
 use super::launcher::Run;
 use super::quantity::column;
+use fretwork_observe::quantity::Catalogue;
+use fretwork_observe::summary::Course;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::path::Path;
@@ -98,23 +100,22 @@ impl StoredRun {
     /// Reads what a run left in its folder; `exit` is `None` if it did not end by itself.
     pub fn read(place: &Path, run: &Run, exit: Option<i32>, elapsed: f64) -> Self {
         let summary = summary(place);
-        let number = |key: &str| summary.pointer(key).and_then(Value::as_f64);
+        let course = Course::of(&summary);
         let said = std::fs::read_to_string(place.join("stderr.txt")).unwrap_or_default();
-        let reasons = summary["reasons"].as_array().into_iter().flatten();
-        let doubts = reasons.filter_map(Value::as_str).map(words).collect();
+        let doubts = course.reasons.iter().map(|r| words(r)).collect();
         let first = said.lines().next().unwrap_or("no reason was given");
         Self {
             sets: run.sets.clone(),
             seed: run.seed,
             exit: exit.unwrap_or(-1),
             said: first.trim_start_matches("error: ").to_owned(),
-            steps: number("/steps"),
-            unconverged: number("/solver/unconverged_steps").unwrap_or(0.0),
-            uncoupled: number("/solver/uncoupled_steps").unwrap_or(0.0),
-            residual: number("/energy_residual_relative"),
-            seconds: number("/cpu_seconds").unwrap_or(elapsed),
+            steps: course.steps,
+            unconverged: course.unconverged,
+            uncoupled: course.uncoupled,
+            residual: course.residual,
+            seconds: course.cpu_seconds.unwrap_or(elapsed),
             wall: elapsed,
-            visits: visits(place, number("/steps").unwrap_or(0.0)),
+            visits: visits(place, course.steps.unwrap_or(0.0)),
             doubts,
             slow: None,
         }
@@ -213,10 +214,9 @@ pub fn summary(place: &Path) -> Value {
 
 /// Half-width of the error of step, tolerance and coupling that a run estimates of an output, as far as
 /// it does.
-pub fn numerical_error(summary: &Value, output: &str) -> Option<f64> {
-    let own = &summary["uncertainty"][output];
-    let parts = ["step", "tolerance", "coupling"].map(|key| own[key].as_f64());
-    let known: Vec<f64> = parts.into_iter().flatten().collect();
+pub fn numerical_error(catalogue: &Catalogue, output: &str) -> Option<f64> {
+    let estimate = catalogue.entry(output)?.estimate.as_ref()?;
+    let known: Vec<f64> = estimate.settings().map(|(_, half)| half).collect();
     (!known.is_empty()).then(|| known.iter().sum())
 }
 

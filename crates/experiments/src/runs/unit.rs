@@ -1,36 +1,23 @@
 //! Units of the numbers that a run leaves.
 
 use super::quantity::{Quantity, column_unit};
-use serde_json::Value;
+use fretwork_observe::quantity::Catalogue;
 use std::path::Path;
 
-/// SI unit of a quantity, from the summary and the statistics of a run that has it; empty for pure numbers (docs/outputs.md).
-pub fn unit_of(quantity: &Quantity, summary: &Value, folder: &Path) -> String {
-    if let Some(column) = quantity.column_name() {
-        return column_unit(&folder.join("statistics.csv"), column).unwrap_or_default();
-    }
-    let path: Vec<&str> = quantity.name.split('.').collect();
-    let plane = summary["dimension"] == 2;
-    let either = |solid: &str, flat: &str| if plane { flat } else { solid }.to_owned();
-    match path.as_slice() {
-        ["measures", name] => summary["measure_units"][*name]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned(),
-        ["energy", ..] | ["cycles", _, "work"] | ["fretting", "energy"] => either("J", "J/m"),
-        ["cycles", _, "normal_force" | "tangential_amplitude"] => either("N", "N/m"),
-        ["cycles", _, "path" | "amplitude" | "sliding"] => "m".to_owned(),
-        ["cycles", _, "wear_volume"] | ["fretting", "wear_volume"] => either("m3", "m3/m"),
-        ["wear", "Qs" | "Qi" | "Qe" | "Qw"] => summary["wear"]["unit"]
-            .as_str()
-            .unwrap_or_default()
-            .to_owned(),
-        ["wear", "volume_first_bodies" | "volume_third_body"] => either("m3", "m3/m"),
-        ["wear", "load_path"] => either("N m", "N"),
-        ["scars", _, "depth" | "middle"] => "m".to_owned(),
-        ["time" | "cpu_seconds" | "wall_seconds"] => "s".to_owned(),
-        _ => String::new(),
-    }
+/// SI unit of a quantity, by what a run that has it says of itself, `1` for pure numbers; empty where the run does not say it.
+pub fn unit_of(quantity: &Quantity, catalogue: &Catalogue, folder: &Path) -> String {
+    let unit = match quantity.column_name() {
+        Some(column) => column_unit(&folder.join("statistics.csv"), column),
+        None => catalogue
+            .entry(&quantity.name)
+            .and_then(|entry| entry.unit.clone()),
+    };
+    unit.unwrap_or_default()
+}
+
+/// The unit for a heading, in which pure numbers have none.
+pub fn heading(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
 }
 
 #[cfg(test)]
@@ -39,19 +26,22 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn units_are_those_of_the_dimension() {
-        let summary = json!({"dimension": 2, "measure_units": {"bulk_rate": "1/s"}, "wear": {"unit": "kg/(m s)"}});
+    fn units_are_those_that_the_run_says() {
+        let entry = |path, unit| json!({"path": path, "unit": unit, "doc": "", "role": "detail", "topic": "run", "label": ""});
+        let summary = json!({"quantities": [
+            entry("spins.*.rate", "1/s"), entry("spins.0.rate", "kg/s"), entry("ratio", "1"),
+        ]});
+        let catalogue = Catalogue::of(&summary);
         let of = |name| {
             unit_of(
                 &Quantity::parse(name).unwrap(),
-                &summary,
+                &catalogue,
                 Path::new("/nowhere"),
             )
         };
-        assert_eq!(of("energy.friction"), "J/m");
-        assert_eq!(of("measures.bulk_rate"), "1/s");
-        assert_eq!(of("cycles.1.work"), "J/m");
-        assert_eq!(of("wear.Qs"), "kg/(m s)");
-        assert_eq!(of("friction_coefficient"), "");
+        assert_eq!(of("spins.0.rate"), "kg/s");
+        assert_eq!(of("spins.17.rate"), "1/s");
+        assert_eq!((of("ratio"), heading(&of("ratio"))), ("1".to_owned(), ""));
+        assert_eq!(of("spins.rate"), "");
     }
 }

@@ -340,8 +340,11 @@ fn outputs(read: &StudyFile, base: &Loaded, scene: &Scene) -> Result<Vec<Quantit
     };
     let asked = &read.spec.outputs;
     if asked.is_empty() {
-        let usual: Result<Vec<Quantity>, String> =
-            offer.usual().into_iter().map(Quantity::parse).collect();
+        let usual: Result<Vec<Quantity>, String> = offer
+            .usual()
+            .iter()
+            .map(|name| Quantity::parse(name))
+            .collect();
         let usual = usual.map_err(Error::Usage)?;
         if usual.is_empty() {
             let text = "the case has no friction test, damage or wear; name what is compared, such as outputs: [\"energy.kinetic\"]";

@@ -6,6 +6,7 @@ use crate::factor::Level;
 use crate::runs::stored::{Finished, Status, numerical_error, summary};
 use crate::runs::unit::unit_of;
 use crate::table::{Cell, Column, Table, Type};
+use fretwork_observe::quantity::Catalogue;
 use serde_json::Value as Json;
 
 /// Status of a run that is done and trusted.
@@ -39,6 +40,8 @@ pub struct Counts {
 struct Row {
     run: Option<Finished>,
     summary: Json,
+    /// What the numbers of the summary are.
+    catalogue: Catalogue,
     place: std::path::PathBuf,
 }
 
@@ -52,6 +55,7 @@ impl Rows {
             let summary = run.as_ref().map_or(Json::Null, |_| summary(&place));
             Row {
                 run,
+                catalogue: Catalogue::of(&summary),
                 summary,
                 place,
             }
@@ -67,14 +71,15 @@ impl Rows {
             columns.push(factor_column(plan, k, levels));
         }
         for output in &plan.outputs {
-            let ended = rows.iter().find(|r| r.run.is_some());
-            let unit = ended.map(|r| unit_of(output, &r.summary, &r.place));
+            // Of a run that says it: one that failed may not.
+            let units = rows.iter().map(|r| unit_of(output, &r.catalogue, &r.place));
+            let unit = units.into_iter().find(|u| !u.is_empty());
             let unit = unit.unwrap_or_default();
             let value = |r: &Row| r.run.as_ref().and(output.read(&r.summary, &r.place));
             columns.push(Column::real(&output.name, &unit, rows.iter().map(value)));
             let errors = rows
                 .iter()
-                .map(|r| numerical_error(&r.summary, &output.name));
+                .map(|r| numerical_error(&r.catalogue, &output.name));
             let errors = Column::real(format!("{}_numerical_error", output.name), unit, errors);
             if errors.cells.iter().any(|c| *c != Cell::Unknown) {
                 columns.push(errors);

@@ -22,7 +22,7 @@ pub fn write(table: &Table, path: &Path, numbers: Numbers) -> Result<(), Error> 
     let text = || -> csv::Result<()> {
         let mut out = csv::Writer::from_path(path)?;
         out.write_record(table.columns.iter().map(|c| match c.unit.as_str() {
-            "" => guarded(&c.name),
+            "" | "1" => guarded(&c.name),
             unit => guarded(&format!("{} [{unit}]", c.name)),
         }))?;
         for k in 0..table.rows() {

@@ -31,7 +31,7 @@ pub enum Type {
 pub struct Column {
     /// Its name.
     pub name: String,
-    /// SI unit; empty for pure numbers and texts.
+    /// SI unit, `1` for pure numbers; empty for texts.
     pub unit: String,
     /// What its cells are.
     pub kind: Type,
@@ -49,7 +49,10 @@ impl Column {
         let cell = |x: Option<f64>| x.map_or(Cell::Unknown, Cell::Number);
         Self {
             name: name.into(),
-            unit: unit.into(),
+            unit: match unit.into() {
+                none if none.is_empty() => "1".to_owned(),
+                unit => unit,
+            },
             kind: Type::Real,
             cells: values.into_iter().map(cell).collect(),
         }

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::runs::quantity::Quantity;
+use fretwork_observe::summary::{RELATIVE_RESIDUAL, residual};
 
 /// The wanted error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,16 +55,15 @@ impl Output {
             ));
         }
         let quantity = Quantity::parse(name).map_err(|why| wrong(&why))?;
-        // The exact value of an energy residual is zero; its value is the error itself.
-        let (exact, relative) = match quantity.name.as_str() {
-            "energy_residual_relative" => (Some(0.0), false),
-            "energy.residual" if share => {
-                return Err(wrong(
-                    "its exact value is zero, so a relative error is undefined; give joules, or ask for energy_residual_relative",
-                ));
+        // The exact value of a residual is zero; its value is the error itself.
+        let (exact, relative) = match residual(&quantity.name) {
+            Some(false) if share => {
+                return Err(wrong(&format!(
+                    "its exact value is zero, so a relative error is undefined; give joules, or ask for {RELATIVE_RESIDUAL}"
+                )));
             }
-            "energy.residual" => (Some(0.0), false),
-            _ => (None, share),
+            Some(_) => (Some(0.0), false),
+            None => (None, share),
         };
         let value = if share { value / 100.0 } else { value };
         Ok(Self {

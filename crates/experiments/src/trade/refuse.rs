@@ -22,7 +22,8 @@ use std::time::{Duration, Instant};
 /// An output or an exact value is wrong.
 pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
     let requested = request.outputs.iter().map(|t| Output::parse(t));
-    let usual = offer.usual().into_iter().map(Output::parse);
+    let usual = offer.usual();
+    let usual = usual.iter().map(|name| Output::parse(name));
     let mut outputs: Vec<Output> = match request.outputs.is_empty() {
         true => usual.collect::<Result<_, _>>()?,
         false => requested.collect::<Result<_, _>>()?,

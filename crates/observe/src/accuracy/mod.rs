@@ -10,7 +10,7 @@ mod growth;
 mod report;
 mod setting;
 
-pub use report::{AccuracyReport, ChosenSettings, SettingChange};
+pub use report::{AccuracyReport, ChosenSettings, SettingChange, report as report_accuracy};
 
 use crate::error_estimate::{Increments, Pair, Place, RepeatedStretch, cost};
 use fretwork_core::bodies::Dof;

@@ -3,57 +3,62 @@
 use super::AccuracyControl;
 use crate::error_estimate::Change;
 use crate::observer::Observer;
-use crate::quantity::{number, quantity};
+use crate::quantity::unit::{ONE, SECOND, WORD};
+use crate::quantity::{Findings, Role, Topic, number, part, quantity};
 use crate::statistics::Column;
+use crate::warning::Warning;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// A change of step or tolerance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SettingChange {
-    /// When (s).
-    pub time: f64,
-    /// The step from then on (s).
-    pub step: f64,
-    /// The tolerance from then on.
-    pub tolerance: f64,
-    /// Relative change of the result with a smaller step, before; null where it was not known.
-    pub step_effect: Option<Change>,
-    /// The same with a smaller tolerance.
-    pub tolerance_effect: Option<Change>,
+crate::described! {
+    /// A change of step or tolerance.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+    pub struct SettingChange {
+        /// When.
+        pub time: f64 => SECOND,
+        /// The step from then on.
+        pub step: f64 => SECOND,
+        /// The tolerance from then on.
+        pub tolerance: f64 => ONE,
+        /// Relative change of the result with a smaller step, before; null where it was not known.
+        pub step_effect: Option<Change> = part::<Change>(),
+        /// Relative change of the result with a smaller tolerance; null where it is not known.
+        pub tolerance_effect: Option<Change> = part::<Change>(),
+    }
 }
 
-/// Accuracy of a run that chose its settings.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct AccuracyReport {
-    /// Share asked for.
-    pub share: f64,
-    /// The result.
-    pub of: String,
-    /// Largest, mean and smallest step (s).
-    pub steps: [f64; 3],
-    /// Share of the time that was made in steps longer than that of the case, and how many such steps were repeated with shorter ones since
-    /// something moved.
-    pub grown: f64,
-    /// See `grown`.
-    pub repeated: u64,
-    /// Coarsest and smallest tolerance.
-    pub tolerances: [f64; 2],
-    /// Stretches repeated, and those that failed.
-    pub stretches: [u64; 2],
-    /// Cost of repeated stretches over that of the run, in solver iterations times contacts.
-    pub cost_share: f64,
-    /// Changes of the settings.
-    pub changes: Vec<SettingChange>,
-    /// Requests of laws for a smaller step.
-    pub requests: u64,
-    /// Relative change of the result with a smaller step, with the last settings; null where it is not known.
-    pub step_effect: Option<Change>,
-    /// The same with a smaller tolerance.
-    pub tolerance_effect: Option<Change>,
-    /// Whether both effects, with their intervals, were measured with the last settings and are together below the share.
-    pub reached: bool,
+crate::described! {
+    /// Accuracy of a run that chose its settings.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct AccuracyReport {
+        /// Share asked for.
+        pub share: f64 => ONE,
+        /// The result.
+        pub of: String => WORD,
+        /// Largest, mean and smallest step.
+        pub steps: [f64; 3] => SECOND,
+        /// Share of the time that was made in steps longer than that of the case.
+        pub grown: f64 => ONE,
+        /// Number of such steps that were made again as shorter ones, since something moved.
+        pub repeated: u64 => ONE,
+        /// Coarsest and smallest tolerance.
+        pub tolerances: [f64; 2] => ONE,
+        /// Stretches repeated, and those that failed.
+        pub stretches: [u64; 2] => ONE,
+        /// Cost of repeated stretches over that of the run, in solver iterations times contacts.
+        pub cost_share: f64 => ONE,
+        /// Changes of the settings.
+        pub changes: Vec<SettingChange> = part::<SettingChange>(),
+        /// Requests of laws for a smaller step.
+        pub requests: u64 => ONE,
+        /// Relative change of the result with a smaller step, with the last settings; null where it is not known.
+        pub step_effect: Option<Change> = part::<Change>(),
+        /// Relative change of the result with a smaller tolerance; null where it is not known.
+        pub tolerance_effect: Option<Change> = part::<Change>(),
+        /// Whether both effects, with their intervals, were measured with the last settings and are together below the share.
+        pub reached: bool => WORD,
+    }
 }
 
 impl AccuracyControl {
@@ -89,9 +94,24 @@ impl AccuracyControl {
     }
 }
 
+/// Adds how a run chose its step and tolerance, where the case asks for an accuracy.
+pub fn report(accuracy: Option<&AccuracyReport>, found: &mut Findings) {
+    found.begin(Topic::Run, Role::Diagnostic);
+    let doc = "how the run chose its step and tolerance; null where the case does not ask for an accuracy";
+    found.parts::<AccuracyReport>("accuracy", &accuracy, doc);
+    if let Some(accuracy) = accuracy {
+        found.edit("accuracy.share", |q| {
+            q.secondary("accuracy")
+                .sentence("accuracy", accuracy.line());
+        });
+        let text = accuracy.shortfall();
+        found.warn(text.map(|text| Warning::note("ACCURACY NOT SHOWN", text)));
+    }
+}
+
 impl AccuracyReport {
-    /// One line for the terminal.
-    pub fn line(&self) -> String {
+    /// Sentence of the terminal.
+    fn line(&self) -> String {
         let range = |coarse: String, fine: String| match coarse == fine {
             true => coarse,
             false => format!("{coarse} to {fine}"),
@@ -137,7 +157,7 @@ impl AccuracyReport {
     }
 
     /// Why the accuracy is not shown to be reached, where it is not.
-    pub fn shortfall(&self) -> Option<String> {
+    fn shortfall(&self) -> Option<String> {
         (!self.reached).then(|| {
             format!(
                 "the {} is not shown to be right to {} %: {}; take a longer run, more effort (accuracy.effort), or finer bounds \

@@ -6,14 +6,15 @@
 mod outcome;
 
 pub use outcome::Outcome;
+pub(crate) use outcome::report_none;
 
 use super::coordination::{Coordination, coordination};
 use super::figures;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::quantity::Findings;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
-use super::summary::Summary;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
@@ -210,9 +211,9 @@ impl<S: Space> Observer<S> for Biaxial {
         self.state(s).row()
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
-        summary.biaxial = Some(Outcome::new(end.table, self.start, mass));
+        Outcome::new(end.table, self.start, mass).report(found);
     }
 
     fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {

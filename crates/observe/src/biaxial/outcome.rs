@@ -1,49 +1,52 @@
 //! Results of a biaxial test for the summary.
 
-use super::super::statistics::Table;
+use crate::quantity::unit::{ONE, PASCAL, RADIAN, WORD};
+use crate::quantity::{Findings, Role, Topic};
+use crate::statistics::Table;
 use serde::Serialize;
-use std::fmt::Write as _;
 
 /// Axial strain over which the stress ratio is averaged before its maximum is taken as the peak, since forces
 /// between rigid grains fluctuate from step to step.
 const WINDOW: f64 = 5e-3;
 
-/// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Outcome {
-    /// Compacity when the test starts.
-    pub compacity_start: f64,
-    /// Coordination over all grains when the test starts.
-    pub coordination_start: f64,
-    /// Coordination without rattlers when the test starts.
-    pub coordination_carried_start: f64,
-    /// Pressure on the walls when the test starts (Pa).
-    pub pressure_start: f64,
-    /// Largest |p_walls - p_contacts| / p_walls at the start of the test, and during it.
-    pub pressure_mismatch: [f64; 2],
-    /// Largest q/p: mean q over mean p in 0.5 % of axial strain.
-    pub peak_ratio: f64,
-    /// Friction angle at the peak, asin(q/p) (rad).
-    pub peak_angle: f64,
-    /// Axial strain at the peak.
-    pub peak_strain: f64,
-    /// Mean q over mean p in the last third of the axial strain.
-    pub residual_ratio: f64,
-    /// Friction angle of the residual ratio (rad).
-    pub residual_angle: f64,
-    /// Axial strain at the end.
-    pub axial_strain: f64,
-    /// Volumetric strain at the end.
-    pub volumetric_strain: f64,
-    /// Smallest volumetric strain: the contraction before dilation.
-    pub contraction: f64,
-    /// Compacity at the end, the mean over the last third of the axial strain.
-    pub compacity_end: f64,
-    /// Coordination at the end, averaged likewise.
-    pub coordination_end: f64,
-    /// Mean inertial number over the test: rate of axial strain times sqrt(m/p), with m the mean mass of a
-    /// grain.
-    pub inertial_number: f64,
+crate::described! {
+    /// Results of the test. Angles in radians; strains and stresses signed as in [`super`].
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct Outcome {
+        /// Compacity when the test starts.
+        pub compacity_start: f64 => ONE,
+        /// Coordination over all grains when the test starts.
+        pub coordination_start: f64 => ONE,
+        /// Coordination without rattlers when the test starts.
+        pub coordination_carried_start: f64 => ONE,
+        /// Pressure on the walls when the test starts.
+        pub pressure_start: f64 => PASCAL,
+        /// Largest |p_walls - p_contacts| / p_walls at the start of the test, and during it.
+        pub pressure_mismatch: [f64; 2] => ONE,
+        /// Largest q/p: mean q over mean p in 0.5 % of axial strain.
+        pub peak_ratio: f64 => ONE,
+        /// Friction angle at the peak, asin(q/p).
+        pub peak_angle: f64 => RADIAN,
+        /// Axial strain at the peak.
+        pub peak_strain: f64 => ONE,
+        /// Mean q over mean p in the last third of the axial strain.
+        pub residual_ratio: f64 => ONE,
+        /// Friction angle of the residual ratio.
+        pub residual_angle: f64 => RADIAN,
+        /// Axial strain at the end.
+        pub axial_strain: f64 => ONE,
+        /// Volumetric strain at the end.
+        pub volumetric_strain: f64 => ONE,
+        /// Smallest volumetric strain: the contraction before dilation.
+        pub contraction: f64 => ONE,
+        /// Compacity at the end, the mean over the last third of the axial strain.
+        pub compacity_end: f64 => ONE,
+        /// Coordination at the end, averaged likewise.
+        pub coordination_end: f64 => ONE,
+        /// Mean inertial number over the test: rate of axial strain times sqrt(m/p), with m the mean mass of a
+        /// grain.
+        pub inertial_number: f64 => ONE,
+    }
 }
 
 impl Outcome {
@@ -105,20 +108,37 @@ impl Outcome {
         out
     }
 
-    /// Report lines, each a label and a text.
-    pub fn lines(&self) -> Vec<(&'static str, String)> {
-        let mut rest = format!(
-            "compacity {:.4}, coordination {:.3}, {:.3} without rattlers",
-            self.compacity_start, self.coordination_start, self.coordination_carried_start
-        );
-        let _ = write!(
-            rest,
-            ", pressure {:.4e} Pa, relative difference to that of the contacts {:.1e}",
-            self.pressure_start, self.pressure_mismatch[0]
-        );
-        vec![
-            ("at rest", rest),
+    /// Adds the results of the test.
+    pub(super) fn report(&self, found: &mut Findings) {
+        found.begin(Topic::Measures, Role::Detail);
+        found.part("biaxial", self, "");
+        for (name, short, label, text) in self.sentences() {
+            found.edit(&format!("biaxial.{name}"), |q| {
+                q.secondary(short).sentence(label, text);
+            });
+        }
+    }
+
+    /// Quantities that stand in the report, with the sentences of the terminal.
+    fn sentences(&self) -> [(&'static str, &'static str, &'static str, String); 4] {
+        [
             (
+                "compacity_start",
+                "compacity at the start",
+                "at rest",
+                format!(
+                    "compacity {:.4}, coordination {:.3}, {:.3} without rattlers, pressure {:.4e} Pa, relative difference to that of \
+                     the contacts {:.1e}",
+                    self.compacity_start,
+                    self.coordination_start,
+                    self.coordination_carried_start,
+                    self.pressure_start,
+                    self.pressure_mismatch[0]
+                ),
+            ),
+            (
+                "peak_angle",
+                "friction angle at the peak",
                 "friction angle",
                 format!(
                     "peak {:.2} degrees (q/p {:.3}) at axial strain {:.4}, residual {:.2} degrees (q/p {:.3})",
@@ -130,6 +150,8 @@ impl Outcome {
                 ),
             ),
             (
+                "volumetric_strain",
+                "volumetric strain",
                 "strains",
                 format!(
                     "axial {:.4}, volumetric {:+.4} (minimum {:+.4}); inertial number {:.2e}",
@@ -140,6 +162,8 @@ impl Outcome {
                 ),
             ),
             (
+                "compacity_end",
+                "compacity when sheared",
                 "sheared",
                 format!(
                     "compacity {:.4}, coordination {:.3}",
@@ -148,6 +172,14 @@ impl Outcome {
             ),
         ]
     }
+}
+
+/// Adds what cases without a biaxial test lack.
+pub(crate) fn report_none(found: &mut Findings) {
+    found.begin(Topic::Measures, Role::Detail);
+    let doc = "result of a biaxial test; null without one";
+    let none = found.add("biaxial", (), WORD, doc);
+    none.lacks("the case has no biaxial test (`biaxial`)");
 }
 
 /// Stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero without pressure. Forces between rigid grains

@@ -4,6 +4,7 @@
 //! which little happens has little weight. Its interval is from the jackknife over the stretches (B. Efron and C. Stein, The
 //! jackknife estimate of variance, Annals of Statistics 9, 1981).
 
+use crate::quantity::unit::ONE;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -19,13 +20,15 @@ pub struct Pair {
     pub fine: [f64; 2],
 }
 
-/// A relative change.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Change {
-    /// Fine over coarse, less 1, extrapolated to the limit of fine settings.
-    pub change: f64,
-    /// Half-width of its 95 % confidence interval; infinite where all of the result grew in one stretch (null in JSON).
-    pub half_width: f64,
+crate::described! {
+    /// A relative change.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct Change {
+        /// Fine over coarse, less 1, extrapolated to the limit of fine settings.
+        pub change: f64 => ONE,
+        /// Half-width of its 95 % confidence interval; infinite where all of the result grew in one stretch (null in JSON).
+        pub half_width: f64 => ONE,
+    }
 }
 
 impl Change {

@@ -8,6 +8,7 @@ mod increments;
 mod places;
 mod report;
 mod stretches;
+mod warnings;
 
 pub use change::Change;
 pub use report::{Effects, Repeats, Shares};

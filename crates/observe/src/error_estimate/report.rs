@@ -3,20 +3,24 @@
 use super::Increments;
 use super::change::{Change, Pair};
 use super::{ErrorEstimate, FINER, Place};
+use crate::quantity::part;
+use crate::quantity::unit::{ONE, WORD};
 use fretwork_core::energy::Energy;
 use serde::Serialize;
 
-/// Effect of one setting on the results: relative changes between the run and its repeats, null where they cannot be compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Effects {
-    /// Friction coefficient, from forces.
-    pub friction_coefficient: Option<Change>,
-    /// Energy dissipated by friction.
-    pub friction_energy: Option<Change>,
-    /// Sum of the damage of all bonds.
-    pub damage: Option<Change>,
-    /// Volume worn off first bodies.
-    pub wear: Option<Change>,
+crate::described! {
+    /// Effect of one setting on the results: relative changes between the run and its repeats, null where they cannot be compared.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct Effects {
+        /// Friction coefficient, from forces.
+        pub friction_coefficient: Option<Change> = part::<Change>(),
+        /// Energy dissipated by friction.
+        pub friction_energy: Option<Change> = part::<Change>(),
+        /// Sum of the damage of all bonds.
+        pub damage: Option<Change> = part::<Change>(),
+        /// Volume worn off first bodies.
+        pub wear: Option<Change> = part::<Change>(),
+    }
 }
 
 impl Effects {
@@ -37,48 +41,52 @@ impl Effects {
     }
 }
 
-/// Shares of the energy supplied that are a measure of the error.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Shares {
-    /// Energy that the position correction supplies over the external work, or over the energy dissipated where that is more; null where
-    /// there is neither.
-    pub correction: Option<f64>,
-    /// Energy that the time integration takes (negative where it adds some) over the energy of the run: the largest of the external work, the
-    /// energy dissipated, the change of potential energy, and the kinetic energy at the start but for that of driven bodies; null where there
-    /// is none of these.
-    pub scheme: Option<f64>,
-    /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
-    pub unconverged: Option<f64>,
+crate::described! {
+    /// Shares of the energy supplied that are a measure of the error.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+    pub struct Shares {
+        /// Energy that the position correction supplies over the external work, or over the energy dissipated where that is more; null where
+        /// there is neither.
+        pub correction: Option<f64> => ONE,
+        /// Energy that the time integration takes (negative where it adds some) over the energy of the run: the largest of the external work, the
+        /// energy dissipated, the change of potential energy, and the kinetic energy at the start but for that of driven bodies; null where there
+        /// is none of these.
+        pub scheme: Option<f64> => ONE,
+        /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
+        pub unconverged: Option<f64> => ONE,
+    }
 }
 
-/// Repeats of a run, and what they say.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Repeats {
-    /// Number of places.
-    pub places: usize,
-    /// Steps that were repeated at each.
-    pub steps: u32,
-    /// Steps done before each place.
-    pub at: Vec<u64>,
-    /// Places at which a repeated step failed.
-    pub failed: u32,
-    /// Places left out because repeats were dearer than planned.
-    pub left_out: u32,
-    /// Places at which a hundredth of the tolerance was reached; at the others the repeat ended at four times the
-    /// largest number of iterations of the run's own steps there, or at 100 if that is more.
-    pub tight: usize,
-    /// Cost of the repeats over that of the run, in solver iterations times contacts.
-    pub cost_share: f64,
-    /// Why there is no estimate; null where there is one.
-    pub reason: Option<String>,
-    /// A quarter of the step, extrapolated to none at the first order.
-    pub step: Effects,
-    /// A hundredth of the tolerance.
-    pub tolerance: Effects,
-    /// Implicit coupling; null where the run has it, or has no damage.
-    pub coupling: Option<Effects>,
-    /// Shares of the energy.
-    pub shares: Shares,
+crate::described! {
+    /// Repeats of a run, and what they say.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct Repeats {
+        /// Number of places.
+        pub places: usize => ONE,
+        /// Steps that were repeated at each.
+        pub steps: u32 => ONE,
+        /// Steps done before each place.
+        pub at: Vec<u64> => ONE,
+        /// Places at which a repeated step failed.
+        pub failed: u32 => ONE,
+        /// Places left out because repeats were dearer than planned.
+        pub left_out: u32 => ONE,
+        /// Places at which a hundredth of the tolerance was reached; at the others the repeat ended at four times the
+        /// largest number of iterations of the run's own steps there, or at 100 if that is more.
+        pub tight: usize => ONE,
+        /// Cost of the repeats over that of the run, in solver iterations times contacts.
+        pub cost_share: f64 => ONE,
+        /// Why there is no estimate; null where there is one.
+        pub reason: Option<String> => WORD,
+        /// A quarter of the step, extrapolated to none at the first order.
+        pub step: Effects = part::<Effects>(),
+        /// A hundredth of the tolerance.
+        pub tolerance: Effects = part::<Effects>(),
+        /// Implicit coupling; null where the run has it, or has no damage.
+        pub coupling: Option<Effects> = part::<Effects>(),
+        /// Shares of the energy.
+        pub shares: Shares = part::<Shares>(),
+    }
 }
 
 impl ErrorEstimate {

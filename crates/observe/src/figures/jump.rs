@@ -3,10 +3,11 @@
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::output::Output;
 use fretwork_core::process::jump::{JumpSummary, Point};
+use fretwork_core::unit::VOLUME;
 
 /// Wear volume and mean damage against cycles, computed and jumped.
 pub(crate) fn charts(jump: &JumpSummary, dimension: usize) -> Output {
-    let volume = if dimension == 2 { "m^3/m" } else { "m^3" };
+    let volume = VOLUME.symbol(dimension);
     let chart = |heading: &str, y: Axis, value: fn(&Point) -> f64| {
         let at = |p: &Point| (f64::from(p.cycles), value(p));
         let alone = jump.points.iter().filter(|p| p.cycle_multiplier == 1);

@@ -1,6 +1,10 @@
 //! What may be wrong with the heat of a run: an account that does not close, half-spaces that are not deep enough, and contacts
 //! that heat a body beside its half-spaces.
 
+use crate::quantity::part;
+use crate::quantity::unit::{METRE, ONE, WORD};
+use crate::run_state::LEDGER;
+use crate::warning::Warning;
 use fretwork_core::contact::HeatSide;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
@@ -14,43 +18,60 @@ const NEGLIGIBLE: f64 = 1e-2;
 /// Distance beyond the ends of the half-spaces that is not beside them, over their length: rounding, and rotation in a step.
 const ROUNDING: f64 = 1e-3;
 
-/// The checks of a run that computes heat.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct HeatChecks {
-    /// Residual of the account of heat over its scale; among the measures as `heat_residual_relative`.
-    #[serde(skip)]
-    pub residual_relative: f64,
-    /// The first bodies with half-spaces.
-    pub half_spaces: Vec<HalfSpaceCheck>,
+crate::described! {
+    /// The checks of a run that computes heat.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct HeatChecks {
+        /// Residual of the account of heat over its scale; among the measures.
+        #[serde(skip)]
+        pub residual_relative: f64,
+        /// The first bodies with half-spaces.
+        pub half_spaces: Vec<HalfSpaceCheck> = part::<HalfSpaceCheck>(),
+    }
 }
 
-/// The half-spaces below the surface of a first body.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct HalfSpaceCheck {
-    /// Name of the body.
-    pub body: String,
-    /// Their depth (m).
-    pub depth: f64,
-    /// Distance sqrt(D t) that heat has come in thermal time (m).
-    pub reach: f64,
-    /// Share of the heat that contacts put into the body and conduct to it, of those beside the range of its half-spaces.
-    pub outside: f64,
+crate::described! {
+    /// The half-spaces below the surface of a first body.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct HalfSpaceCheck {
+        /// Name of the body.
+        pub body: String => WORD,
+        /// Their depth.
+        pub depth: f64 => METRE,
+        /// Distance sqrt(D t) that heat has come in thermal time.
+        pub reach: f64 => METRE,
+        /// Share of the heat that contacts put into the body and conduct to it, of those beside the range of its half-spaces.
+        pub outside: f64 => ONE,
+    }
 }
 
 impl HeatChecks {
-    /// What that means for the result: category, and text. An account is off where its residual is above `closes`.
-    pub fn account(&self, closes: f64) -> Option<String> {
+    /// What is wrong.
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        let account = self.account();
+        let account = account.map(|text| Warning::serious("HEAT DOES NOT ADD UP", text));
+        let notes = [
+            ("SHALLOW HALF-SPACES", self.shallow()),
+            ("HEAT OUT OF RANGE", self.outside()),
+        ];
+        let notes = notes.into_iter();
+        let notes = notes.filter_map(|(of, text)| Some(Warning::note(of, text?)));
+        account.into_iter().chain(notes).collect()
+    }
+
+    /// An account that is off.
+    fn account(&self) -> Option<String> {
         let share = self.residual_relative;
-        (share > closes || share.is_nan()).then(|| {
+        (share > LEDGER || share.is_nan()).then(|| {
             format!(
-                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {closes:.0e}): temperatures are \
+                "the residual of the account of heat is {share:.1e} of the largest heat (rounding leaves less than {LEDGER:.0e}): temperatures are \
                  wrong; this is a defect of the program, please report it"
             )
         })
     }
 
     /// Half-spaces that heat has reached the depth of.
-    pub fn shallow(&self) -> Option<String> {
+    fn shallow(&self) -> Option<String> {
         let shallow = self.half_spaces.iter().filter(|h| h.depth < DEEP * h.reach);
         let texts: Vec<String> = shallow
             .map(|h| {
@@ -73,7 +94,7 @@ impl HeatChecks {
     }
 
     /// Contacts beside the half-spaces.
-    pub fn outside(&self) -> Option<String> {
+    fn outside(&self) -> Option<String> {
         let outside = self.half_spaces.iter().filter(|h| h.outside > NEGLIGIBLE);
         let texts: Vec<String> = outside
             .map(|h| format!("{:.0} % for `{}`", 100.0 * h.outside, h.body))
@@ -200,4 +221,25 @@ pub fn without_heat<S: Space>(s: &Simulation<S>) -> Vec<String> {
         )
     })
     .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_account_that_is_off_or_no_number_is_a_reason() {
+        let of = |residual_relative| {
+            let checks = HeatChecks {
+                residual_relative,
+                ..HeatChecks::default()
+            };
+            checks.warnings()
+        };
+        assert!(of(1e-9).is_empty());
+        for off in [1e-3, f64::NAN] {
+            let list = of(off);
+            assert!(list.len() == 1 && list[0].serious && list[0].of == "HEAT DOES NOT ADD UP");
+        }
+    }
 }

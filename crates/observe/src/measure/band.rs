@@ -9,7 +9,8 @@ use super::{Observer, RunEnd, grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
 use crate::code::{self, CodeError};
 use crate::output::Output;
-use crate::statistics::{Column, Table};
+use crate::quantity::Findings;
+use crate::statistics::Column;
 use crate::strain::Strain;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -114,21 +115,14 @@ impl<S: Space> Observer<S> for Band<S> {
         vec![angle, width, points.len() as f64]
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         // A band grows, so its last state is reported.
-        let last = |part: &str| {
-            let column = format!("{}_{part}", self.name);
-            let value = table
-                .column(&column)
-                .last()
-                .copied()
-                .filter(|v| v.is_finite());
-            value.map(|v| (column, v))
-        };
-        ["angle", "width", "grains"]
-            .into_iter()
-            .filter_map(last)
-            .collect()
+        for column in Observer::<S>::columns(self) {
+            let last = end.table.column(&column.name).last().copied();
+            if let Some(value) = last.filter(|v| v.is_finite()) {
+                found.measure(&column.name, value, column.unit(), column.doc);
+            }
+        }
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

@@ -4,7 +4,9 @@ use super::{Observer, RunEnd, grains, line, since};
 use crate::chart::Axis;
 use crate::figures::history;
 use crate::output::Output;
-use crate::statistics::{Column, Table};
+use crate::quantity::Findings;
+use crate::quantity::unit::{MASS, MASS_FLOW};
+use crate::statistics::Column;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
@@ -24,7 +26,7 @@ impl<S: Space> Observer<S> for Mass {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let unit = if S::D == 2 { "kg/m" } else { "kg" };
+        let unit = MASS.symbol(S::D);
         vec![Column::new(
             self.name.clone(),
             unit,
@@ -38,17 +40,12 @@ impl<S: Space> Observer<S> for Mass {
         vec![above.map(|g| g.mass).sum::<f64>() / self.inertia_scaling]
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let points = since(table, &self.name, self.start);
-        let rate = line(points.iter().copied());
-        rate.map(|r| (format!("{}_rate", self.name), r))
-            .into_iter()
-            .collect()
-    }
-
-    fn units(&self) -> Vec<(String, &'static str)> {
-        let unit = if S::D == 2 { "kg/(m s)" } else { "kg/s" };
-        vec![(format!("{}_rate", self.name), unit)]
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        let points = since(end.table, &self.name, self.start);
+        if let Some(rate) = line(points.iter().copied()) {
+            let doc = "change of the mass above a level, a line through its course";
+            found.measure(&format!("{}_rate", self.name), rate, MASS_FLOW, doc);
+        }
     }
 
     fn file_names(&self) -> Vec<String> {

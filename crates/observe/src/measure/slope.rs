@@ -3,7 +3,9 @@
 use super::{Observer, RunEnd, grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series, Value};
 use crate::output::Output;
-use crate::statistics::{Column, Table};
+use crate::quantity::Findings;
+use crate::quantity::unit::RADIAN;
+use crate::statistics::Column;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
@@ -66,9 +68,10 @@ impl<S: Space> Observer<S> for Slope {
         vec![line(points).map_or(f64::NAN, f64::atan)]
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let mean = mean(&since(table, &self.name, self.start));
-        mean.map(|m| (self.name.clone(), m)).into_iter().collect()
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        if let Some(mean) = mean(&since(end.table, &self.name, self.start)) {
+            found.measure(&self.name, mean, RADIAN, "mean angle of the free surface");
+        }
     }
 
     fn file_names(&self) -> Vec<String> {

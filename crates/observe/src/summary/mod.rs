@@ -1,105 +1,39 @@
-//! `summary.json`, and the text summary at the end of a run.
+//! `summary.json`, and the text at the end of a run: the facts of a run and all that its observers found.
 
-mod circuit;
-mod details;
+mod course;
 mod estimate;
-mod fracture;
 mod text;
 mod time_spent;
 
-pub use self::circuit::{Base, CircuitSummary, Rates};
+pub use self::course::{Course, RELATIVE_RESIDUAL, residual};
 pub use self::estimate::{Estimate, Uncertainty};
-pub use self::fracture::{BondEnergies, FractureSummary, Reference};
 pub use self::time_spent::TimeSpent;
 
-use crate::accuracy::AccuracyReport;
-use crate::biaxial::Outcome;
-use crate::deformable::{BorderLoad, SmallStrain};
-use crate::error_estimate::Repeats;
-pub use crate::first_bodies::BodyWear;
-use crate::fretting;
-use crate::friction::Cycle;
-use crate::heat::HeatChecks;
-use crate::jump::JumpSummary;
-use crate::nearest_places::NearestPlaces;
-use crate::resolution::Resolution;
-use crate::scars::ScarSummary;
-use crate::scatter::Scatter;
-pub use crate::solving::SolverSummary;
-use fretwork_core::contact::StepSizeDiagnostics;
-use fretwork_core::energy::Energy;
-use fretwork_core::step::ImpossibleMotions;
-use fretwork_core::step::control::Begun;
-use fretwork_scene::sampling::UnresolvedDrive;
+use crate::quantity::unit::{ONE, SECOND, WORD};
+use crate::quantity::{Field, Findings, Role, Topic, field, part, quantity};
+use crate::warning::{self, Warning};
 use fretwork_scene::wear_coefficient::WearCoefficient;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-/// A loaded plugin.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PluginStamp {
-    /// Kind of the law.
-    pub kind: String,
-    /// Name.
-    pub name: String,
-    /// Its version.
-    pub version: String,
-    /// SHA-256 of the library.
-    pub sha256: String,
-    /// Path of the library.
-    pub path: String,
-    /// Libraries that it links to and that are not the system's: path and SHA-256.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub links: Vec<String>,
-    /// Whether it passes certification with the parameters of this run, see [`fretwork_core::certify`].
-    pub certified: bool,
-}
-
-/// Momentum of the free rigid bodies that nothing outside gave them.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct MomentumSummary {
-    /// Linear (N s; N s/m).
-    pub linear: f64,
-    /// Angular (N m s; N s); zero in periodic scenes.
-    pub angular: f64,
-    /// Linear, over the largest sum of the bodies' |m v| so far.
-    pub linear_relative: f64,
-    /// Angular, over the largest sum of the bodies' |x × m v| + |I w| so far.
-    pub angular_relative: f64,
-}
-
-/// Wear and mean mass flows since the start of the friction test, or of the run without one.
-#[derive(Clone, Debug, Default, Serialize)]
-#[allow(non_snake_case)]
-pub struct Wear {
-    /// Unit of the flows: kg/s; in 2D kg/(m s), per metre of depth.
-    pub unit: &'static str,
-    /// Start of Qs (of the wear law) and Qi (s); flows of a circuit start with the circuit.
-    pub start: f64,
-    /// Source: mass worn off first bodies by the wear law, or, with a circuit, mass of the grains that came
-    /// loose from them.
-    pub Qs: f64,
-    /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
-    pub Qi: f64,
-    /// Ejected: with a circuit the mass that reached its zones; without one zero in a contact that is
-    /// periodic along the sliding, and null (not measured) in an open one.
-    pub Qe: Option<f64>,
-    /// Lost: ejected and not recirculated; as `Qe`.
-    pub Qw: Option<f64>,
-    /// Volume worn off first bodies by the wear law (m^3; m^3/m).
-    pub volume_first_bodies: f64,
-    /// Volume worn between grains (m^3; m^3/m).
-    pub volume_third_body: f64,
-    /// Normal force times sliding distance: the integral of P |ds| over the run (N m; N in 2D); null without
-    /// a friction test.
-    pub load_path: Option<f64>,
-    /// Wear of the first bodies that lost material.
-    pub bodies: Vec<BodyWear>,
-}
-
-impl Wear {
-    /// Unit of flows in a dimension.
-    pub fn unit(dimension: usize) -> &'static str {
-        if dimension == 2 { "kg/(m s)" } else { "kg/s" }
+crate::described! {
+    /// A loaded plugin.
+    #[derive(Clone, Debug, PartialEq, Serialize)]
+    pub struct PluginStamp {
+        /// Kind of the law.
+        pub kind: String => WORD,
+        /// Name of the law.
+        pub name: String => WORD,
+        /// Version of the law.
+        pub version: String => WORD,
+        /// SHA-256 of the library.
+        pub sha256: String => WORD,
+        /// Path of the library.
+        pub path: String => WORD,
+        /// Libraries that it links to and that are not the system's: path and SHA-256.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub links: Vec<String> => WORD,
+        /// Whether it passes certification with the parameters of this run.
+        pub certified: bool => WORD,
     }
 }
 
@@ -113,144 +47,221 @@ pub const FROM_THE_CLOCK: [&str; 5] = [
     "/circuit/cost_share",
 ];
 
+crate::described! {
+    /// What is known of a run besides what its observers found.
+    #[derive(Clone, Debug, Default, Serialize)]
+    pub struct RunFacts {
+        /// Title of the case.
+        pub case: String => WORD,
+        /// Whether all checks passed.
+        pub trustworthy: bool => WORD,
+        /// Reasons why it is not trustworthy, as sentences, worst first.
+        pub reasons: Vec<String> => WORD,
+        /// The reasons, followed by notes.
+        pub warnings: Vec<String> => WORD,
+        /// Identity of the run (case, materials, laws and scene), by which the results file recognises its summary.
+        pub identity: String => WORD,
+        /// Dimension, 2 or 3.
+        pub dimension: usize => ONE,
+        /// Wall time of the run.
+        pub wall_seconds: f64 => SECOND,
+        /// Processor time of all threads, which depends little on other programs.
+        pub cpu_seconds: f64 => SECOND,
+        /// What the wall time was spent on.
+        pub time_spent: TimeSpent = part::<TimeSpent>(),
+        /// Laws.
+        pub plugins: Vec<PluginStamp> = part::<PluginStamp>(),
+        /// Wear coefficients that follow from the hardness of materials; left out without any.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub wear_coefficients: Vec<WearCoefficient> = crate::quantity::Schema::Part(&COEFFICIENT),
+        /// Threads.
+        pub threads: usize => ONE,
+        /// Seed.
+        pub seed: u64 => ONE,
+        /// Version of the program.
+        pub version: String => WORD,
+        /// Reason why the run stopped before its end; null if it did not.
+        pub stopped: Option<String> => WORD,
+        /// Whether a signal stopped it; it can be resumed with `--resume`.
+        pub interrupted: bool => WORD,
+    }
+}
+
+/// What is said of a wear coefficient.
+const COEFFICIENT: [Field; 10] = [
+    field(
+        "interface",
+        WORD,
+        "interface of a wear law that was given K",
+    ),
+    field("law", WORD, "its wear law"),
+    field("parameter", WORD, "the parameter that follows from K"),
+    field("value", WORD, "its value, in the unit of the next entry"),
+    field("unit", WORD, "unit of the value"),
+    field("dimensionless", ONE, "Archard's coefficient K"),
+    field(
+        "hardness",
+        crate::quantity::unit::PASCAL,
+        "hardness of the softer material",
+    ),
+    field("softer", WORD, "the softer material"),
+    field("friction", ONE, "friction coefficient, where it was used"),
+    field("derivation", WORD, "the derivation in words"),
+];
+
 /// Summary of a run.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
 pub struct Summary {
-    /// Title of the case.
-    pub case: String,
-    /// Whether all checks passed; see `warnings` of the layer that stores it.
-    pub trustworthy: bool,
-    /// Reasons why it is not trustworthy, as sentences, worst first.
-    pub reasons: Vec<String>,
-    /// The reasons, followed by notes.
-    pub warnings: Vec<String>,
-    /// Identity of the run (case, materials, laws and scene), by which the results file recognises its
-    /// summary.
-    pub identity: String,
-    /// Dimension, 2 or 3.
-    pub dimension: usize,
-    /// Steps done.
-    pub steps: u64,
-    /// Time reached (s).
-    pub time: f64,
-    /// Wall time of the run (s).
-    pub wall_seconds: f64,
-    /// Processor time of all threads (s), which depends little on other programs.
-    pub cpu_seconds: f64,
-    /// What the wall time was spent on.
-    pub time_spent: TimeSpent,
-    /// Number of bodies.
-    pub bodies: usize,
-    /// Number of contacts at the end.
-    pub contacts: usize,
-    /// Number of bonds made.
-    pub bonds: u64,
-    /// Number of bonds broken.
-    pub broken: u64,
-    /// Broken over made.
-    pub damage_ratio: f64,
-    /// Mean damage over all bonds.
-    pub mean_damage: f64,
-    /// Energy that broken bonds released, over what their laws declare; null without bonds.
-    pub fracture: Option<FractureSummary>,
-    /// Friction coefficient from forces, over the last complete cycle, or the second half; null without a
-    /// friction test.
-    pub friction_coefficient: Option<f64>,
-    /// Friction coefficient from the energy ledger.
-    pub friction_from_dissipation: Option<f64>,
-    /// Largest |Q| over the mean P of the same cycle.
-    pub peak_friction: Option<f64>,
-    /// |Q|/P over the second half of the strokes of that cycle: friction without the elastic travel after a reversal.
-    pub plateau_friction: Option<f64>,
-    /// How the friction coefficient scatters over cycles or blocks, for its interval.
-    #[serde(skip)]
-    pub friction_scatter: Option<Scatter>,
-    /// What repeated steps say of the error, and shares of the energy; in `uncertainty` too.
-    #[serde(skip)]
-    pub repeats: Repeats,
-    /// How well the main results are known from this run alone.
-    pub uncertainty: Uncertainty,
-    /// How the run chose its step and tolerance; null where the case does not ask for an accuracy.
-    pub accuracy: Option<AccuracyReport>,
-    /// Cycles of the friction test.
-    pub cycles: Vec<Cycle>,
-    /// Evaluation of a fretting test; null without reciprocating motion.
-    pub fretting: Option<fretting::Outcome>,
-    /// Result of a biaxial test; null without one.
-    pub biaxial: Option<Outcome>,
-    /// Phases that were started, with their times; empty without phases.
-    pub phases: Vec<Begun>,
-    /// Names of the phases that the run did not reach.
-    pub phases_missed: Vec<String>,
-    /// Numeric results of the case's measures, by name (SI).
-    pub measures: std::collections::BTreeMap<String, f64>,
-    /// Their units; empty for a pure number.
-    pub measure_units: std::collections::BTreeMap<String, &'static str>,
-    /// Textual results of the case's measures, by name.
-    pub findings: std::collections::BTreeMap<String, String>,
-    /// Energy ledger (J; J/m).
-    pub energy: Energy,
-    /// Residual over the largest energy seen.
-    pub energy_residual_relative: f64,
-    /// Momentum of the free rigid bodies that nothing outside gave.
-    pub momentum: MomentumSummary,
-    /// Wear.
-    pub wear: Wear,
-    /// The tribological circuit; null without one.
-    pub circuit: Option<CircuitSummary>,
-    /// Jumps over cycles; null without.
-    pub jump: Option<JumpSummary>,
-    /// Scars of the surfaces that recede; empty without any.
-    pub scars: Vec<ScarSummary>,
-    /// Largest strain and rotation of deformable bodies in small strain; left out without any.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub small_strain: Vec<SmallStrain>,
-    /// Loads on the border of half-spaces; left out without any.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub border_loads: Vec<BorderLoad>,
-    /// Elements across the contacts of deformable bodies; left out without any.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub resolution: Vec<Resolution>,
-    /// Contacts between deformable bodies that act on the nearest place; left out without any.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub nearest_places: Option<NearestPlaces>,
-    /// Checks of heat; left out without heat.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub heat: Option<HeatChecks>,
-    /// Diagnostics of whether the step was small enough to detect every contact in time.
-    #[serde(rename = "haste")]
-    pub step_size: StepSizeDiagnostics,
-    /// Imposed motions that nothing could obey; left out without any.
-    #[serde(skip_serializing_if = "ImpossibleMotions::is_empty")]
-    pub impossible_motions: ImpossibleMotions,
-    /// Interfaces whose transport law is not asked, in sentences.
-    #[serde(skip)]
-    pub without_heat: Vec<String>,
-    /// Drives that the step does not resolve.
-    #[serde(skip)]
-    pub unresolved_drives: Vec<UnresolvedDrive>,
-    /// The solver.
-    pub solver: SolverSummary,
-    /// Laws.
-    pub plugins: Vec<PluginStamp>,
-    /// Wear coefficients that follow from the hardness of materials; left out without any.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub wear_coefficients: Vec<WearCoefficient>,
-    /// Threads.
-    pub threads: usize,
-    /// Seed.
-    pub seed: u64,
-    /// Version of the program.
-    pub version: String,
-    /// Reason why the run stopped before its end, if it did.
-    pub stopped: Option<String>,
-    /// Whether a signal stopped it; it can be resumed with `--resume`.
-    pub interrupted: bool,
+    /// Facts of the run.
+    pub run: RunFacts,
+    /// What its observers found.
+    pub found: Findings,
 }
 
 impl Summary {
-    /// Puts in what follows from the other entries.
-    pub fn complete(&mut self) {
-        self.uncertainty = Uncertainty::new(self, self.friction_scatter.as_ref());
+    /// Puts in the warnings of the observers and of the run itself; returns them, worst first.
+    pub fn check(&mut self) -> Vec<Warning> {
+        let run = &mut self.run;
+        let mut list = self.found.warnings().to_vec();
+        list.extend(run.own_warnings());
+        // A run that was stopped did not reach what comes later.
+        list.retain(|w| run.stopped.is_none() || w.of != warning::NOT_REACHED);
+        warning::sort(&mut list);
+        run.warnings = list.iter().map(Warning::to_string).collect();
+        let reasons = list.iter().filter(|w| w.serious);
+        run.reasons = reasons.map(Warning::to_string).collect();
+        run.trustworthy = run.reasons.is_empty();
+        list
+    }
+
+    /// All of it as quantities.
+    pub fn quantities(&self) -> Findings {
+        let mut all = Findings::new(self.run.dimension);
+        all.begin(Topic::Run, Role::Diagnostic);
+        all.part("", &self.run, "");
+        self.run.word(&self.found, &mut all);
+        for group in ["measures", "measure_units", "findings"] {
+            let doc = "results of the measures of the case, by name";
+            all.add(group, serde_json::Map::new(), WORD, doc);
+        }
+        all.extend(&self.found);
+        all
+    }
+}
+
+impl RunFacts {
+    /// Warnings of what no observer sees.
+    fn own_warnings(&self) -> Vec<Warning> {
+        let stopped = self.stopped.as_ref().map(|why| match self.interrupted {
+            true => Warning::serious(
+                "INTERRUPTED",
+                format!("{why}; the results cover the completed part, the same command with --resume continues"),
+            ),
+            false => Warning::serious("STOPPED", format!("{why}; the results cover the completed part")),
+        });
+        let wrong = self.plugins.iter().filter(|p| !p.certified);
+        let names: Vec<String> = wrong
+            .map(|p| format!("{} law {}", p.kind, p.name))
+            .collect();
+        let uncertified = (!names.is_empty()).then(|| {
+            let text = format!(
+                "the {} does not pass its certificate with the parameters of this run; fretwork law certify says why",
+                names.join(", the ")
+            );
+            Warning::serious("NOT CERTIFIED", text)
+        });
+        stopped.into_iter().chain(uncertified).collect()
+    }
+
+    /// Sentences of the terminal.
+    fn word(&self, found: &Findings, all: &mut Findings) {
+        for (k, p) in self.plugins.iter().enumerate() {
+            let hash = &p.sha256[..12.min(p.sha256.len())];
+            let certified = if p.certified {
+                "certified"
+            } else {
+                "NOT certified"
+            };
+            let text = format!("{} {} {} ({hash}), {certified}", p.kind, p.name, p.version);
+            all.edit(&format!("plugins.{k}.name"), |q| {
+                q.sentence("law", text);
+            });
+        }
+        for (k, w) in self.wear_coefficients.iter().enumerate() {
+            let text = format!("{}, {}: {}", w.interface, w.law, w.derivation);
+            all.edit(&format!("wear_coefficients.{k}.derivation"), |q| {
+                q.sentence("wear coefficient", text);
+            });
+        }
+        let text = format!(
+            "fretwork {}, seed {}, {} threads, {} of processor time",
+            self.version,
+            self.seed,
+            self.threads,
+            quantity(self.cpu_seconds, "s")
+        );
+        all.edit("version", |q| {
+            q.sentence("made with", text);
+        });
+        if let Some(text) = self.time_spent.sentence() {
+            all.edit("time_spent.detection", |q| {
+                q.sentence("time spent", text);
+            });
+        }
+        let [steps, time] = ["steps", "time"].map(|name| found.number(name).unwrap_or(0.0));
+        let rate = steps / self.wall_seconds.max(1e-9);
+        let text = format!(
+            "{steps} steps to t = {} in {} ({rate:.0} a second)",
+            quantity(time, "s"),
+            quantity(self.wall_seconds, "s")
+        );
+        all.edit("wall_seconds", |q| {
+            q.role = Role::Secondary;
+            q.sentence("run", text);
+        });
+    }
+}
+
+impl Serialize for Summary {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        self.quantities().serialize(to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_run_that_was_stopped_reached_nothing_later_and_its_laws_are_checked() {
+        let mut summary = Summary::default();
+        assert!(summary.check().is_empty() && summary.run.trustworthy);
+        summary.found.warn([
+            Warning::note("NOT UNIQUE", "n"),
+            Warning::serious(
+                warning::NOT_REACHED,
+                "the run ended before the phases shear",
+            ),
+            Warning::serious("NOT CONVERGED", "12 of 600 steps"),
+        ]);
+        let of = |list: &[Warning]| list.iter().map(|w| w.of).collect::<Vec<_>>();
+        let expected = ["NOT CONVERGED", warning::NOT_REACHED, "NOT UNIQUE"];
+        assert_eq!(of(&summary.check()), expected);
+        assert_eq!(summary.run.warnings[0], "NOT CONVERGED: 12 of 600 steps");
+        assert!(!summary.run.trustworthy && summary.run.reasons.len() == 2);
+        summary.run.stopped = Some("no room".to_owned());
+        summary.run.plugins = vec![PluginStamp {
+            kind: "contact".into(),
+            name: "mine".into(),
+            version: String::new(),
+            sha256: String::new(),
+            path: String::new(),
+            links: Vec::new(),
+            certified: false,
+        }];
+        let expected = ["STOPPED", "NOT CONVERGED", "NOT CERTIFIED", "NOT UNIQUE"];
+        assert_eq!(of(&summary.check()), expected);
+        summary.run.interrupted = true;
+        assert_eq!(summary.check()[0].of, "INTERRUPTED");
     }
 }

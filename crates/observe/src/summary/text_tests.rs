@@ -1,7 +1,12 @@
 use super::*;
+use crate::first_bodies::BodyWear;
 use crate::fretting::{self, Regime};
-use crate::scatter;
+use crate::friction::{Cycle, Cycles};
+use crate::friction_report;
+use crate::quantity::unit::{ENERGY, METRE, ONE};
 use crate::summary::Uncertainty;
+use crate::warning::Warning;
+use crate::wear::WearSummary;
 
 /// Fifty cycles of a fretting test with damage and wear, partial slip at first and gross slip at the end.
 fn fretting() -> Summary {
@@ -26,26 +31,17 @@ fn fretting() -> Summary {
         wear_volume: 1e-15,
         ..Cycle::default()
     };
-    let cycles: Vec<Cycle> = (1..=50).map(cycle).collect();
-    let last = cycles[49].clone();
-    let mut summary = Summary {
-        case: "wheel on rail".to_owned(),
-        trustworthy: true,
-        dimension: 3,
-        steps: 6000,
-        time: 0.02,
-        bonds: 40,
-        broken: 12,
-        damage_ratio: 0.3,
-        friction_coefficient: Some(last.friction_coefficient),
-        friction_from_dissipation: Some(0.41),
-        peak_friction: last.peak_ratio(),
-        fretting: fretting::Outcome::new(&cycles),
-        ..Summary::default()
-    };
-    summary.energy.friction = 0.1;
-    summary.energy.external_work = 0.11;
-    summary.wear.volume_first_bodies = 5e-14;
+    let mut cycles = Cycles::new(0.0, Some(1.0), 50.0);
+    cycles.list = (1..=50).map(cycle).collect();
+    let mut found = Findings::new(3);
+    found.begin(Topic::Energy, Role::Detail);
+    let work = found.add("energy.external_work", 0.11, ENERGY, "work");
+    work.secondary("external work");
+    found.begin(Topic::Damage, Role::Detail);
+    let ratio = found.add("damage_ratio", 0.3, ONE, "broken over made");
+    ratio
+        .headline("damage ratio")
+        .remark("(12 of 40 bonds broken)");
     let body = |name: &str, volume: f64| BodyWear {
         body: name.to_owned(),
         volume,
@@ -53,11 +49,23 @@ fn fretting() -> Summary {
         depth_max: Some(3e-7),
         specific_rate: Some(volume / 10.0),
     };
-    summary.wear.bodies = vec![body("rail", 3e-14), body("wheel", 2e-14)];
-    summary.measures = (0..31).map(|k| (format!("layer_{k:02}"), 1.0)).collect();
-    let friction = scatter::over_cycles(&cycles, |c| c.friction_coefficient);
-    summary.cycles = cycles;
-    summary.uncertainty = Uncertainty::new(&summary, friction.as_ref());
+    let wear = WearSummary {
+        volume_first_bodies: 5e-14,
+        bodies: vec![body("rail", 3e-14), body("wheel", 2e-14)],
+        ..WearSummary::default()
+    };
+    wear.report(true, &mut found);
+    friction_report::report(&cycles, fretting::Outcome::new(&cycles.list), &mut found);
+    for k in 0..31 {
+        found.measure(&format!("layer_{k:02}"), 1.0, METRE, "a measure");
+    }
+    found.finding("layer", "it flows", "how the layer flows");
+    Uncertainty::new(&found, crate::error_estimate::Repeats::default()).report(&mut found);
+    let mut summary = Summary::default();
+    summary.run.case = "wheel on rail".to_owned();
+    summary.run.dimension = 3;
+    summary.found = found;
+    summary.check();
     summary
 }
 
@@ -69,8 +77,9 @@ fn place(text: &str, what: &str) -> usize {
 #[test]
 fn warnings_come_first_then_friction_damage_wear_energies() {
     let mut summary = fretting();
-    summary.trustworthy = false;
-    summary.warnings = vec!["NOT CONVERGED: 12 of 6000 steps".to_owned()];
+    let warning = Warning::serious("NOT CONVERGED", "12 of 6000 steps");
+    summary.found.warn([warning]);
+    summary.check();
     let text = summary.text(false);
     assert!(
         text.starts_with("NOT TRUSTWORTHY\n  NOT CONVERGED: "),
@@ -85,8 +94,9 @@ fn warnings_come_first_then_friction_damage_wear_energies() {
         "damage",
         "wear of rail",
         "wear of wheel",
-        "\n  dissipated",
         "external work",
+        "layer ",
+        "\n  run ",
     ];
     let places: Vec<usize> = order.iter().map(|w| place(&text, w)).collect();
     assert!(places.is_sorted(), "{places:?}\n{text}");
@@ -96,8 +106,8 @@ fn warnings_come_first_then_friction_damage_wear_energies() {
 fn results_have_units_and_intervals_and_no_lists() {
     let text = fretting().text(false);
     assert!(!text.contains("NOT TRUSTWORTHY"));
-    // k in 26..=50: each of 0.400 to 0.404 five times, mean 0.402, deviation 1e-3 sqrt(2 * 25/24), t(24, 0.975) = 2.0639:
-    // 0.000596.
+    // k in 26..=50: each of 0.400 to 0.404 five times, mean 0.402, deviation 1e-3 sqrt(2 * 25/24), t(24, 0.975) =
+    // 2.0639: 0.000596.
     place(&text, "0.4020 +- 0.00060 (95 %, Student, cycles 26 to 50");
     place(
         &text,
@@ -110,7 +120,11 @@ fn results_have_units_and_intervals_and_no_lists() {
         "3.000e-5 mm3, 100.0 nm deep on average where worn, 300.0 nm at most; k = V/(P s) = 3.000e-6 mm3/(N m)",
     );
     place(&text, "measures               31 values: --verbose");
-    place(&text, "friction 100.0 mJ");
+    place(&text, "external work          110.0 mJ");
+    place(
+        &text,
+        "damage ratio           0.3000 (12 of 40 bonds broken)",
+    );
     assert!(
         !text.contains("layer_") && text.lines().count() < 25,
         "{text}"
@@ -120,36 +134,14 @@ fn results_have_units_and_intervals_and_no_lists() {
 #[test]
 fn all_there_is_comes_on_request() {
     let text = fretting().text(true);
-    for what in ["layer_30", "cycle 1 ", "cycle 50", "solver", "made with"] {
+    for what in [
+        "layer_30",
+        "cycle 1 ",
+        "cycle 50",
+        "estimate of the error",
+        "made with",
+    ] {
         place(&text, what);
     }
     assert!(!text.contains("cycle 25"), "{text}");
-}
-
-#[test]
-fn energies_are_named_as_in_the_ledger_and_balance() {
-    let mut summary = fretting();
-    // A fall: 12 J of work and 80 J of gravity, of which 5 J are kinetic and 3 J in bonds.
-    let e = &mut summary.energy;
-    *e = Default::default();
-    (e.external_work, e.potential, e.initial_kinetic) = (12.0, -80.0, 1.0);
-    (e.kinetic, e.elastic, e.friction, e.adhesion) = (5.0, 3.0, 60.0, 25.0);
-    (e.viscous, e.scheme) = (1e-3, 1e-3);
-    let text = summary.text(false);
-    place(&text, "friction 60.00 J, adhesion 25.00 J\n");
-    place(
-        &text,
-        "kinetic energy 5.000 J, 1.000 J at the start; elastic energy 3.000 J\n",
-    );
-    place(&text, "12.00 J; gravity gave 80.00 J; the ledger");
-    assert!(!text.contains("damping") && !text.contains("time integration"));
-    // Damping and time integration are separate entries; a rise takes energy.
-    let e = &mut summary.energy;
-    (e.viscous, e.scheme, e.potential) = (2.0, 4.0, 7.0);
-    let text = summary.text(false);
-    place(
-        &text,
-        "damping 2.000 J, adhesion 25.00 J, time integration 4.000 J\n",
-    );
-    place(&text, "gravity took 7.000 J");
 }

@@ -1,27 +1,29 @@
 //! What the wall time of a run was spent on.
 
-use super::text::Lines;
 use crate::quantity::quantity;
+use crate::quantity::unit::SECOND;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and the report page are not part of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TimeSpent {
-    /// Detection of contacts, in the steps.
-    pub detection: f64,
-    /// Laws.
-    pub laws: f64,
-    /// The solver.
-    pub solver: f64,
-    /// Everything else in a step: motion, energy ledger, processes, and steps repeated to estimate an error.
-    pub rest_of_steps: f64,
-    /// Observers: statistics, tests and measures.
-    pub observers: f64,
-    /// Writing `results.h5`, `statistics.csv`, checkpoints and tables.
-    pub files: f64,
-    /// Drawing and writing frames and figures.
-    pub pictures: f64,
+crate::described! {
+    /// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and the report page are not part of a run.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+    pub struct TimeSpent {
+        /// Detection of contacts, in the steps.
+        pub detection: f64 => SECOND,
+        /// Laws.
+        pub laws: f64 => SECOND,
+        /// The solver.
+        pub solver: f64 => SECOND,
+        /// Everything else in a step: motion, energy ledger, processes, and steps repeated to estimate an error.
+        pub rest_of_steps: f64 => SECOND,
+        /// Observers: statistics, tests and measures.
+        pub observers: f64 => SECOND,
+        /// Writing `results.h5`, `statistics.csv`, checkpoints and tables.
+        pub files: f64 => SECOND,
+        /// Drawing and writing frames and figures.
+        pub pictures: f64 => SECOND,
+    }
 }
 
 impl TimeSpent {
@@ -46,16 +48,12 @@ impl TimeSpent {
         ]
     }
 
-    /// Adds the line of the text of a summary.
-    pub(super) fn line(&self, lines: &mut Lines) {
+    /// Sentence of the terminal; none where nothing was timed.
+    pub(super) fn sentence(&self) -> Option<String> {
         let parts = self.parts();
         let sum: f64 = parts.iter().map(|p| p.1).sum();
-        if sum == 0.0 {
-            return;
-        }
         let shares = parts.map(|(name, s)| format!("{name} {:.1} %", 100.0 * s / sum));
-        let text = format!("{} of {}", shares.join(", "), quantity(sum, "s"));
-        lines.add("time spent", text);
+        (sum > 0.0).then(|| format!("{} of {}", shares.join(", "), quantity(sum, "s")))
     }
 }
 

@@ -3,40 +3,57 @@
 use super::dataset::Growing;
 use super::declare::MANY;
 use super::store::{ResultsError, Store};
-use fretwork_observe::statistics::Column;
+use fretwork_observe::observer::{Event, EventTable};
 
-/// A table of events.
-#[derive(Debug, Default)]
+/// A table of events, `/events/NAME`.
+#[derive(Debug)]
 pub(super) struct Events {
+    name: &'static str,
     columns: Vec<Growing>,
     buffered: Vec<Vec<f64>>,
+    /// Column of which an event has any number of values.
+    list: Option<Growing>,
+    buffered_list: Vec<f64>,
 }
 
 impl Events {
-    /// Declares the columns in a group; no group is created without columns.
-    pub fn declare(
-        store: &mut Store,
-        group: &str,
-        columns: &[Column],
-    ) -> Result<Self, ResultsError> {
-        if columns.is_empty() {
-            return Ok(Self::default());
+    /// Declares the columns of all tables; no group is created without tables.
+    pub fn declare(store: &mut Store, tables: &[EventTable]) -> Result<Vec<Self>, ResultsError> {
+        if !tables.is_empty() {
+            store.group("/events")?;
         }
-        store.group(group)?;
-        let grown = columns.iter().map(|c| {
-            let path = format!("{group}/{}", c.name);
-            store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)
+        let declared = tables.iter().map(|table| {
+            let group = format!("/events/{}", table.name);
+            store.group(&group)?;
+            let mut grown = Vec::new();
+            for c in table.columns.iter().chain(&table.list) {
+                let path = format!("{group}/{}", c.name);
+                grown.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
+            }
+            let list = table.list.as_ref().and_then(|_| grown.pop());
+            Ok(Self {
+                name: table.name,
+                buffered: vec![Vec::new(); grown.len()],
+                columns: grown,
+                list,
+                buffered_list: Vec::new(),
+            })
         });
-        Ok(Self {
-            columns: grown.collect::<Result<_, _>>()?,
-            buffered: vec![Vec::new(); columns.len()],
-        })
+        declared.collect()
+    }
+
+    /// Whether it is the table of an event.
+    pub fn is_of(&self, event: &Event) -> bool {
+        self.name == event.table && self.columns.len() == event.row.len()
     }
 
     /// Buffers an event.
-    pub fn hold(&mut self, row: &[f64]) {
-        for (column, value) in self.buffered.iter_mut().zip(row) {
+    pub fn hold(&mut self, event: &Event) {
+        for (column, value) in self.buffered.iter_mut().zip(&event.row) {
             column.push(*value);
+        }
+        if self.list.is_some() {
+            self.buffered_list.extend_from_slice(&event.list);
         }
     }
 
@@ -45,8 +62,12 @@ impl Events {
         self.buffered.first().map_or(0, Vec::len)
     }
 
-    /// Writes the buffered events.
+    /// Writes the buffered events: lists first, so that every readable event has all its values.
     pub fn write(&mut self, store: &mut Store) -> Result<(), ResultsError> {
+        if let Some(list) = self.list {
+            store.append(list, &self.buffered_list)?;
+            self.buffered_list.clear();
+        }
         for (column, values) in self.columns.iter().zip(&mut self.buffered) {
             store.append(*column, values)?;
             values.clear();

@@ -5,8 +5,7 @@
 //! /case        text of the case, `--set` applied          /materials/NAME   texts of the material files
 //! /shapes      of grains other than single balls, see [`shapes`]
 //! /plugins     kind, name, version, sha256, path          /statistics/NAME  one column each, with unit
-//! /events/broken/NAME  one value per broken bond           /events/debris/NAME  one value per debris piece
-//! /events/debris/grains  identities of their grains, piece after piece
+//! /events/TABLE/NAME  one value per event of the observers' tables
 //! /views/grains, /views/contacts, /views/bodies           temporal VTKHDF PolyData
 //! /views/meshes/NAME, /views/surfaces/NAME                temporal VTKHDF UnstructuredGrid of deformable bodies
 //! /checkpoints/even, /checkpoints/odd                    states for `--resume`, see [`crate::checkpoint`]
@@ -38,7 +37,7 @@ use super::summary::PluginStamp;
 use dataset::{Growing, Slot};
 use declare::MANY;
 use events::Events;
-use fretwork_observe::observer::Event;
+use fretwork_observe::observer::{Event, EventTable};
 use fretwork_observe::statistics::Column;
 use mesh_view::MeshView;
 use shapes::Shaped;
@@ -72,10 +71,8 @@ pub struct Header {
     pub numbers: [Vec<Column>; 3],
     /// Vector fields of grains, contacts and bodies.
     pub vectors: [Vec<Column>; 3],
-    /// Columns of broken bonds; empty if no interface has a cohesion law.
-    pub broken: Vec<Column>,
-    /// Columns of debris; empty without a circuit.
-    pub debris: Vec<Column>,
+    /// Tables of events.
+    pub events: Vec<EventTable>,
     /// Shapes of grains other than single balls.
     pub shapes: Shaped,
     /// Meshes and surfaces of deformable bodies.
@@ -104,10 +101,7 @@ pub struct Results {
     store: Option<Store>,
     statistics: Vec<Growing>,
     buffered: Vec<Vec<f64>>,
-    broken: Events,
-    debris: Events,
-    debris_grains: Option<Growing>,
-    buffered_grains: Vec<f64>,
+    events: Vec<Events>,
     views: Vec<View>,
     meshes: Vec<MeshView>,
     /// Names of the companion files, and the views that they link to.
@@ -132,16 +126,7 @@ impl Results {
             let path = format!("/statistics/{}", c.name);
             statistics.push(store.growing::<f64>(&path, 1, (c.unit, c.doc), MANY)?);
         }
-        if !header.broken.is_empty() || !header.debris.is_empty() {
-            store.group("/events")?;
-        }
-        let broken = Events::declare(&mut store, "/events/broken", &header.broken)?;
-        let debris = Events::declare(&mut store, "/events/debris", &header.debris)?;
-        let doc = "identities of the grains of all pieces, one piece after another";
-        let debris_grains = match header.debris.is_empty() {
-            true => None,
-            false => Some(store.growing::<f64>("/events/debris/grains", 1, ("", doc), MANY)?),
-        };
+        let events = Events::declare(&mut store, &header.events)?;
         let views = declare_views(&mut store, header)?;
         let meshes = declare_meshes(&mut store, &header.meshes)?;
         store.link("/VTKHDF", "/views/grains")?;
@@ -154,10 +139,7 @@ impl Results {
             store: Some(store),
             statistics,
             buffered: vec![Vec::new(); header.statistics.len()],
-            broken,
-            debris,
-            debris_grains,
-            buffered_grains: Vec::new(),
+            events,
             views,
             meshes,
             companions: companions(&header.meshes),
@@ -231,23 +213,26 @@ impl Results {
         self.flush_if_due(self.buffered.first().map_or(0, Vec::len))
     }
 
-    /// Appends an event to its table; one of a table that the file does not have is left out.
+    /// Appends an event to its table.
     ///
     /// # Errors
-    /// The file cannot be written.
+    /// The file cannot be written, or has no such table: [`Observer::event_tables`] of its observer did not declare it with as many
+    /// columns.
+    ///
+    /// [`Observer::event_tables`]: fretwork_observe::Observer::event_tables
     pub fn append_event(&mut self, event: &Event) -> Result<(), ResultsError> {
-        match event.table {
-            "broken" => {
-                self.broken.hold(&event.row);
-                self.flush_if_due(self.broken.rows())
-            }
-            "debris" => {
-                self.debris.hold(&event.row);
-                self.buffered_grains.extend_from_slice(&event.grains);
-                Ok(())
-            }
-            _ => Ok(()),
+        if self.store.is_none() {
+            return Ok(());
         }
+        let Some(table) = self.events.iter_mut().find(|t| t.is_of(event)) else {
+            return Err(ResultsError::UnknownEvent {
+                table: event.table,
+                columns: event.row.len(),
+            });
+        };
+        table.hold(event);
+        let rows = table.rows();
+        self.flush_if_due(rows)
     }
 
     /// Flushes the file if enough time has passed, or if many rows are buffered.
@@ -286,13 +271,9 @@ impl Results {
             store.append(*column, values)?;
             values.clear();
         }
-        self.broken.write(store)?;
-        // Grain identities first, so that every readable piece has all its grains.
-        if let Some(list) = &self.debris_grains {
-            store.append(*list, &self.buffered_grains)?;
-            self.buffered_grains.clear();
-        }
-        self.debris.write(store)
+        self.events
+            .iter_mut()
+            .try_for_each(|table| table.write(store))
     }
 
     /// Appends the same state of the meshes: the values of each field of each. To be called before [`Results::append_views`].

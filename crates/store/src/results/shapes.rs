@@ -12,6 +12,7 @@
 
 use super::reader::Reader;
 use super::store::{ResultsError, Store};
+use fretwork_core::unit::{INERTIA, MASS};
 pub use fretwork_scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
 /// All grains other than single balls, and those that deform, with their parts, in the order of the grains' view.
@@ -51,10 +52,7 @@ impl Shaped {
     }
 
     fn write_bodies(&self, store: &mut Store, dimension: usize) -> Result<(), ResultsError> {
-        let [mass, moment] = match dimension {
-            2 => ["kg/m", "kg m"],
-            _ => ["kg", "kg m^2"],
-        };
+        let [mass, moment] = [MASS, INERTIA].map(|unit| unit.symbol(dimension));
         let b = &self.bodies;
         let id: Vec<i64> = b.iter().map(|b| b.id as i64).collect();
         store.numbers("/shapes/bodies/id", 1, &id, ("", "identity of the grain"))?;

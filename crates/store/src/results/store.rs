@@ -38,6 +38,17 @@ pub enum ResultsError {
         /// Reason.
         reason: String,
     },
+    /// An event is of no table that was declared.
+    #[error(
+        "an observer gave an event of {columns} values for the table `{table}`, which no observer declares with so many columns: let its \
+         `event_tables` return the table"
+    )]
+    UnknownEvent {
+        /// Name of the table.
+        table: &'static str,
+        /// Values of the event.
+        columns: usize,
+    },
     /// They cannot be read.
     #[error("cannot read {}: {reason}; to start again from the beginning omit --resume", path.display())]
     Read {

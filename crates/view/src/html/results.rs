@@ -1,6 +1,7 @@
 //! Results of a run with their uncertainty, and what they mean.
 
 use crate::html::folder::RunFolder;
+use fretwork_observe::quantity::{Catalogue, Entry, Estimate, Role, Topic};
 use serde_json::Value;
 
 /// A result.
@@ -51,275 +52,72 @@ fn trimmed(digits: &str) -> &str {
     }
 }
 
-/// The main results, by group; empty groups are left out.
+/// The main results of a run, by topic and in the order in which it lists them.
 pub(crate) fn groups(run: &RunFolder) -> Vec<Group> {
-    let s = &run.summary;
-    let plane = run.dimension() == 2;
-    let unit = |solid: &'static str, flat: &'static str| if plane { flat } else { solid };
-    let groups = [
-        ("Friction", friction(s)),
-        ("Damage", damage(s)),
-        ("Wear", wear(s, unit)),
-        ("Energy", energy(s, unit("J", "J/m"))),
-        ("Measures", measures(s)),
-    ];
-    groups.into_iter().filter(|g| !g.1.is_empty()).collect()
+    let catalogue = Catalogue::of(&run.summary);
+    let mut groups: Vec<(Topic, Vec<ResultRow>)> = Vec::new();
+    for (entry, value) in catalogue.shown(&run.summary, Role::Secondary) {
+        let row = row(entry, value);
+        match groups.iter_mut().find(|g| g.0 == entry.topic) {
+            Some(group) => group.1.push(row),
+            None => groups.push((entry.topic, vec![row])),
+        }
+    }
+    // What a run did stands with its provenance.
+    groups.retain(|g| g.0 != Topic::Run);
+    groups.sort_by_key(|g| g.0);
+    groups
+        .into_iter()
+        .map(|(topic, rows)| (topic.title(), rows))
+        .collect()
+}
+
+fn row(entry: &Entry, value: &Value) -> ResultRow {
+    let unit = entry.unit.as_deref().unwrap_or_default();
+    let shown = |x: f64| match unit {
+        "1" | "" => number(x),
+        unit => quantity(x, unit),
+    };
+    let half = |h: f64| match unit {
+        "1" => fretwork_observe::quantity::number(h, 2),
+        unit => quantity(h, unit),
+    };
+    let own = value.as_f64();
+    let estimate = entry.estimate.as_ref();
+    let mean = estimate.and_then(|e| e.value).or(own);
+    let text = value.as_str().map(str::to_owned);
+    let shown_value = mean.map(shown).or(text);
+    // Where an estimate is of a mean, the value itself stands beside it.
+    let itself = own
+        .filter(|own| Some(*own) != mean)
+        .map_or(String::new(), |own| {
+            format!("; `{}` is {}", entry.path, shown(own))
+        });
+    ResultRow {
+        label: entry.label.clone(),
+        value: shown_value.unwrap_or_else(|| value.to_string()),
+        interval: estimate.map_or(String::new(), |e| interval(e, half)),
+        meaning: entry.doc.clone() + &itself,
+    }
 }
 
 /// Half-widths of an estimate, ` ± 0.008 (scatter)`.
-fn interval(estimate: &Value, shown: impl Fn(f64) -> String) -> String {
-    let size = estimate["value"].as_f64().unwrap_or(0.0).abs();
-    let mut known = Vec::new();
-    let mut unknown = Vec::new();
-    for (key, name) in [
-        ("scatter", "scatter"),
-        ("step", "time step"),
-        ("tolerance", "tolerance"),
-        ("coupling", "coupling"),
-    ] {
-        match estimate[key].as_f64() {
-            Some(half) if half < size || key == "scatter" => {
-                known.push(format!("± {} ({name})", shown(half)))
-            }
-            Some(_) => unknown.push(name),
-            None => {}
-        }
-    }
-    let mut text = known.join(" ");
+fn interval(estimate: &Estimate, shown: impl Fn(f64) -> String) -> String {
+    let (settings, unknown) = estimate.known();
+    let scatter = estimate.scatter.map(|half| ("scatter", half));
+    let spelled = |of| if of == "step" { "time step" } else { of };
+    let known = scatter.into_iter().chain(settings);
+    let known: Vec<String> = known
+        .map(|(of, half)| format!("± {} ({})", shown(half), spelled(of)))
+        .collect();
+    let mut parts = vec![known.join(" ")];
     if !unknown.is_empty() {
-        text += &format!(
-            "{}effect of {} not known",
-            if text.is_empty() { "" } else { "; " },
-            unknown.join(" and ")
-        );
+        let unknown: Vec<&str> = unknown.into_iter().map(spelled).collect();
+        parts.push(format!("effect of {} not known", unknown.join(" and ")));
     }
-    if let Some(method) = estimate["method"].as_str().filter(|m| !m.is_empty()) {
-        text += &format!("{}{method}", if text.is_empty() { "" } else { "; " });
-    }
-    text
-}
-
-fn row(label: &str, value: Option<String>, interval: String, meaning: &str) -> Option<ResultRow> {
-    Some(ResultRow {
-        label: label.to_owned(),
-        value: value?,
-        interval,
-        meaning: meaning.to_owned(),
-    })
-}
-
-fn friction(s: &Value) -> Vec<ResultRow> {
-    let own = |key: &str| s[key].as_f64().map(number);
-    let estimate = &s["uncertainty"]["friction_coefficient"];
-    let mean = estimate["value"]
-        .as_f64()
-        .map(number)
-        .or_else(|| own("friction_coefficient"));
-    // Without an interval both are the same number.
-    let last = own("friction_coefficient").filter(|last| Some(last) != mean.as_ref());
-    let regime = s["fretting"]["regime"].as_str().map(str::to_owned);
-    [
-        row(
-            "friction coefficient",
-            mean,
-            interval(estimate, |h| fretwork_observe::quantity::number(h, 2)),
-            "from forces: tangential force along the path over normal force along the path; the mean over the steady cycles (or blocks of time) where an interval stands beside it",
-        ),
-        row(
-            "friction coefficient, last",
-            last,
-            String::new(),
-            "the same over the last complete cycle, or over the second half of the time without cycles",
-        ),
-        row(
-            "from dissipation",
-            own("friction_from_dissipation"),
-            String::new(),
-            "energy dissipated and stored by the energy ledger over the same path: an independent check of the forces",
-        ),
-        row("peak Q/P", own("peak_friction"), String::new(), "largest tangential force over the mean normal force of the same cycle"),
-        row(
-            "plateau Q/P",
-            own("plateau_friction"),
-            String::new(),
-            "over the second half of each stroke: friction without the elastic travel after a reversal",
-        ),
-        row("sliding regime", regime, String::new(), "partial or gross slip, by the energy of the loops over 4 Q delta"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
-
-fn damage(s: &Value) -> Vec<ResultRow> {
-    let Some(bonds) = s["bonds"].as_u64().filter(|b| *b > 0) else {
-        return Vec::new();
-    };
-    let broken = s["broken"].as_u64().unwrap_or(0);
-    let share = s["fracture"]["released_over_declared"].as_f64();
-    [
-        row(
-            "damage ratio",
-            s["damage_ratio"].as_f64().map(number),
-            interval(&s["uncertainty"]["damage_ratio"], |h| fretwork_observe::quantity::number(h, 2)),
-            &format!("broken bonds over bonds made: {broken} of {bonds}"),
-        ),
-        row("mean damage", s["mean_damage"].as_f64().map(number), String::new(), "mean damage D over all bonds made, broken ones counting 1"),
-        row(
-            "energy released",
-            share.map(|x| format!("{} %", number(100.0 * x))),
-            String::new(),
-            "energy that broken bonds released over the fracture energy of their laws: 100 % where the step resolves breaking",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
-}
-
-fn wear(s: &Value, unit: impl Fn(&'static str, &'static str) -> &'static str) -> Vec<ResultRow> {
-    let volume = unit("m3", "m3/m");
-    let wear = &s["wear"];
-    let positive = |v: &Value| v.as_f64().filter(|x| *x != 0.0);
-    let mut out = Vec::new();
-    out.extend(row(
-        "worn off first bodies",
-        positive(&wear["volume_first_bodies"]).map(|v| quantity(v, volume)),
-        interval(&s["uncertainty"]["wear"], |h| quantity(h, volume)),
-        "volume that the wear laws removed from both surfaces",
-    ));
-    for body in wear["bodies"].as_array().into_iter().flatten() {
-        let name = body["body"]
-            .as_str()
-            .or(body["name"].as_str())
-            .unwrap_or("a body");
-        let Some(v) = positive(&body["volume"]) else {
-            continue;
-        };
-        let rate = ["specific_rate", "rate", "specific_wear_rate", "k"]
-            .iter()
-            .find_map(|k| body[*k].as_f64());
-        let rate = rate.map(fretwork_observe::quantity::wear_rate);
-        let meaning = match rate {
-            Some(rate) => format!("volume; specific wear rate k = V/(P s) = {rate}"),
-            None => "volume".to_owned(),
-        };
-        out.extend(row(
-            &format!("worn off {name}"),
-            Some(quantity(v, volume)),
-            String::new(),
-            &meaning,
-        ));
-    }
-    out.extend(row(
-        "worn between grains",
-        positive(&wear["volume_third_body"]).map(|v| quantity(v, volume)),
-        String::new(),
-        "volume that the wear laws removed within the third body",
-    ));
-    let flow = wear["unit"].as_str().unwrap_or_default();
-    for (key, label, meaning) in [
-        (
-            "Qs",
-            "source flow Qs",
-            "mass that comes loose from the first bodies, per time",
-        ),
-        (
-            "Qi",
-            "internal flow Qi",
-            "mass of third body that crosses a section of the contact, per time",
-        ),
-        (
-            "Qe",
-            "ejected flow Qe",
-            "mass that leaves the contact, per time",
-        ),
-        (
-            "Qw",
-            "wear flow Qw",
-            "mass that is lost: ejected and not recirculated, per time",
-        ),
-    ] {
-        out.extend(row(
-            label,
-            positive(&wear[key]).map(|v| quantity(v, flow)),
-            String::new(),
-            meaning,
-        ));
-    }
-    out
-}
-
-fn energy(s: &Value, unit: &str) -> Vec<ResultRow> {
-    let energy = &s["energy"];
-    let scale = energy["scale"].as_f64().unwrap_or(0.0);
-    let mut out = Vec::new();
-    for (key, label, meaning) in [
-        (
-            "friction",
-            "friction",
-            "dissipated by friction since the start",
-        ),
-        ("fracture", "fracture", "released by damage of bonds"),
-        ("impact", "impact", "dissipated by impacts"),
-        (
-            "viscous",
-            "damping",
-            "dissipated by damping of bonds, contacts and deformable bodies",
-        ),
-        (
-            "adhesion",
-            "adhesion",
-            "work against attractive forces without opening",
-        ),
-        (
-            "elastic",
-            "elastic",
-            "stored at the end in bonds, contacts and deformable bodies",
-        ),
-        ("kinetic", "kinetic", "kinetic energy at the end"),
-        (
-            "external_work",
-            "external work",
-            "work of imposed forces and motions",
-        ),
-    ] {
-        let value = energy[key].as_f64().filter(|e| e.abs() > 1e-3 * scale);
-        let half = match key {
-            "friction" => interval(&s["uncertainty"]["friction_energy"], |h| quantity(h, unit)),
-            _ => String::new(),
-        };
-        out.extend(row(label, value.map(|e| quantity(e, unit)), half, meaning));
-    }
-    let relative = s["energy_residual_relative"].as_f64();
-    out.extend(row(
-        "residual of the ledger",
-        relative.map(|x| format!("{x:.1e}")),
-        String::new(),
-        "energy that no entry explains, over the largest energy seen: round-off where the bookkeeping is right",
-    ));
-    out
-}
-
-fn measures(s: &Value) -> Vec<ResultRow> {
-    let units = &s["measure_units"];
-    let numbers = s["measures"]
-        .as_object()
-        .into_iter()
-        .flatten()
-        .filter_map(|(name, value)| {
-            let unit = units[name].as_str().unwrap_or_default();
-            row(
-                name,
-                value.as_f64().map(|v| quantity(v, unit)),
-                String::new(),
-                "",
-            )
-        });
-    let findings = s["findings"].as_object().into_iter().flatten();
-    let findings = findings
-        .filter_map(|(name, text)| row(name, text.as_str().map(str::to_owned), String::new(), ""));
-    findings.chain(numbers).collect()
+    parts.extend(estimate.method.clone());
+    parts.retain(|part| !part.is_empty());
+    parts.join("; ")
 }
 
 #[cfg(test)]
@@ -342,12 +140,42 @@ mod tests {
 
     #[test]
     fn half_widths_as_large_as_the_value_are_not_numbers() {
-        let estimate =
-            json!({"value": 0.5, "scatter": 0.1, "step": 0.6, "tolerance": 0.02, "method": null});
+        let estimate = Estimate {
+            value: Some(0.5),
+            scatter: Some(0.1),
+            step: Some(0.6),
+            tolerance: Some(0.02),
+            ..Estimate::default()
+        };
         assert_eq!(
             interval(&estimate, |h| h.to_string()),
             "± 0.1 (scatter) ± 0.02 (tolerance); effect of time step not known"
         );
-        assert_eq!(interval(&Value::Null, |h| h.to_string()), "");
+        assert_eq!(interval(&Estimate::default(), |h| h.to_string()), "");
+    }
+
+    /// A row is made of what the run says of a quantity, whatever it is called.
+    #[test]
+    fn a_row_has_value_unit_interval_and_meaning() {
+        let entry = Entry {
+            path: "spin.largest".to_owned(),
+            unit: Some("N".to_owned()),
+            doc: "how it pulls".to_owned(),
+            role: Role::Headline,
+            topic: Topic::Measures,
+            label: "pull".to_owned(),
+            estimate: Some(Estimate {
+                value: Some(2.5),
+                scatter: Some(0.25),
+                ..Estimate::default()
+            }),
+        };
+        let row = row(&entry, &json!(2.0));
+        assert_eq!(
+            (row.label.as_str(), row.value.as_str()),
+            ("pull", "2.500 N")
+        );
+        assert_eq!(row.interval, "± 250.0 mN (scatter)");
+        assert_eq!(row.meaning, "how it pulls; `spin.largest` is 2.000 N");
     }
 }

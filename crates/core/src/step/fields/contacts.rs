@@ -4,6 +4,7 @@ use super::Field;
 use crate::contact::{BondState, Contact, ContactNames};
 use crate::geometry::space::{Space, VectorLike};
 use crate::step::Simulation;
+use crate::unit::{ENERGY, FORCE};
 
 /// Force of the last step on the candidate (N; N/m in 2D).
 fn force<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> S::Vector {
@@ -32,11 +33,7 @@ fn status<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> f64 {
 
 /// Fields that all simulations have.
 pub(super) fn standard<S: Space>() -> Vec<Field<S, Contact<S>>> {
-    let (newton, joule) = if S::D == 2 {
-        ("N/m", "J/m")
-    } else {
-        ("N", "J")
-    };
+    let [newton, joule] = [FORCE, ENERGY].map(|unit| unit.symbol(S::D));
     let mut fields = vec![
         Field::number(
             "state",

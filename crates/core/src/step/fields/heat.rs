@@ -4,6 +4,7 @@ use super::{Field, GrainPart};
 use crate::contact::{Contact, ContactHeat};
 use crate::geometry::space::Space;
 use crate::step::Simulation;
+use crate::unit::{CONDUCTANCE, ELECTRIC_CONDUCTANCE, ENERGY};
 
 /// Temperature of the body of a grain, for simulations with heat.
 pub fn heat_of_grains<S: Space>() -> Field<S, GrainPart<S>> {
@@ -31,10 +32,8 @@ fn of_contact<S: Space>(
 
 /// Temperature, heat and conductances of contacts in the last step, for simulations with heat.
 pub fn heat_of_contacts<S: Space>() -> [Field<S, Contact<S>>; 4] {
-    let [joule, thermal, electric] = match S::D {
-        2 => ["J/m", "W/(m K)", "S/m"],
-        _ => ["J", "W/K", "S"],
-    };
+    let units = [ENERGY, CONDUCTANCE, ELECTRIC_CONDUCTANCE];
+    let [joule, thermal, electric] = units.map(|unit| unit.symbol(S::D));
     [
         Field::number(
             "temperature",

@@ -15,6 +15,7 @@ use super::plan::Plan;
 use super::rows::Rows;
 use super::spec::DesignSpec;
 use crate::factor::{Factor, Level, Values};
+use crate::runs::unit::heading;
 use fretwork_math::statistics::interval::Mean;
 use std::collections::HashMap;
 
@@ -66,7 +67,7 @@ impl Analysis {
                 unit: rows
                     .table
                     .column(&output.name)
-                    .map_or(String::new(), |c| c.unit.clone()),
+                    .map_or(String::new(), |c| heading(&c.unit).to_owned()),
                 means: data.means(),
                 responses: curves::responses(&data),
                 effects: effects::effects(&data),

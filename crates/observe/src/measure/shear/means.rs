@@ -1,6 +1,10 @@
 //! Means of plane shear from a time on, with the error of averaging and the strains before and during it.
 
+use crate::quantity::Unit;
+use crate::quantity::unit::{ONE, PASCAL};
 use crate::steady::{BLOCKS, Flow, of_blocks};
+
+const PER_SECOND: Unit = Unit::of("1/s");
 
 /// Means from a time on. Signs of rate and shear stress are those of the columns.
 #[derive(Clone, Debug)]
@@ -85,25 +89,51 @@ impl Means {
         })
     }
 
-    /// Names and values for the summary.
-    pub fn values(&self) -> Vec<(&'static str, f64)> {
+    /// Name, value, unit and explanation of each.
+    pub fn values(&self) -> Vec<(&'static str, f64, Unit, &'static str)> {
         let mut out = vec![
-            ("rate", self.rate),
-            ("p", self.p),
-            ("mu", self.mu),
-            ("phi", self.phi),
-            ("I", self.inertial),
-            ("p_kinetic", self.kinetic[0]),
-            ("tau_kinetic", self.kinetic[1]),
-            ("strain_before", self.strain[0]),
-            ("strain", self.strain[1]),
+            ("rate", self.rate, PER_SECOND, "mean shear rate"),
+            ("p", self.p, PASCAL, "mean normal stress"),
+            ("mu", self.mu, ONE, "friction of the mean stresses"),
+            ("phi", self.phi, ONE, "mean solid fraction"),
+            (
+                "I",
+                self.inertial,
+                ONE,
+                "inertial number of the mean rate and stress",
+            ),
+            (
+                "p_kinetic",
+                self.kinetic[0],
+                PASCAL,
+                "part of the normal stress that motion carries",
+            ),
+            (
+                "tau_kinetic",
+                self.kinetic[1],
+                PASCAL,
+                "part of the shear stress that motion carries",
+            ),
+            (
+                "strain_before",
+                self.strain[0],
+                ONE,
+                "shear strain before the means",
+            ),
+            (
+                "strain",
+                self.strain[1],
+                ONE,
+                "shear strain during the means",
+            ),
         ];
         if let Some([p, mu, phi, inertial]) = &self.blocks {
+            let doc = "half-width of the 95 % interval of the mean, by blocks of time";
             out.extend([
-                ("p_half_width", p.half_width),
-                ("mu_half_width", mu.half_width),
-                ("phi_half_width", phi.half_width),
-                ("I_half_width", inertial.half_width),
+                ("p_half_width", p.half_width, PASCAL, doc),
+                ("mu_half_width", mu.half_width, ONE, doc),
+                ("phi_half_width", phi.half_width, ONE, doc),
+                ("I_half_width", inertial.half_width, ONE, doc),
             ]);
         }
         out

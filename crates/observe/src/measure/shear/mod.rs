@@ -18,6 +18,7 @@ use crate::chart::Axis;
 use crate::code::{self, CodeError};
 use crate::figures::history;
 use crate::output::Output;
+use crate::quantity::Findings;
 use crate::statistics::{Column, Table};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
@@ -153,25 +154,18 @@ impl<S: Space> Observer<S> for Shear<S> {
         ]
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let means = self.means(table);
-        let values = means.iter().flat_map(Means::values);
-        values
-            .map(|(part, value)| (self.column(part), value))
-            .collect()
-    }
-
-    fn units(&self) -> Vec<(String, &'static str)> {
-        let named = [("p_half_width", "Pa")];
-        named.map(|(part, unit)| (self.column(part), unit)).to_vec()
-    }
-
-    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
-        let means = self.means(table);
-        means
-            .map(|m| (self.name.clone(), m.describe()))
-            .into_iter()
-            .collect()
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        let Some(means) = self.means(end.table) else {
+            return;
+        };
+        found.finding(
+            &self.name,
+            means.describe(),
+            "means of plane shear, and what they are worth",
+        );
+        for (part, value, unit, doc) in means.values() {
+            found.measure(&self.column(part), value, unit, doc);
+        }
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

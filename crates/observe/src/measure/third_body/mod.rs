@@ -16,6 +16,8 @@ use super::{Observer, RunEnd, grains, mean, since};
 use crate::code::{self, CodeError};
 use crate::output::Output;
 use crate::picture::{Picture, Shows};
+use crate::quantity::unit::{ENERGY, ONE};
+use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
@@ -151,6 +153,11 @@ fn columns(
         _ => true,
     };
     COLUMNS.into_iter().filter(shown)
+}
+
+/// Whether the mean of a column over the run is a result.
+fn is_averaged(part: &str) -> bool {
+    !(part.starts_with("slip") || ["sliding", "interior_shear", "regime"].contains(&part))
 }
 
 impl<S: Space> ThirdBody<S> {
@@ -307,42 +314,83 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         self.row.clone()
     }
 
-    fn outcome(&self, table: &Table) -> Vec<(String, f64)> {
-        let mut out: Vec<(String, f64)> = Vec::new();
-        let means = columns(S::D, self.heated).filter(|c| {
-            !(c.0 == "sliding"
-                || c.0.starts_with("slip")
-                || c.0 == "interior_shear"
-                || c.0 == "regime")
-        });
-        for (part, ..) in means {
-            let column = self.column(part);
-            let value = mean(&since(table, &column, self.spec.start));
-            out.extend(value.map(|v| (column, v)));
-        }
-        let (flow, cluster, _) = self.flow(table);
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+        let (flow, cluster, over) = self.flow(end.table);
         let regime = Regime::of(flow.as_ref(), cluster);
-        out.push((self.column("regime"), regime as i32 as f64));
-        if let Some(flow) = flow {
-            out.extend([
-                (self.column("interior_shear"), flow.interior),
-                (self.column("straightness"), flow.straight),
-                (self.column("slip_first_share"), flow.slip_first),
-                (self.column("slip_second_share"), flow.slip_second),
-            ]);
+        let said = regime.describe(flow.as_ref(), cluster);
+        let doc = "flow regime of the layer";
+        found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
+        let means = Observer::<S>::columns(self)
+            .into_iter()
+            .zip(columns(S::D, self.heated));
+        for (column, (part, ..)) in means.filter(|(_, c)| is_averaged(c.0)) {
+            let values = since(end.table, &column.name, self.spec.start);
+            if let Some(value) = mean(&values) {
+                let doc = format!("{}; mean over the run", column.doc);
+                found.measure(&self.column(part), value, column.unit(), doc);
+            }
+        }
+        let mut add = |part: &str, value: f64, unit: Unit, doc: String| {
+            found.measure(&self.column(part), value, unit, doc);
+        };
+        let doc = "flow regime: 0 none, 1 Couette, 2 agglomerated, 3 plug with wall slip, 4 mixed";
+        add("regime", regime as i32 as f64, ONE, doc.to_owned());
+        if let Some(flow) = &flow {
+            for (part, value, doc) in [
+                (
+                    "interior_shear",
+                    flow.interior,
+                    "velocity difference within the layer over the sliding",
+                ),
+                (
+                    "straightness",
+                    flow.straight,
+                    "straightness of the velocity profile",
+                ),
+                (
+                    "slip_first_share",
+                    flow.slip_first,
+                    "slip at the first body over the sliding",
+                ),
+                (
+                    "slip_second_share",
+                    flow.slip_second,
+                    "slip at the second body over the sliding",
+                ),
+            ] {
+                add(part, value, ONE, doc.to_owned());
+            }
         }
         let total = self.spent.total();
-        out.push((self.column("dissipated"), total));
+        add(
+            "dissipated",
+            total,
+            ENERGY,
+            "energy dissipated in the layer and at its faces".to_owned(),
+        );
         for (k, mechanism) in MECHANISMS.iter().enumerate() {
-            let sum = self.spent.places.iter().map(|p| p[k]).sum();
-            out.push((self.column(&format!("dissipated_{mechanism}")), sum));
+            let sum: f64 = self.spent.places.iter().map(|p| p[k]).sum();
+            let doc = format!("energy dissipated by {mechanism}");
+            add(&format!("dissipated_{mechanism}"), sum, ENERGY, doc);
         }
         let load = self.spent.load;
         if let Some(mu) = self.spent.friction() {
-            out.push((self.column("mu_from_forces"), self.spent.work / load));
-            out.push((self.column("mu_from_dissipation"), mu));
             // Energy stored by the grains and their bonds, or supplied by the bodies other than by sliding.
-            out.push((self.column("mu_kept"), mu - total / load));
+            for (part, value, doc) in [
+                (
+                    "mu_from_forces",
+                    self.spent.work / load,
+                    "friction from forces",
+                ),
+                ("mu_from_dissipation", mu, "friction from the energy ledger"),
+                (
+                    "mu_kept",
+                    mu - total / load,
+                    "part of the friction that is stored, not dissipated",
+                ),
+            ] {
+                add(part, value, ONE, doc.to_owned());
+            }
         }
         for (place, energies) in Place::ALL.iter().zip(&self.spent.places) {
             let sum: f64 = energies.iter().sum();
@@ -351,26 +399,14 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
             }
             let name = place.name(&self.spec.between);
             if total != 0.0 {
-                out.push((self.column(&format!("share_{name}")), sum / total));
+                let doc = format!("share of the dissipation at {name}");
+                add(&format!("share_{name}"), sum / total, ONE, doc);
             }
             if load > 0.0 {
-                out.push((self.column(&format!("mu_{name}")), sum / load));
+                let doc = format!("part of the friction that is dissipated at {name}");
+                add(&format!("mu_{name}"), sum / load, ONE, doc);
             }
         }
-        out
-    }
-
-    fn units(&self) -> Vec<(String, &'static str)> {
-        let unit = if S::D == 2 { "J/m" } else { "J" };
-        let parts = MECHANISMS.iter().map(|m| format!("dissipated_{m}"));
-        let names = parts.chain(["dissipated".to_owned()]);
-        names.map(|name| (self.column(&name), unit)).collect()
-    }
-
-    fn verdict(&self, table: &Table) -> Vec<(String, String)> {
-        let (flow, cluster, over) = self.flow(table);
-        let said = Regime::of(flow.as_ref(), cluster).describe(flow.as_ref(), cluster);
-        vec![(self.column("regime"), format!("{said}; {over}"))]
     }
 
     fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {

@@ -3,6 +3,7 @@
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
 use super::spent::{Dissipation, Place};
+use crate::quantity::unit::{ENERGY, MASS};
 use fretwork_core::geometry::space::Space;
 
 /// Columns of the profiles, in the order of [`row`].
@@ -90,7 +91,7 @@ pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated
 
 /// The energies by pair of bodies and by bin, each with its fraction of the total.
 pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, String)) -> String {
-    let unit = if S::D == 2 { "J/m" } else { "J" };
+    let unit = ENERGY.symbol(S::D);
     let mut header = vec!["place".to_owned()];
     header.extend(
         MECHANISMS
@@ -124,7 +125,7 @@ pub(super) fn energies<S: Space>(spent: &Dissipation<S>, between: &(String, Stri
 
 /// Number of clusters of each size, and their mass without `inertia_scaling`.
 pub(super) fn clusters(clusters: &Clusters, inertia_scaling: f64, dimension: usize) -> String {
-    let unit = if dimension == 2 { "kg/m" } else { "kg" };
+    let unit = MASS.symbol(dimension);
     let mut lines = vec![vec![
         "grains".to_owned(),
         "clusters".to_owned(),

@@ -3,7 +3,8 @@
 use super::escape;
 use crate::html::folder::RunFolder;
 use crate::html::results::{self, Group, ResultRow};
-use crate::html::statistics::Statistics;
+use crate::html::statistics::{Column, Statistics};
+use fretwork_observe::quantity::Catalogue;
 use fretwork_store::summary::FROM_THE_CLOCK;
 use serde_json::Value;
 
@@ -12,9 +13,13 @@ const MANY: usize = 12;
 
 /// The results of a run.
 pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
+    if run.summary.is_null() {
+        return last_row(series);
+    }
     let groups = results::groups(run);
     if groups.is_empty() {
-        return last_row(series);
+        // Of a version that did not say what its quantities are.
+        return everything(&run.summary, &Catalogue::default());
     }
     let mut out = String::from(
         "<p class=\"lead\">Half-widths are of 95 % intervals, by cause: scatter within the run, and what a finer time step or a \
@@ -23,30 +28,12 @@ pub(crate) fn html(run: &RunFolder, series: &Statistics) -> String {
     for group in &groups {
         out += &table(group);
     }
-    out + &everything(&run.summary)
+    out + &everything(&run.summary, &Catalogue::of(&run.summary))
 }
-
-/// Columns of the last row that stand for the results of a run without a summary.
-const LAST: [&str; 13] = [
-    "time",
-    "step",
-    "cycle",
-    "contacts",
-    "bonds_intact",
-    "bonds_broken",
-    "damage_ratio",
-    "mean_damage",
-    "mu",
-    "friction",
-    "fracture",
-    "worn_first",
-    "residual",
-];
 
 /// The last row of the statistics, of a run that has no results.
 fn last_row(series: &Statistics) -> String {
-    let row = |name: &&str| {
-        let column = series.column(name)?;
+    let row = |column: &Column| {
         Some(ResultRow {
             label: column.name.clone(),
             value: results::quantity(*column.values.last()?, &column.unit),
@@ -54,7 +41,7 @@ fn last_row(series: &Statistics) -> String {
             meaning: column.doc.clone(),
         })
     };
-    let rows: Vec<ResultRow> = LAST.iter().filter_map(row).collect();
+    let rows: Vec<ResultRow> = series.columns.iter().filter_map(row).collect();
     if rows.is_empty() {
         return "<p>Neither results nor statistics were recorded.</p>\n".to_owned();
     }
@@ -115,24 +102,31 @@ fn from_the_clock(path: &str) -> bool {
 }
 
 /// All numbers of the summary, by their paths.
-fn everything(summary: &Value) -> String {
+fn everything(summary: &Value, catalogue: &Catalogue) -> String {
     let mut rows = Vec::new();
     flatten(summary, String::new(), &mut rows);
+    // The catalogue itself is in the columns beside the values.
+    rows.retain(|(path, _)| !path.starts_with(Catalogue::KEY));
     let body: String = rows
         .iter()
         .map(|(path, value)| {
+            let entry = catalogue.entry(path);
+            let unit = entry.and_then(|e| e.unit.as_deref()).filter(|u| *u != "1");
+            let doc = entry.map_or("", |e| e.doc.as_str());
             format!(
-                "<tr{}><td><code>{}</code></td><td>{}</td></tr>\n",
+                "<tr{}><td><code>{}</code></td><td>{} {}</td><td class=\"meaning\">{}</td></tr>\n",
                 clock(from_the_clock(path)),
                 escape(path),
-                escape(value)
+                escape(value),
+                escape(unit.unwrap_or_default()),
+                escape(doc)
             )
         })
         .collect();
     format!(
         "<details><summary>All {} values of summary.json</summary>\n\
          <label class=\"search\">Search <input type=\"search\" data-filters=\"summary-table\"></label>\n\
-         <div class=\"scroll\"><table id=\"summary-table\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Value</th></tr></thead>\n\
+         <div class=\"scroll\"><table id=\"summary-table\"><thead><tr><th scope=\"col\">Key</th><th scope=\"col\">Value</th><th scope=\"col\">Meaning</th></tr></thead>\n\
          <tbody>\n{body}</tbody></table></div></details>\n",
         rows.len()
     )

@@ -1,6 +1,8 @@
-//! Energy of broken bonds and resolution of bonds by the step, in the summary.
+//! Energy of broken bonds, and whether the step resolves bonds.
 
-use crate::quantity::number;
+use crate::quantity::unit::{ENERGY, METRE, ONE, WORD};
+use crate::quantity::{Findings, Role, Topic, number, part};
+use crate::warning::Warning;
 use fretwork_core::contact::Slides;
 use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
@@ -32,58 +34,62 @@ pub enum Reference {
     None,
 }
 
-/// Bonds of one interface.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct BondEnergies {
-    /// Name of the interface.
-    pub interface: String,
-    /// Bonds that damage broke.
-    pub broken: u64,
-    /// Bonds whose contact moved out of range, or whose body was removed.
-    pub torn: u64,
-    /// Energy that the bonds broken by damage released, all that was stored at the break included (J; J/m in 2D).
-    pub released: f64,
-    /// Part of it that is compared with the next: all, unless bonds were broken by rotation in great numbers (J; J/m in 2D).
-    #[serde(skip)]
-    pub compared: f64,
-    /// Fracture energy of their laws for their areas and openings; where bonds were also turned, the work of a slow pull that opens and
-    /// turns them in the same proportion (J; J/m in 2D).
-    pub declared: Option<f64>,
-    /// Where the latter comes from.
-    pub reference: Reference,
-    /// Released over declared; null without broken bonds.
-    pub released_over_declared: Option<f64>,
-    /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it depends on neither speed, pressure nor
-    /// history; and no broken bond began at its gap, with an energy that its law may not have allowed.
-    pub comparable: bool,
-    /// Share of the broken bonds that had no damage at the start of the step in which they broke.
-    pub broken_at_once: Option<f64>,
-    /// Opening of a slow pull at which a bond breaks, the smaller of both modes (m).
-    pub critical_opening: Option<f64>,
-    /// Smallest opening at the peak of the traction (m).
-    pub peak_opening: Option<f64>,
-    /// Change of the opening of an intact bond in a step over the critical opening: mean over bonds and steps.
-    pub slide_mean: Option<f64>,
-    /// The same, mean over the steps that released energy, weighted by that energy.
-    pub slide_breaking: Option<f64>,
-    /// Its largest value.
-    pub slide_largest: Option<f64>,
-    /// Time step times the frequency of a bond at the contacts at the end: median and largest.
-    pub step_times_frequency: Option<[f64; 2]>,
+crate::described! {
+    /// Bonds of one interface.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct BondEnergies {
+        /// Name of the interface.
+        pub interface: String => WORD,
+        /// Bonds that damage broke.
+        pub broken: u64 => ONE,
+        /// Bonds whose contact moved out of range, or whose body was removed.
+        pub torn: u64 => ONE,
+        /// Energy that the bonds broken by damage released, all that was stored at the break included.
+        pub released: f64 => ENERGY,
+        /// Part of it that is compared with the next: all, unless bonds were broken by rotation in great numbers.
+        #[serde(skip)]
+        pub compared: f64,
+        /// Fracture energy of their laws for their areas and openings; where bonds were also turned, the work of a slow pull that opens and
+        /// turns them in the same proportion.
+        pub declared: Option<f64> => ENERGY,
+        /// What the fracture energy comes from.
+        pub reference: Reference => WORD,
+        /// Released over declared; null without broken bonds.
+        pub released_over_declared: Option<f64> => ONE,
+        /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it depends on neither speed, pressure nor
+        /// history; and no broken bond began at its gap, with an energy that its law may not have allowed.
+        pub comparable: bool => WORD,
+        /// Share of the broken bonds that had no damage at the start of the step in which they broke.
+        pub broken_at_once: Option<f64> => ONE,
+        /// Opening of a slow pull at which a bond breaks, the smaller of both modes.
+        pub critical_opening: Option<f64> => METRE,
+        /// Smallest opening at the peak of the traction.
+        pub peak_opening: Option<f64> => METRE,
+        /// Change of the opening of an intact bond in a step over the critical opening: mean over bonds and steps.
+        pub slide_mean: Option<f64> => ONE,
+        /// Change of the opening in a step over the critical opening, mean over the steps that released energy, weighted by that energy.
+        pub slide_breaking: Option<f64> => ONE,
+        /// Largest change of the opening of an intact bond in a step over the critical opening.
+        pub slide_largest: Option<f64> => ONE,
+        /// Time step times the frequency of a bond at the contacts at the end: median and largest.
+        pub step_times_frequency: Option<[f64; 2]> => ONE,
+    }
 }
 
-/// Energy that broken bonds released, over what their laws declare; the slide of bonds in a step.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct FractureSummary {
-    /// Energy released over that of the laws, over all bonds that damage broke in interfaces where they are `comparable`; null without any.
-    pub released_over_declared: Option<f64>,
-    /// The interfaces that made bonds.
-    pub interfaces: Vec<BondEnergies>,
-    /// Whether cycles were skipped: damage then grows by more than what the energies of a step say, and nothing is compared.
-    pub jumps: bool,
-    /// Time step (s), and the slide per step over critical opening with which it would resolve a bond.
-    #[serde(skip)]
-    pub step: [f64; 2],
+crate::described! {
+    /// Energy that broken bonds released, over what their laws declare; the slide of bonds in a step.
+    #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+    pub struct FractureSummary {
+        /// Energy released over that of the laws, over all bonds that damage broke in interfaces where they are `comparable`; null without any.
+        pub released_over_declared: Option<f64> => ONE,
+        /// The interfaces that made bonds.
+        pub interfaces: Vec<BondEnergies> = part::<BondEnergies>(),
+        /// Whether cycles were skipped: damage then grows by more than what the energies of a step say, and nothing is compared.
+        pub jumps: bool => WORD,
+        /// Time step, and the slide per step over critical opening with which it would resolve a bond.
+        #[serde(skip)]
+        pub step: [f64; 2],
+    }
 }
 
 impl FractureSummary {
@@ -104,11 +110,22 @@ impl FractureSummary {
         }
     }
 
-    /// Lines of the text at the end of a run.
-    pub(super) fn lines(&self) -> Vec<(&'static str, String)> {
-        let Some(ratio) = self.released_over_declared else {
-            return Vec::new();
-        };
+    /// Adds the energies of broken bonds.
+    pub(super) fn report(&self, found: &mut Findings) {
+        found.begin(Topic::Damage, Role::Detail);
+        found.part("fracture", self, "");
+        if let Some(ratio) = self.released_over_declared {
+            let text = self.sentence(ratio);
+            found.edit("fracture.released_over_declared", |q| {
+                q.secondary("energy released").sentence("released", text);
+            });
+        }
+        let text = self.warning();
+        found.warn(text.map(|text| Warning::note("BONDS NOT RESOLVED", text)));
+    }
+
+    /// Sentence of the terminal.
+    fn sentence(&self, ratio: f64) -> String {
         let once = self.interfaces.iter().filter_map(|b| {
             let share = b.softening_at_once().filter(|s| *s > 0.0)?;
             Some(format!(
@@ -122,7 +139,7 @@ impl FractureSummary {
             number(ratio, 4)
         )];
         text.extend(once);
-        vec![("released", text.join("; "))]
+        text.join("; ")
     }
 
     /// Says which bonds the step does not resolve, and what to change; `None` where it resolves all, or nothing is known.

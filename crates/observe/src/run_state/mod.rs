@@ -1,18 +1,32 @@
 //! The state of a run: what every run says of its steps, contacts, bonds, energies and its solver.
 
+mod driven;
+mod energy;
+mod missed;
+mod phases;
+mod solver;
+mod step_size;
+
+pub use driven::DrivenBodies;
+pub use energy::{LEDGER, MomentumSummary};
+pub use missed::Missed;
+pub use phases::Phases;
+
 use super::figures;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
+use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, WORD};
+use super::quantity::{Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
-use super::summary::{MomentumSummary, Summary};
+use super::warning::Warning;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
 use fretwork_core::geometry::space::Space;
+use fretwork_core::laws::Interface;
 use fretwork_core::momentum::Momentum;
 use fretwork_core::process::cycle::CycleClock;
-use fretwork_core::solve;
 use fretwork_core::step::{ImpossibleMotions, Simulation, StepReport};
 
 /// Broken bonds over bonds made.
@@ -58,25 +72,80 @@ impl Counts {
         }
     }
 
-    fn put(&self, summary: &mut Summary) {
-        summary.steps = self.steps;
-        summary.time = self.time;
-        summary.bodies = self.bodies;
-        summary.contacts = self.contacts;
-        summary.bonds = self.bonds;
-        summary.broken = self.broken;
-        summary.damage_ratio = self.damage_ratio;
-        summary.step_size = self.step_size.clone();
-        summary.energy = self.energy;
-        summary.energy_residual_relative = self.energy.relative_residual();
-        let [linear, angular] = self.momentum.drift();
-        let relative = self.momentum.relative();
-        summary.momentum = MomentumSummary {
-            linear,
-            angular,
-            linear_relative: relative[0],
-            angular_relative: relative[1],
-        };
+    fn report(&self, bonds: BondsOfCase, found: &mut Findings) {
+        found.begin(Topic::Run, Role::Diagnostic);
+        found.add("steps", self.steps, ONE, "steps done");
+        found.add("time", self.time, SECOND, "time reached");
+        found.begin(Topic::Run, Role::Detail);
+        found.add("bodies", self.bodies, ONE, "number of bodies");
+        let said = format!("{} between {} bodies", self.contacts, self.bodies);
+        let contacts = found.add(
+            "contacts",
+            self.contacts,
+            ONE,
+            "number of contacts at the end",
+        );
+        contacts.sentence("contacts", said);
+        found.begin(Topic::Damage, Role::Detail);
+        for (name, count, label, doc) in [
+            ("bonds", self.bonds, "bonds made", "number of bonds made"),
+            (
+                "broken",
+                self.broken,
+                "bonds broken",
+                "number of bonds broken",
+            ),
+        ] {
+            let count = found.add(name, count, ONE, doc);
+            if self.bonds > 0 {
+                count.secondary(label).silent();
+            }
+        }
+        let doc = "broken bonds over bonds made";
+        let ratio = found.add("damage_ratio", self.damage_ratio, ONE, doc);
+        if self.bonds > 0 || bonds.damaged {
+            let said = format!("({} of {} bonds broken)", self.broken, self.bonds);
+            ratio.secondary("damage ratio").remark(said);
+        }
+        if bonds.damaged {
+            ratio.role = Role::Headline;
+        }
+        if self.bonds == 0 {
+            ratio.silent();
+        }
+        if !bonds.any {
+            for name in ["bonds", "broken", "damage_ratio"] {
+                found.edit(name, |q| {
+                    q.lacks(NO_BONDS);
+                });
+            }
+        }
+        energy::report(&self.energy, self.momentum, bonds, found);
+        found.begin(Topic::Run, Role::Diagnostic);
+        let doc = "whether the step was small enough to detect every contact in time";
+        found.fields("haste", &self.step_size, &step_size::FIELDS, doc);
+    }
+}
+
+/// Whether the laws of a case make bonds, and damage them.
+#[derive(Clone, Copy, Debug)]
+struct BondsOfCase {
+    any: bool,
+    damaged: bool,
+}
+
+const NO_BONDS: &str = "no interface of the case makes bonds";
+const NO_DAMAGE: &str = "no interface of the case has a damage law";
+
+impl BondsOfCase {
+    fn of<S: Space>(s: &Simulation<S>) -> Self {
+        let makes =
+            |l: &Interface| l.opens() && (l.bonding_time().is_some() || l.healing.is_some());
+        let any = s.laws.iter().any(makes) || s.state.network.bonds_made() > 0;
+        Self {
+            any,
+            damaged: any && s.laws.iter().any(Interface::damages),
+        }
     }
 }
 
@@ -88,6 +157,7 @@ pub struct RunState {
     counts: Counts,
     solver: SolverSummary,
     impossible: ImpossibleMotions,
+    bonds: BondsOfCase,
     iterations: u64,
     couplings: u64,
     /// Number of contacts in the last step; none before it.
@@ -97,11 +167,13 @@ pub struct RunState {
 }
 
 impl RunState {
-    /// Of a run solved with these options; its friction test may have cycles.
-    pub fn new(options: &solve::Options, clock: Option<CycleClock>) -> Self {
+    /// Of a run from the current state of a simulation; its friction test may have cycles.
+    pub fn new<S: Space>(s: &Simulation<S>, clock: Option<CycleClock>) -> Self {
+        let options = &s.options.solver;
         Self {
             clock,
             counts: Counts::default(),
+            bonds: BondsOfCase::of(s),
             solver: SolverSummary {
                 tolerance: options.tolerance,
                 error_formula: options.norm.formula().to_owned(),
@@ -122,15 +194,63 @@ impl RunState {
         self.contacts.unwrap_or_else(counted)
     }
 
-    fn put(&self, counts: &Counts, summary: &mut Summary) {
-        counts.put(summary);
-        summary.solver.clone_from(&self.solver);
-        summary.impossible_motions.clone_from(&self.impossible);
+    fn put<S: Space>(&self, counts: &Counts, s: Option<&Simulation<S>>, found: &mut Findings) {
+        counts.report(self.bonds, found);
+        let mut solver = self.solver.clone();
         let steps = counts.steps.max(1) as f64;
-        summary.solver.coupling_iterations_mean = self.couplings as f64 / steps;
-        summary.solver.iterations_mean = self.iterations as f64 / steps;
+        solver.coupling_iterations_mean = self.couplings as f64 / steps;
+        solver.iterations_mean = self.iterations as f64 / steps;
+        if let Some(s) = s {
+            let choice = &self.solver.choice;
+            solver.why = choice.why(s.options.solver.method, s.state.steps);
+        }
+        solver.report(found);
+        if !self.impossible.is_empty() {
+            let doc = "imposed motions that nothing could obey";
+            found.fields("impossible_motions", &self.impossible, &IMPOSSIBLE, doc);
+        }
+        let possible = self.impossible.is_empty();
+        energy::warn(&counts.energy, found);
+        found.warn(
+            self.impossible
+                .warning()
+                .map(|text| Warning::serious("IMPOSSIBLE MOTION", text)),
+        );
+        found.warn(step_size::warnings(&counts.step_size));
+        let missed = Missed {
+            steps: solver
+                .unconverged_steps
+                .saturating_sub(self.impossible.squeezed_steps),
+            first: solver.first_unconverged,
+            error: solver.error_max,
+        };
+        found.warn(solver.warnings(counts.steps, possible));
+        let advice = match s {
+            Some(s) => missed.warning(s, s.state.steps),
+            None => missed.seen(counts.steps, solver.tolerance),
+        };
+        found.warn(advice.map(|text| Warning::serious("NOT CONVERGED", text)));
     }
 }
+
+/// What is said of motions that could not be obeyed.
+const IMPOSSIBLE: [Field; 7] = [
+    field(
+        "squeezed_steps",
+        ONE,
+        "steps in which imposed motions squeezed others without bound",
+    ),
+    field("squeezed_at", SECOND, "end of the first of them"),
+    field("squeezing", WORD, "the bodies that did so"),
+    field(
+        "overlapping_steps",
+        ONE,
+        "steps in which bodies whose motions are both imposed moved into each other",
+    ),
+    field("overlapping_at", SECOND, "end of the first of them"),
+    field("overlapping", WORD, "the bodies with the largest overlap"),
+    field("overlap", METRE, "largest overlap of them"),
+];
 
 impl<S: Space> Observer<S> for RunState {
     fn name(&self) -> String {
@@ -184,7 +304,7 @@ impl<S: Space> Observer<S> for RunState {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let joule = if S::D == 2 { "J/m" } else { "J" };
+        let joule = ENERGY.symbol(S::D);
         let c = |name, unit, doc| Column::new(name, unit, doc);
         let mut out = vec![
             c("step", "", "number of the step"),
@@ -207,10 +327,7 @@ impl<S: Space> Observer<S> for RunState {
         ];
         let entries = Energy::default().entries().into_iter();
         out.extend(entries.map(|(name, doc, _)| c(name, joule, doc)));
-        let units = match S::D {
-            2 => ["N s/m", "N s"],
-            _ => ["N s", "N m s"],
-        };
+        let units = [MOMENTUM, ANGULAR_MOMENTUM].map(|unit| unit.symbol(S::D));
         let entries = Momentum::default().entries().into_iter().zip(units);
         out.extend(entries.map(|((name, doc, _), unit)| c(name, unit, doc)));
         out
@@ -237,25 +354,29 @@ impl<S: Space> Observer<S> for RunState {
         row
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         let contacts = s.state.network.contact_count(s.options.solver.parallel);
-        self.put(&Counts::of(s, contacts), summary);
-        summary.mean_damage = s.state.network.mean_damage();
-        summary.solver.why = self
-            .solver
-            .choice
-            .why(s.options.solver.method, s.state.steps);
+        self.put(&Counts::of(s, contacts), Some(s), found);
+        found.begin(Topic::Damage, Role::Detail);
+        let doc = "mean damage D over all bonds made, broken ones counting 1";
+        let mean = found.add("mean_damage", s.state.network.mean_damage(), ONE, doc);
+        if s.state.network.bonds_made() > 0 {
+            mean.secondary("mean damage");
+        }
+        if !self.bonds.damaged {
+            mean.lacks(NO_DAMAGE);
+        }
     }
 
-    fn summarise_so_far(&self, summary: &mut Summary) {
-        self.put(&self.counts, summary);
+    fn report_so_far(&self, found: &mut Findings) {
+        self.put::<S>(&self.counts, None, found);
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
         let entries = end.simulation.state.energy.entries();
         let entries = entries.into_iter().map(|(name, ..)| name);
-        let joule = if S::D == 2 { "J/m" } else { "J" };
+        let joule = ENERGY.symbol(S::D);
         vec![
             figures::damage_ratio(&end.uncertainty.damage_ratio),
             figures::energy_balance(entries, &end.uncertainty.friction_energy, joule),
@@ -280,123 +401,5 @@ impl<S: Space> Observer<S> for RunState {
         ) = decode(from)?;
         self.contacts = None;
         Ok(())
-    }
-}
-
-/// Observes the phases of a run: the number of the current one.
-#[derive(Clone, Copy, Debug)]
-pub struct Phases {
-    any: bool,
-}
-
-impl Phases {
-    /// Of the phases of a simulation.
-    pub fn of<S: Space>(s: &Simulation<S>) -> Self {
-        Self {
-            any: !s.phases.is_empty(),
-        }
-    }
-}
-
-impl<S: Space> Observer<S> for Phases {
-    fn name(&self) -> String {
-        "phases".to_owned()
-    }
-
-    fn reads_statistics(&self) -> bool {
-        false
-    }
-
-    fn columns(&self) -> Vec<Column> {
-        let column = || Column::new("phase", "", "number of the phase, from 1");
-        self.any.then(column).into_iter().collect()
-    }
-
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let phase = || s.state.control.phase() as f64;
-        self.any.then(phase).into_iter().collect()
-    }
-
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
-        let control = &end.simulation.state.control;
-        summary.phases = control.begun().to_vec();
-        let phases = end.simulation.phases.iter().skip(summary.phases.len());
-        summary.phases_missed = phases.map(|p| p.name.clone()).collect();
-        summary.phases_missed.dedup();
-    }
-}
-
-/// Observes the driven bodies: places, velocities and contact forces.
-#[derive(Clone, Debug)]
-pub struct DrivenBodies {
-    /// Place among the driven bodies, and name.
-    shown: Vec<(usize, String)>,
-    /// Body and axis of an oscillating friction test, whose loops are drawn by themselves.
-    test: Option<(String, usize)>,
-}
-
-impl DrivenBodies {
-    /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may be left out of the figures.
-    pub fn of<S: Space>(s: &Simulation<S>, test: Option<(String, usize)>) -> Self {
-        let named = s.state.bodies.driven.iter().enumerate();
-        // Walls that a scene file brought are not worth columns.
-        let shown = named.filter(|(_, d)| !d.name.starts_with("wall_"));
-        Self {
-            shown: shown.map(|(k, d)| (k, d.name.clone())).collect(),
-            test,
-        }
-    }
-}
-
-impl<S: Space> Observer<S> for DrivenBodies {
-    fn name(&self) -> String {
-        "driven bodies".to_owned()
-    }
-
-    fn reads_statistics(&self) -> bool {
-        false
-    }
-
-    fn columns(&self) -> Vec<Column> {
-        let newton = if S::D == 2 { "N/m" } else { "N" };
-        let mut out = Vec::new();
-        for (_, name) in &self.shown {
-            for (what, unit, doc) in [
-                ("", "m", "position of the body"),
-                ("v", "m/s", "velocity of the body"),
-                ("f", newton, "contact force on the body"),
-            ] {
-                let axes = ["x", "y", "z"].into_iter().take(S::D);
-                out.extend(axes.map(|a| Column::new(format!("{name}_{what}{a}"), unit, doc)));
-            }
-        }
-        out
-    }
-
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        let mut row = Vec::with_capacity(self.shown.len() * 3 * S::D);
-        for (d, _) in &self.shown {
-            let b = s.state.bodies.driven[*d].body as usize;
-            let force = s.state.received[*d].0 * (1.0 / s.options.scheme.h);
-            for values in [
-                s.state.bodies.position[b],
-                s.state.bodies.velocity[b],
-                force,
-            ] {
-                row.extend((0..S::D).map(|k| values[k]));
-            }
-        }
-        row
-    }
-
-    fn summarise(&self, _: &RunEnd<'_, S>, _: &mut Summary) {}
-
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let test = self
-            .test
-            .as_ref()
-            .map(|(body, axis)| (body.as_str(), *axis));
-        let drives = figures::drives(end.simulation, test);
-        vec![figures::force_displacement(&drives)]
     }
 }

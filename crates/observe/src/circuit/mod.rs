@@ -1,14 +1,21 @@
 //! The tribological circuit as an observer: its columns, its events, and what it sums up. The account itself is a process,
 //! [`fretwork_core::process::circuit`].
 
+mod summary;
+
+pub(crate) use summary::report_none;
+pub use summary::{Base, CircuitSummary, Rates};
+
 use super::figures;
-use super::observer::{Event, Observer, RunEnd};
+use super::observer::{Event, EventTable, Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Paint, Picture, Shows};
+use super::quantity::Findings;
+use super::quantity::unit::{AREA, ENERGY, MASS, MASS_FLOW};
 use super::series::Series;
 use super::statistics::Column;
 use super::steady;
-use super::summary::{Base, CircuitSummary, Rates, Summary, Wear};
+use super::wear::show_flows;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::process::circuit::{Circuit, CircuitProcess, Debris};
@@ -18,9 +25,23 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 /// Observes the bonds that break: an event each.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct BrokenBonds {
     count: u64,
+    /// Whether an interface of the case has a cohesion law.
+    any: bool,
+}
+
+impl BrokenBonds {
+    /// Of a case whose interfaces make bonds, where there are `any`.
+    pub fn new(any: bool) -> Self {
+        Self { count: 0, any }
+    }
+}
+
+/// Coordinates of the place of an event.
+fn place() -> [Column; 3] {
+    ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
 }
 
 impl<S: Space> Observer<S> for BrokenBonds {
@@ -30,6 +51,48 @@ impl<S: Space> Observer<S> for BrokenBonds {
 
     fn reads_statistics(&self) -> bool {
         false
+    }
+
+    fn event_tables(&self) -> Vec<EventTable> {
+        let c = Column::new;
+        let joule = ENERGY.symbol(S::D);
+        let mut columns = vec![
+            c("id", "", "number of the break, from 1"),
+            c("time", "s", "end of the step in which it broke"),
+            c("body_1", "", "identity of the candidate"),
+            c("body_2", "", "identity of the antagonist"),
+            c("interface", "", "index of the interface"),
+        ];
+        columns.extend(place());
+        columns.extend([
+            c(
+                "mode_mix",
+                "",
+                "fraction of sliding in the work of opening and sliding: 0 mode I, 1 mode II",
+            ),
+            c("opening_normal", "m", "elongation at the end"),
+            c("opening_tangential", "m", "norm of the tangential opening"),
+            c("area", AREA.symbol(S::D), "area of the bond"),
+            c("work", joule, "work done on the bond since it formed"),
+            c("fracture", joule, "energy released by damage"),
+            c("viscous", joule, "dissipated by its damping"),
+            c(
+                "friction",
+                joule,
+                "dissipated by friction at the contact while it was intact",
+            ),
+            c(
+                "cause",
+                "",
+                "0 damage, 1 its bodies moved out of range or one was removed",
+            ),
+        ]);
+        let table = EventTable {
+            name: "broken",
+            columns,
+            list: None,
+        };
+        self.any.then_some(table).into_iter().collect()
     }
 
     fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
@@ -60,13 +123,11 @@ impl<S: Space> Observer<S> for BrokenBonds {
             events.push(Event {
                 table: "broken",
                 row,
-                grains: Vec::new(),
+                list: Vec::new(),
             });
         }
         events
     }
-
-    fn summarise(&self, _: &RunEnd<'_, S>, _: &mut Summary) {}
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {
         encode(&self.count)
@@ -129,7 +190,7 @@ impl CircuitAccount {
                 d.energy,
                 d.bonds as f64,
             ],
-            grains: d.grains.iter().map(|g| *g as f64).collect(),
+            list: d.grains.iter().map(|g| *g as f64).collect(),
         }
     }
 
@@ -183,7 +244,7 @@ impl CircuitAccount {
             contents: circuit.ledger.contents,
             flows: circuit.ledger.flows,
             residual: circuit.ledger.residual(),
-            rates_unit: Wear::unit(S::D),
+            rates_unit: MASS_FLOW.symbol(S::D),
             rates: Rates {
                 Qs: flow(&|f, _| f.source.mass),
                 Qa: flow(&|f, _| f.attached.mass),
@@ -210,6 +271,37 @@ impl<S: Space> Observer<S> for CircuitAccount {
         false
     }
 
+    fn event_tables(&self) -> Vec<EventTable> {
+        let c = Column::new;
+        let mut columns = vec![
+            c("id", "", "number of the piece, from 1"),
+            c("time", "s", "time at which the account found it loose"),
+            c("size", "", "grains in it"),
+            c("mass", MASS.symbol(S::D), "its mass"),
+        ];
+        columns.extend(place());
+        columns.extend([
+            c("first_body", "", "identity of the first body that lost it"),
+            c(
+                "mode_mix",
+                "",
+                "fraction of sliding in the work on the bonds that freed it",
+            ),
+            c(
+                "energy",
+                ENERGY.symbol(S::D),
+                "energy released by damage of these bonds",
+            ),
+            c("bonds", "", "number of these bonds"),
+        ]);
+        let doc = "identities of the grains of all pieces, one piece after another";
+        vec![EventTable {
+            name: "debris",
+            columns,
+            list: Some(c("grains", "", doc)),
+        }]
+    }
+
     fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
         let process = s.process::<CircuitProcess<S>>();
         let circuit = process.filter(|p| p.is_up_to_date(s));
@@ -224,7 +316,7 @@ impl<S: Space> Observer<S> for CircuitAccount {
     }
 
     fn columns(&self) -> Vec<Column> {
-        let kg = if S::D == 2 { "kg/m" } else { "kg" };
+        let kg = MASS.symbol(S::D);
         let c = Column::new;
         vec![
             c("tied_grains", "", "grains tied to first bodies"),
@@ -276,15 +368,31 @@ impl<S: Space> Observer<S> for CircuitAccount {
     }
 
     /// Grains that came loose from first bodies are a source beside the wear law.
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let s = end.simulation;
-        summary.circuit = self.summary(s, end.wall);
-        if let Some(circuit) = &summary.circuit {
-            let span = (s.state.time - circuit.start).max(f64::MIN_POSITIVE);
-            summary.wear.Qs += circuit.flows.source.mass / span;
-            summary.wear.Qe = Some(circuit.flows.ejected.mass / span);
-            summary.wear.Qw = Some(circuit.flows.wear.mass / span);
+        for name in ["Qs", "Qe", "Qw"] {
+            found.edit(&format!("wear.{name}"), |q| q.lacks = None);
         }
+        let Some(circuit) = self.summary(s, end.wall) else {
+            // The account has not begun.
+            report_none(found);
+            found.edit("circuit", |q| q.lacks = None);
+            return show_flows(found);
+        };
+        let worn = found.number("wear.Qs").unwrap_or(0.0);
+        let span = (s.state.time - circuit.start).max(f64::MIN_POSITIVE);
+        for (name, mass) in [
+            ("Qs", circuit.flows.source.mass),
+            ("Qe", circuit.flows.ejected.mass),
+            ("Qw", circuit.flows.wear.mass),
+        ] {
+            let other = if name == "Qs" { worn } else { 0.0 };
+            found.edit(&format!("wear.{name}"), |q| {
+                q.value = (other + mass / span).into();
+            });
+        }
+        circuit.report(found);
+        show_flows(found);
     }
 
     fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {

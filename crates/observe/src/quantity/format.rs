@@ -34,7 +34,7 @@ pub fn number(value: f64, digits: i32) -> String {
 /// Formats a value in an SI unit: `2.300e-5`, `m` gives `23.00 um`. Kilograms become grams, and cubic metres
 /// mm3, so that volumes have a common unit.
 pub fn quantity(value: f64, unit: &str) -> String {
-    if unit.is_empty() {
+    if matches!(unit, "" | "1") {
         return number(value, 4);
     }
     let (base, rest) = unit.split_at(unit.find(['/', ' ']).unwrap_or(unit.len()));
@@ -69,11 +69,6 @@ pub fn quantity(value: f64, unit: &str) -> String {
     )
 }
 
-/// Formats a specific wear rate (m^3/(N m)) in mm3/(N m).
-pub fn wear_rate(value: f64) -> String {
-    format!("{} mm3/(N m)", number(1e9 * value, 4))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -91,6 +86,6 @@ mod tests {
         assert_eq!(quantity(0.25, "rad"), "0.2500 rad");
         assert_eq!(quantity(0.412_345, ""), "0.4123");
         assert_eq!(quantity(1e-30, "J"), "1.000e-15 fJ");
-        assert_eq!(wear_rate(1.2e-15), "1.200e-6 mm3/(N m)");
+        assert_eq!(quantity(1.2e-15, "m^3/(N m)"), "1.200e-6 mm3/(N m)");
     }
 }

@@ -1,7 +1,12 @@
 //! Observes broken bonds: the energy that they released over what their laws declare, and whether the step resolved them.
 
+mod summary;
+
+pub use summary::{AT_ONCE, BondEnergies, FractureSummary, Reference, WRONG_ENERGY};
+
 use super::observer::{Observer, RunEnd};
-use super::summary::{BondEnergies, FractureSummary, Reference, Summary};
+use super::quantity::unit::WORD;
+use super::quantity::{Findings, Role, Topic};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::Break;
 use fretwork_core::geometry::space::Space;
@@ -219,13 +224,18 @@ impl<S: Space> Observer<S> for Fracture {
         }
     }
 
-    fn summarise(&self, end: &RunEnd<'_, S>, summary: &mut Summary) {
+    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         let memories = s.state.network.memory.iter().enumerate();
         let bonded = memories.filter(|(k, m)| m.made > 0 && s.laws[*k].opens());
         let interfaces: Vec<BondEnergies> = bonded.map(|(k, _)| self.energies(s, k)).collect();
-        summary.fracture = (!interfaces.is_empty())
-            .then(|| FractureSummary::new(interfaces, self.jumps, &s.options));
+        if interfaces.is_empty() {
+            found.begin(Topic::Damage, Role::Detail);
+            let doc = "energy that broken bonds released, over what their laws declare; null without bonds";
+            found.add("fracture", (), WORD, doc);
+            return;
+        }
+        FractureSummary::new(interfaces, self.jumps, &s.options).report(found);
     }
 
     fn save(&self) -> Result<Vec<u8>, CodeError> {

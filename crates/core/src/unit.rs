@@ -1,0 +1,91 @@
+//! Units of quantities. In a plane scene extensive quantities are per metre of depth; here alone a unit
+//! depends on the dimension.
+
+/// The SI unit of a quantity, in space and in the plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    space: &'static str,
+    plane: &'static str,
+}
+
+/// A pure number.
+pub const ONE: Unit = Unit::of("1");
+/// No number: texts and flags.
+pub const WORD: Unit = Unit::of("");
+/// Lengths.
+pub const METRE: Unit = Unit::of("m");
+/// Times.
+pub const SECOND: Unit = Unit::of("s");
+/// Velocities.
+pub const SPEED: Unit = Unit::of("m/s");
+/// Angles.
+pub const RADIAN: Unit = Unit::of("rad");
+/// Stresses.
+pub const PASCAL: Unit = Unit::of("Pa");
+/// Temperatures.
+pub const KELVIN: Unit = Unit::of("K");
+/// Forces.
+pub const FORCE: Unit = Unit::by_depth("N", "N/m");
+/// Work, energy, heat.
+pub const ENERGY: Unit = Unit::by_depth("J", "J/m");
+/// Power, heat flow.
+pub const POWER: Unit = Unit::by_depth("W", "W/m");
+/// Masses.
+pub const MASS: Unit = Unit::by_depth("kg", "kg/m");
+/// Mass a time.
+pub const MASS_FLOW: Unit = Unit::by_depth("kg/s", "kg/(m s)");
+/// Volumes.
+pub const VOLUME: Unit = Unit::by_depth("m^3", "m^3/m");
+/// Areas, lengths in the plane.
+pub const AREA: Unit = Unit::by_depth("m^2", "m");
+/// Force times path.
+pub const LOAD_PATH: Unit = Unit::by_depth("N m", "N");
+/// Worn volume over load and path.
+pub const WEAR_RATE: Unit = Unit::of("m^3/(N m)");
+/// Worn volume over energy.
+pub const WEAR_PER_ENERGY: Unit = Unit::of("m^3/J");
+/// Momenta.
+pub const MOMENTUM: Unit = Unit::by_depth("N s", "N s/m");
+/// Angular momenta.
+pub const ANGULAR_MOMENTUM: Unit = Unit::by_depth("N m s", "N s");
+/// Electric resistances.
+pub const RESISTANCE: Unit = Unit::by_depth("ohm", "ohm m");
+/// Electric currents.
+pub const CURRENT: Unit = Unit::by_depth("A", "A/m");
+/// Heat flow over a difference of temperature.
+pub const CONDUCTANCE: Unit = Unit::by_depth("W/K", "W/(m K)");
+/// Electric conductances.
+pub const ELECTRIC_CONDUCTANCE: Unit = Unit::by_depth("S", "S/m");
+/// Moments of inertia.
+pub const INERTIA: Unit = Unit::by_depth("kg m^2", "kg m");
+/// Voltages.
+pub const VOLT: Unit = Unit::of("V");
+
+impl Unit {
+    /// A unit that is the same in every dimension; `1` for pure numbers.
+    pub const fn of(symbol: &'static str) -> Self {
+        Self::by_depth(symbol, symbol)
+    }
+
+    /// A unit in space, and per metre of depth in the plane.
+    pub const fn by_depth(space: &'static str, plane: &'static str) -> Self {
+        Self { space, plane }
+    }
+
+    /// Its symbol in a dimension: `1` for pure numbers, empty for what is no number.
+    pub const fn symbol(self, dimension: usize) -> &'static str {
+        if dimension == 2 {
+            self.plane
+        } else {
+            self.space
+        }
+    }
+
+    /// Its symbol for the heading of a column, which is empty for pure numbers.
+    pub const fn heading(self, dimension: usize) -> &'static str {
+        match self.symbol(dimension).as_bytes() {
+            b"1" => "",
+            _ => self.symbol(dimension),
+        }
+    }
+}

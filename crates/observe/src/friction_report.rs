@@ -1,0 +1,222 @@
+//! What a friction test says at its end.
+
+use super::fretting;
+use super::friction::{Cycle, Cycles};
+use super::quantity::unit::{ENERGY, ONE};
+use super::quantity::{Findings, Role, Topic, number, quantity};
+use super::scatter::Scatter;
+use super::warning::Warning;
+use serde::Serialize;
+
+crate::described! {
+    /// Friction over the last complete cycle, or the second half of the time; all null without a friction test.
+    #[derive(Clone, Debug, Default, Serialize)]
+    pub struct Friction {
+        /// Friction from forces: tangential force along the path over normal force along the path.
+        pub friction_coefficient: Option<f64> => ONE,
+        /// Energy dissipated and stored by the energy ledger over the same path: an independent check of the forces.
+        pub friction_from_dissipation: Option<f64> => ONE,
+        /// Largest tangential force over the mean normal force of the same cycle.
+        pub peak_friction: Option<f64> => ONE,
+        /// Friction over the second half of each stroke, without the elastic travel after a reversal.
+        pub plateau_friction: Option<f64> => ONE,
+        /// How the coefficient scatters over cycles or blocks, for its interval.
+        #[serde(skip)]
+        pub scatter: Option<Scatter>,
+        /// Cycles of the test.
+        #[serde(skip)]
+        pub cycles: Vec<Cycle>,
+        /// Whether the motion is reciprocating.
+        #[serde(skip)]
+        pub oscillates: bool,
+    }
+}
+
+const NO_TEST: &str = "the case has no friction test (`friction`)";
+
+/// Adds what cases without a friction test lack.
+pub(crate) fn report_none(found: &mut Findings) {
+    found.begin(Topic::Friction, Role::Detail);
+    add(&Friction::default(), None, found);
+    let names = ["friction_coefficient", "friction_from_dissipation"];
+    let names = names.iter().chain(&["peak_friction", "plateau_friction"]);
+    for name in names.chain(&["cycles", "fretting"]) {
+        found.edit(name, |q| {
+            q.lacks(NO_TEST);
+        });
+    }
+}
+
+fn add(friction: &Friction, fretting: Option<&fretting::Outcome>, found: &mut Findings) {
+    found.part("", friction, "");
+    let doc = "cycles of the friction test";
+    found.parts::<Cycle>("cycles", &friction.cycles, doc);
+    let doc = "evaluation of a fretting test; null without reciprocating motion";
+    found.parts::<fretting::Outcome>("fretting", &fretting, doc);
+}
+
+/// Adds friction, cycles and the evaluation of a fretting test.
+pub(super) fn report(cycles: &Cycles, fretting: Option<fretting::Outcome>, found: &mut Findings) {
+    let last = cycles.last();
+    let friction = Friction {
+        friction_coefficient: last.map(|c| c.friction_coefficient),
+        friction_from_dissipation: last.map(|c| c.friction_from_dissipation),
+        peak_friction: last.and_then(Cycle::peak_ratio),
+        plateau_friction: last.map(|c| c.plateau_ratio).filter(|p| *p > 0.0),
+        scatter: cycles.scatter(),
+        cycles: cycles.list.clone(),
+        oscillates: cycles.oscillates(),
+    };
+    found.begin(Topic::Friction, Role::Detail);
+    add(&friction, fretting.as_ref(), found);
+    found.warn(friction.warnings());
+    let Some(last) = last else {
+        found.edit("friction_coefficient", |q| {
+            q.headline("friction coefficient").silent();
+        });
+        return;
+    };
+    show(&friction, last, fretting.as_ref(), found);
+}
+
+fn show(
+    friction: &Friction,
+    last: &Cycle,
+    fretting: Option<&fretting::Outcome>,
+    found: &mut Findings,
+) {
+    let over = match (fretting.is_some(), last.complete) {
+        (true, true) => format!("in cycle {}, the last complete one", last.cycle),
+        (false, true) => "over the second half".to_owned(),
+        (_, false) => "over the completed part of the evaluated time".to_owned(),
+    };
+    found.edit("friction_coefficient", |q| {
+        q.headline("friction coefficient");
+        q.remark(format!("{over}, from forces"));
+    });
+    for (name, label, what) in [
+        (
+            "friction_from_dissipation",
+            "energetic coefficient",
+            "energy dissipated and stored over P times the path",
+        ),
+        ("peak_friction", "peak Q/P", "largest |Q| over mean P"),
+        (
+            "plateau_friction",
+            "plateau Q/P",
+            "|Q|/P over the second half of each stroke, without the elastic travel after a reversal",
+        ),
+    ] {
+        found.edit(name, |q| {
+            q.secondary(label).remark(format!("{over}: {what}"));
+        });
+    }
+    let unit = |unit: super::quantity::Unit| unit.symbol(found.dimension());
+    let (joule, newton, volume) = (
+        unit(ENERGY),
+        unit(super::quantity::unit::FORCE),
+        unit(super::quantity::unit::VOLUME),
+    );
+    let late = friction.cycles.last().filter(|c| c.cycle > 1);
+    let shown: Vec<(usize, &Cycle)> = friction
+        .cycles
+        .first()
+        .map(|c| (0, c))
+        .into_iter()
+        .chain(late.map(|c| (friction.cycles.len() - 1, c)))
+        .collect();
+    for (k, c) in shown {
+        let unfinished = if c.complete { "" } else { " (unfinished)" };
+        let text = format!(
+            "friction {}, E_d {}, mean P {}, largest |Q| {}, {} bonds broken, worn {}",
+            number(c.friction_coefficient, 4),
+            quantity(c.work, joule),
+            quantity(c.normal_force, newton),
+            quantity(c.tangential_amplitude, newton),
+            c.broken,
+            quantity(c.wear_volume, volume)
+        );
+        found.edit(&format!("cycles.{k}.cycle"), |q| {
+            q.sentence(format!("cycle {}{unfinished}", c.cycle), text);
+        });
+    }
+    let Some(f) = fretting else { return };
+    let complete: Vec<&Cycle> = friction.cycles.iter().filter(|c| c.complete).collect();
+    if let [first, .., _] = complete[..] {
+        let text = format!(
+            "{} complete; {} in the first, {} in the last",
+            complete.len(),
+            number(first.friction_coefficient, 4),
+            number(last.friction_coefficient, 4)
+        );
+        found.edit("fretting.energy", |q| {
+            q.secondary("dissipated in all cycles");
+            q.sentence("cycles", text);
+        });
+    }
+    let whole = if f.regime == last.regime {
+        "in all cycles".to_owned()
+    } else {
+        format!(
+            "in cycle {}; {} over all cycles",
+            last.cycle,
+            f.regime.name()
+        )
+    };
+    let text = format!(
+        "{} {whole}; E_d/(4 Q delta) {}, E_d {}, stroke +-{}",
+        last.regime.name(),
+        number(last.energy_ratio, 3),
+        quantity(last.work, joule),
+        quantity(last.amplitude, "m")
+    );
+    found.edit("fretting.regime", |q| {
+        q.secondary("sliding regime")
+            .sentence("sliding regime", text);
+    });
+    if let Some(alpha) = f.alpha {
+        let half = alpha
+            .half_width
+            .map_or(String::new(), |h| format!(" +- {}", number(1e9 * h, 2)));
+        let text = format!(
+            "{}{half} mm3/J over all cycles (95 %, jackknife)",
+            number(1e9 * alpha.value, 4)
+        );
+        found.edit("fretting.alpha.value", |q| {
+            q.about(Topic::Wear).secondary("wear per energy");
+            q.sentence("wear per energy", text);
+            q.estimate = Some(super::quantity::Estimate {
+                value: Some(alpha.value),
+                scatter: alpha.half_width,
+                method: Some("95 %, jackknife over all cycles".to_owned()),
+                ..super::quantity::Estimate::default()
+            });
+        });
+    }
+}
+
+impl Friction {
+    fn warnings(&self) -> Vec<Warning> {
+        let both = [self.friction_coefficient, self.friction_from_dissipation];
+        let infinite = both.into_iter().flatten().any(|x| !x.is_finite());
+        let unfinished = !self.cycles.is_empty() && self.cycles.iter().all(|c| !c.complete);
+        let unfinished = unfinished.then(|| {
+            let text = "the run ended within the first evaluated cycle, or half: friction covers the completed part; let it run longer \
+                 (time.end)";
+            Warning::note("NO COMPLETE CYCLE", text)
+        });
+        let method = self.scatter.as_ref().filter(|s| s.half_width().is_none());
+        let method = method.map(Scatter::method);
+        let changes = method.filter(|m| m.starts_with("none")).map(|m| {
+            let why = m.trim_start_matches("none: ");
+            let text = format!("friction has no interval: {why}; let it run longer (time.end)");
+            Warning::note("NOT STEADY", text)
+        });
+        let infinite = infinite.then(Warning::infinite);
+        infinite
+            .into_iter()
+            .chain(unfinished)
+            .chain(changes)
+            .collect()
+    }
+}

@@ -1,0 +1,110 @@
+//! The catalogue of a run: what each path of its `summary.json` is. Written under the key `quantities`, and read
+//! by everything that shows runs later.
+
+use super::{Estimate, Findings, Role, Topic};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::HashSet;
+
+/// What a path is, in which `*` stands for every place of a list.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// The path.
+    pub path: String,
+    /// SI unit, `1` for pure numbers; none of texts and flags.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// One line of explanation.
+    pub doc: String,
+    /// How prominent it is.
+    pub role: Role,
+    /// What it is about.
+    pub topic: Topic,
+    /// Short name for tables.
+    pub label: String,
+    /// Half-widths by cause, and the value that they are of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<Estimate>,
+}
+
+/// What the paths of a summary are.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Catalogue {
+    /// Entries in the order of their quantities.
+    pub entries: Vec<Entry>,
+}
+
+impl Catalogue {
+    /// Key of the catalogue in `summary.json`.
+    pub const KEY: &'static str = "quantities";
+
+    /// Of what was found. Details in lists share an entry; other quantities have their own.
+    pub fn new(found: &Findings) -> Self {
+        let mut seen = HashSet::new();
+        let mut entries = Vec::new();
+        for q in found.all() {
+            let shared = q.role >= Role::Detail && q.label.is_empty();
+            let path = if shared { q.pattern() } else { q.name() };
+            if !seen.insert(path.clone()) {
+                continue;
+            }
+            let unit = q.unit.symbol(found.dimension());
+            entries.push(Entry {
+                path,
+                unit: (!unit.is_empty()).then(|| unit.to_owned()),
+                doc: q.doc.clone(),
+                role: q.role,
+                topic: q.topic,
+                label: q.label(),
+                estimate: q.estimate.clone(),
+            });
+        }
+        Self { entries }
+    }
+
+    /// Reads the catalogue of a run; empty for runs of versions that wrote none.
+    pub fn of(summary: &Value) -> Self {
+        let entries = summary.get(Self::KEY).cloned().unwrap_or_default();
+        serde_json::from_value(entries).unwrap_or_default()
+    }
+
+    /// The entry of a path: its own, or that of the lists it is in.
+    pub fn entry(&self, path: &str) -> Option<&Entry> {
+        let own = self.entries.iter().find(|e| e.path == path);
+        own.or_else(|| self.entries.iter().find(|e| matches(&e.path, path)))
+    }
+
+    /// The quantities of a role or a more prominent one that have a value, in their order.
+    pub fn shown<'a>(&'a self, summary: &'a Value, role: Role) -> Vec<(&'a Entry, &'a Value)> {
+        let entries = self.entries.iter().filter(|e| e.role <= role);
+        let with_value = entries.filter_map(|e| Some((e, find(summary, &e.path)?)));
+        with_value.filter(|(_, v)| !v.is_null()).collect()
+    }
+
+    /// Paths of the results that can be compared between runs: numbers that are in no list.
+    pub fn comparable(&self) -> Vec<String> {
+        let results = self.entries.iter().filter(|e| e.role < Role::Diagnostic);
+        let numbers = results.filter(|e| e.unit.is_some() && !e.path.contains('*'));
+        numbers.map(|e| e.path.clone()).collect()
+    }
+}
+
+/// A value of a summary by its path.
+pub fn find<'a>(summary: &'a Value, path: &str) -> Option<&'a Value> {
+    path.split('.').try_fold(summary, |at, part| match at {
+        Value::Array(list) => list.get(part.parse::<usize>().ok()?),
+        _ => at.get(part),
+    })
+}
+
+fn matches(pattern: &str, path: &str) -> bool {
+    let (mut a, mut b) = (pattern.split('.'), path.split('.'));
+    loop {
+        match (a.next(), b.next()) {
+            (None, None) => return true,
+            (Some(x), Some(y)) if x == y || (x == "*" && y.parse::<usize>().is_ok()) => {}
+            _ => return false,
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! The list of what the observers of a run found.
+
+use super::{Described, Estimate, Field, Quantity, Role, Schema, Step, Topic, Unit, Wording};
+use crate::warning::Warning;
+use serde_json::Value;
+use std::any::Any;
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// Quantities in the order in which they were added, and warnings. A quantity that is added again replaces the
+/// value of the first.
+#[derive(Clone, Default)]
+pub struct Findings {
+    dimension: usize,
+    topic: Topic,
+    role: Role,
+    list: Vec<Quantity>,
+    places: HashMap<String, usize>,
+    warnings: Vec<Warning>,
+    /// Fields of results that are not there yet.
+    to_come: Vec<Expected>,
+    /// Results as they were before they became quantities, one of each type.
+    typed: Vec<Arc<dyn Any + Send + Sync>>,
+}
+
+/// A doc comment as an explanation among others: on one line, without capital and full stop.
+fn plain(doc: &str) -> String {
+    let words = doc.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = words.strip_suffix('.').unwrap_or(&words);
+    let mut letters = text.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(text.chars().skip(1)).collect()
+        }
+        _ => text.to_owned(),
+    }
+}
+
+/// A field of a result that is not there yet.
+#[derive(Clone, Debug)]
+pub struct Expected {
+    /// Its path, with `*` for places in a list.
+    pub path: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// Its explanation.
+    pub doc: String,
+}
+
+impl fmt::Debug for Findings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut map = f.debug_map();
+        for q in &self.list {
+            map.entry(&q.name(), &q.value);
+        }
+        map.finish()
+    }
+}
+
+impl Findings {
+    /// Of a run in a dimension.
+    pub fn new(dimension: usize) -> Self {
+        Self {
+            dimension,
+            ..Self::default()
+        }
+    }
+
+    /// Dimension of the run.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// What the quantities that follow are about, and how prominent they are unless they say otherwise.
+    pub fn begin(&mut self, topic: Topic, role: Role) {
+        (self.topic, self.role) = (topic, role);
+    }
+
+    /// Adds a quantity by its path, in which whole numbers are places in lists.
+    pub fn add(
+        &mut self,
+        path: &str,
+        value: impl Into<Value>,
+        unit: Unit,
+        doc: impl Into<String>,
+    ) -> &mut Quantity {
+        let steps = path.split('.').map(|part| match part.parse() {
+            Ok(place) => Step::Place(place),
+            Err(_) => Step::Key(part.to_owned()),
+        });
+        self.put(steps.collect(), value.into(), unit, doc.into())
+    }
+
+    /// Adds an entry of a group, whose key may be any text.
+    pub fn entry(
+        &mut self,
+        group: &str,
+        key: &str,
+        value: impl Into<Value>,
+        unit: Unit,
+        doc: impl Into<String>,
+    ) -> &mut Quantity {
+        let path = [group, key].map(|k| Step::Key(k.to_owned()));
+        self.put(path.to_vec(), value.into(), unit, doc.into())
+    }
+
+    /// Adds a number of a measure of the case, with its unit.
+    pub fn measure(
+        &mut self,
+        name: &str,
+        value: f64,
+        unit: Unit,
+        doc: impl Into<String>,
+    ) -> &mut Quantity {
+        let symbol = unit.heading(self.dimension);
+        if !symbol.is_empty() {
+            let doc = "unit of the measure of this name";
+            let said = self.entry("measure_units", name, symbol, super::unit::WORD, doc);
+            said.role = Role::Detail;
+        }
+        let measure = self.entry("measures", name, value, unit, doc);
+        measure.about(Topic::Measures).secondary(name)
+    }
+
+    /// Adds a result in words.
+    pub fn finding(
+        &mut self,
+        name: &str,
+        text: impl Into<String>,
+        doc: impl Into<String>,
+    ) -> &mut Quantity {
+        let text: String = text.into();
+        let found = self.entry("findings", name, text.clone(), super::unit::WORD, doc);
+        found.about(Topic::Measures).secondary(name);
+        found.sentence(name, text)
+    }
+
+    fn put(&mut self, path: Vec<Step>, value: Value, unit: Unit, doc: String) -> &mut Quantity {
+        let quantity = Quantity {
+            path,
+            value,
+            unit,
+            doc,
+            role: self.role,
+            topic: self.topic,
+            label: String::new(),
+            estimate: None,
+            wording: Wording::Silent,
+            lacks: None,
+        };
+        let next = self.list.len();
+        let place = *self.places.entry(quantity.name()).or_insert(next);
+        if place == next {
+            self.list.push(quantity);
+        } else {
+            self.list[place] = quantity;
+        }
+        &mut self.list[place]
+    }
+
+    /// Adds all fields of a described result below a path (at the root where it is empty), and keeps it for
+    /// [`Findings::get`]. `doc` is said where there is nothing, such as an empty list.
+    pub fn part<T: Described>(&mut self, path: &str, result: &T, doc: &str) {
+        self.keep(result.clone());
+        self.fields(path, result, T::FIELDS, doc);
+    }
+
+    /// The same of a list of results; of an optional one, null where it is none.
+    pub fn parts<T: Described>(
+        &mut self,
+        path: &str,
+        results: &(impl serde::Serialize + ?Sized),
+        doc: &str,
+    ) {
+        self.fields(path, results, T::FIELDS, doc);
+    }
+
+    /// Adds what is described by fields that stand apart from it.
+    pub fn fields(
+        &mut self,
+        path: &str,
+        result: &(impl serde::Serialize + ?Sized),
+        fields: &'static [Field],
+        doc: &str,
+    ) {
+        let value = serde_json::to_value(result).unwrap_or_default();
+        let steps = path.split('.').filter(|p| !p.is_empty());
+        let steps = steps.map(|p| Step::Key(p.to_owned())).collect();
+        self.walk(steps, value, Schema::Part(fields), doc);
+    }
+
+    fn walk(&mut self, path: Vec<Step>, value: Value, schema: Schema, doc: &str) {
+        let below = |step: Step| {
+            let mut path = path.clone();
+            path.push(step);
+            path
+        };
+        match (value, schema) {
+            (Value::Array(list), _) if !list.is_empty() => {
+                for (k, value) in list.into_iter().enumerate() {
+                    self.walk(below(Step::Place(k)), value, schema, doc);
+                }
+            }
+            (Value::Object(mut map), Schema::Part(fields)) => {
+                for field in fields {
+                    if let Some(value) = map.remove(field.name) {
+                        let path = below(Step::Key(field.name.to_owned()));
+                        self.walk(path, value, field.schema, field.doc);
+                    }
+                }
+                let left: Vec<&String> = map.keys().collect();
+                debug_assert!(left.is_empty(), "no unit and no explanation of {left:?}");
+            }
+            (Value::Object(map), Schema::Values(_)) if !map.is_empty() => {
+                for (key, value) in map {
+                    self.walk(below(Step::Key(key)), value, schema, doc);
+                }
+            }
+            (leaf, schema) => {
+                let unit = match schema {
+                    Schema::Values(unit) => unit,
+                    Schema::Part(_) | Schema::Hidden => super::unit::WORD,
+                };
+                let doc = plain(doc);
+                let list = if leaf.is_array() { ".*" } else { "" };
+                let name = self.put(path, leaf, unit, doc).pattern() + list;
+                if let Schema::Part(fields) = schema {
+                    self.expect(&name, fields);
+                }
+            }
+        }
+    }
+
+    /// Notes the fields of a result that is not there yet.
+    fn expect(&mut self, name: &str, fields: &'static [Field]) {
+        for field in fields {
+            let name = format!("{name}.{}", field.name);
+            match field.schema {
+                Schema::Values(unit) => self.to_come.push(Expected {
+                    path: name,
+                    unit,
+                    doc: plain(field.doc),
+                }),
+                Schema::Part(fields) => self.expect(&name, fields),
+                Schema::Hidden => {}
+            }
+        }
+    }
+
+    /// Fields of results that are not there yet.
+    pub fn expected(&self) -> &[Expected] {
+        &self.to_come
+    }
+
+    /// Whether a result that is not there yet will have a field of this path; none where nothing is known of its group.
+    pub fn expects(&self, path: &str) -> Option<bool> {
+        let keys = |path: &str| {
+            let keys = path
+                .split('.')
+                .filter(|k| *k != "*" && k.parse::<usize>().is_err());
+            keys.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let wanted = keys(path);
+        let known: Vec<Vec<String>> = self.to_come.iter().map(|e| keys(&e.path)).collect();
+        let mut group = known.iter().filter(|k| k.first() == wanted.first());
+        group.next()?;
+        Some(known.contains(&wanted))
+    }
+
+    /// Adds a warning.
+    pub fn warn(&mut self, warnings: impl IntoIterator<Item = Warning>) {
+        for warning in warnings {
+            if !self.warnings.contains(&warning) {
+                self.warnings.push(warning);
+            }
+        }
+    }
+
+    /// Keeps a result for [`Findings::get`].
+    pub fn keep<T: Send + Sync + 'static>(&mut self, result: T) {
+        self.typed.retain(|kept| !kept.is::<T>());
+        self.typed.push(Arc::new(result));
+    }
+
+    /// A result of a type that an observer reported.
+    pub fn get<T: 'static>(&self) -> Option<&T> {
+        self.typed.iter().find_map(|kept| kept.downcast_ref())
+    }
+
+    /// The quantities.
+    pub fn all(&self) -> &[Quantity] {
+        &self.list
+    }
+
+    /// The warnings.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// A quantity by its path.
+    pub fn quantity(&self, name: &str) -> Option<&Quantity> {
+        self.places.get(name).map(|k| &self.list[*k])
+    }
+
+    /// A quantity, to change how it is shown.
+    pub fn edit(&mut self, name: &str, change: impl FnOnce(&mut Quantity)) {
+        if let Some(k) = self.places.get(name) {
+            change(&mut self.list[*k]);
+        }
+    }
+
+    /// The quantities whose path begins with one of these keys.
+    pub fn edit_all(&mut self, groups: &[&str], change: impl Fn(&mut Quantity)) {
+        let of = |q: &&mut Quantity| {
+            let name = q.name();
+            groups.iter().any(|group| {
+                let rest = name.strip_prefix(group);
+                rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+            })
+        };
+        self.list.iter_mut().filter(of).for_each(change);
+    }
+
+    /// Puts half-widths to a quantity.
+    pub fn estimate(&mut self, name: &str, estimate: &Estimate) {
+        self.edit(name, |q| q.estimate = Some(estimate.clone()));
+    }
+
+    /// The number of a quantity; none where it is null, no number, or not there.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        self.quantity(name)?.value.as_f64()
+    }
+
+    /// The text of a quantity.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.quantity(name)?.value.as_str()
+    }
+
+    /// Adds all that others found.
+    pub fn extend(&mut self, other: &Self) {
+        for q in &other.list {
+            let added = self.put(q.path.clone(), Value::Null, q.unit, String::new());
+            added.clone_from(q);
+        }
+        self.to_come.extend(other.to_come.iter().cloned());
+        self.warn(other.warnings.iter().cloned());
+    }
+}

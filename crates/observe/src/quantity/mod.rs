@@ -1,0 +1,194 @@
+//! What a run says in numbers and words. Observers add quantities to [`Findings`], each with its path in
+//! `summary.json`, unit, explanation, role and half-widths; everything that shows results, on the terminal, in
+//! files and in tables, is made from that list and from its [`Catalogue`], and knows no quantity by name.
+
+mod catalogue;
+mod described;
+mod estimate;
+mod findings;
+mod format;
+mod nested;
+
+pub use catalogue::{Catalogue, Entry, find};
+pub use described::{Described, Field, Schema, field, part};
+pub use estimate::Estimate;
+pub use findings::{Expected, Findings};
+pub use format::{number, quantity};
+pub use fretwork_core::unit::{self, Unit};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// How prominent a quantity is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// A main result, compared by studies unless they ask for others.
+    Headline,
+    /// A result that stands in the terminal text and on the report.
+    Secondary,
+    /// A further result, in `summary.json`.
+    #[default]
+    Detail,
+    /// What the run did, and what it cost: no result of the case.
+    Diagnostic,
+}
+
+/// What a quantity is about: results are grouped by it, in this order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Topic {
+    /// Friction.
+    Friction,
+    /// Bonds and their damage.
+    Damage,
+    /// Wear and the flows of matter.
+    Wear,
+    /// Energies.
+    Energy,
+    /// Tests and measures of the case.
+    #[default]
+    Measures,
+    /// Settings, solver and course of the run.
+    Run,
+}
+
+impl Topic {
+    /// Heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Friction => "Friction",
+            Self::Damage => "Damage",
+            Self::Wear => "Wear",
+            Self::Energy => "Energy",
+            Self::Measures => "Measures",
+            Self::Run => "Run",
+        }
+    }
+}
+
+/// Why there is nothing to compare in what tells of the run alone.
+pub const COURSE: &str = "it describes the course of the run, not a result of the case";
+
+/// How a quantity is worded on the terminal.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Wording {
+    /// Its value, with half-widths, and a remark, which may be empty.
+    Value(String),
+    /// A sentence of its own, with its label.
+    Sentence(String, String),
+    /// Not at all: the sentence of another quantity has it.
+    #[default]
+    Silent,
+}
+
+/// A quantity that a run found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// Where it stands in `summary.json`: keys, and places in lists.
+    pub path: Vec<Step>,
+    /// Number, text, flag or null; an empty list or object where there is nothing to list.
+    pub value: Value,
+    /// Its unit.
+    pub unit: Unit,
+    /// One line of explanation.
+    pub doc: String,
+    /// How prominent it is.
+    pub role: Role,
+    /// What it is about.
+    pub topic: Topic,
+    /// Short name for tables; empty for the last key of its path.
+    pub label: String,
+    /// Half-widths of its 95 % interval by cause.
+    pub estimate: Option<Estimate>,
+    /// How the terminal words it.
+    pub wording: Wording,
+    /// Why runs of this case have no value for it; none where they have.
+    pub lacks: Option<&'static str>,
+}
+
+/// One step of a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Key of an object.
+    Key(String),
+    /// Place in a list.
+    Place(usize),
+}
+
+impl Quantity {
+    /// Its path as one text, `wear.bodies.0.volume`.
+    pub fn name(&self) -> String {
+        self.spelled(|k| k.to_string())
+    }
+
+    /// Its path with `*` for places in lists.
+    pub fn pattern(&self) -> String {
+        self.spelled(|_| "*".to_owned())
+    }
+
+    fn spelled(&self, place: impl Fn(usize) -> String) -> String {
+        let steps = self.path.iter().map(|step| match step {
+            Step::Key(key) => key.clone(),
+            Step::Place(k) => place(*k),
+        });
+        steps.collect::<Vec<_>>().join(".")
+    }
+
+    /// Its short name.
+    pub fn label(&self) -> String {
+        match (self.label.as_str(), self.path.last()) {
+            ("", Some(Step::Key(key))) => key.replace('_', " "),
+            ("", _) => self.name(),
+            (label, _) => label.to_owned(),
+        }
+    }
+
+    /// Makes it a main result.
+    pub fn headline(&mut self, label: impl Into<String>) -> &mut Self {
+        self.as_role(Role::Headline, label)
+    }
+
+    /// Makes it a result that the terminal and the report show.
+    pub fn secondary(&mut self, label: impl Into<String>) -> &mut Self {
+        self.as_role(Role::Secondary, label)
+    }
+
+    fn as_role(&mut self, role: Role, label: impl Into<String>) -> &mut Self {
+        (self.role, self.label) = (role, label.into());
+        if self.wording == Wording::Silent {
+            self.wording = Wording::Value(String::new());
+        }
+        self
+    }
+
+    /// Says something after its value on the terminal.
+    pub fn remark(&mut self, remark: impl Into<String>) -> &mut Self {
+        self.wording = Wording::Value(remark.into());
+        self
+    }
+
+    /// Has a sentence in place of its value on the terminal.
+    pub fn sentence(&mut self, label: impl Into<String>, text: impl Into<String>) -> &mut Self {
+        self.wording = Wording::Sentence(label.into(), text.into());
+        self
+    }
+
+    /// Leaves it out on the terminal, since another sentence has it.
+    pub fn silent(&mut self) -> &mut Self {
+        self.wording = Wording::Silent;
+        self
+    }
+
+    /// Says what it is about.
+    pub fn about(&mut self, topic: Topic) -> &mut Self {
+        self.topic = topic;
+        self
+    }
+
+    /// Says why runs of this case have no value for it.
+    pub fn lacks(&mut self, why: &'static str) -> &mut Self {
+        self.lacks = Some(why);
+        self
+    }
+}

@@ -1,0 +1,81 @@
+//! No source that shows results names a quantity: adding one touches its observer alone.
+
+use super::page::declared;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Folders of what shows results.
+const SHOWS: [&str; 6] = [
+    "crates/store/src",
+    "crates/view/src",
+    "crates/experiments/src",
+    "src",
+    "python/src",
+    "python/fretwork",
+];
+
+/// Sources that name quantities, and why.
+const MAY: [(&str, &str); 1] = [(
+    "crates/experiments/src/contact_patch/runs.rs",
+    "friction and wear of runs are what its closed forms go on with",
+)];
+
+fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.extension().and_then(|e| e.to_str()) {
+            _ if path.is_dir() => sources(&path, out),
+            Some("rs" | "py") => out.push(path),
+            _ => {}
+        }
+    }
+}
+
+/// Texts between quotes of the code of a source, without comments and tests.
+fn literals(text: &str) -> BTreeSet<&str> {
+    let code = text.split("#[cfg(test)]").next().unwrap_or(text);
+    let lines = code.lines().filter(|l| {
+        let line = l.trim_start();
+        !line.starts_with("//") && !line.starts_with('#')
+    });
+    lines
+        .flat_map(|l| l.split('"').skip(1).step_by(2))
+        .collect()
+}
+
+#[test]
+fn what_shows_results_names_no_quantity() {
+    let mut names = BTreeSet::new();
+    for (path, ..) in declared().into_iter().filter(|d| !d.3) {
+        let last = path.rsplit('.').next().unwrap().to_owned();
+        // Short words stand for other things too.
+        if last.contains('_') && last.len() > 11 {
+            names.insert(format!("/{}", path.replace('.', "/")));
+            names.insert(last);
+        }
+        if path.contains('.') {
+            names.insert(path);
+        }
+    }
+    assert!(
+        names.len() > 100 && names.contains("wear.Qs"),
+        "{}",
+        names.len()
+    );
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all = Vec::new();
+    SHOWS
+        .iter()
+        .for_each(|folder| sources(&root.join(folder), &mut all));
+    let mut found = Vec::new();
+    for path in all {
+        let short = path.strip_prefix(root).unwrap().display().to_string();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let named = literals(&text).into_iter().filter(|l| names.contains(*l));
+        let named: Vec<&str> = named.collect();
+        if !named.is_empty() && MAY.iter().all(|m| m.0 != short) {
+            found.push(format!("{short}: {}", named.join(", ")));
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
