@@ -12,7 +12,7 @@ crate::described! {
     pub struct BodyWear {
         /// Its name.
         pub body: String => WORD,
-        /// Volume.
+        /// Volume worn off the body.
         pub volume: f64 => VOLUME,
         /// Mean depth over the worn area; null if none of its surfaces recedes.
         pub depth_mean: Option<f64> => METRE,
