@@ -162,12 +162,14 @@ fn lower_layers_bring_no_files_pictures_or_command_line() {
 }
 
 /// Modules of the core, each after those that it may name.
-const MODULES: [&str; 18] = [
+const MODULES: [&str; 20] = [
     "out_of_memory",
     "huge_pages",
     "threads",
     "code",
     "program",
+    "unit",
+    "lanes",
     "geometry",
     "bodies",
     "contact",

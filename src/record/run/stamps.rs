@@ -33,10 +33,7 @@ pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
                     name: p.name.clone(),
                     version: p.version.clone(),
                     sha256: p.sha256.clone(),
-                    path: match p.built_in {
-                        true => format!("built into {}", p.path.display()),
-                        false => p.path.display().to_string(),
-                    },
+                    path: p.path.display().to_string(),
                     links: links(p),
                     certified,
                 }),

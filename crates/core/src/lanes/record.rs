@@ -24,12 +24,12 @@ unsafe impl Record for f64 {
     type With<L: Lane> = L;
 }
 
-/// Implements [`Record`] for a structure over a space and a lane.
+/// Implements [`Record`] for a structure over a dimension (`Space`, which is in scope) and a lane.
 macro_rules! record {
     ($name:ident) => {
         // SAFETY: the structure is `repr(C)` and has fields of the type of its lane, or records of
         // it.
-        unsafe impl<S: $crate::geometry::space::Space> $crate::lanes::Record for $name<S, f64> {
+        unsafe impl<S: Space> $crate::lanes::Record for $name<S, f64> {
             type With<L: $crate::lanes::Lane> = $name<S, L>;
         }
     };

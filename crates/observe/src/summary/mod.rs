@@ -25,9 +25,9 @@ crate::described! {
         pub name: String => WORD,
         /// Version of the law.
         pub version: String => WORD,
-        /// SHA-256 of the library.
+        /// SHA-256 of the file at `path`.
         pub sha256: String => WORD,
-        /// Path of the library.
+        /// Path of the library, or of the program that the law is built into.
         pub path: String => WORD,
         /// Libraries that it links to and that are not the system's: path and SHA-256.
         #[serde(skip_serializing_if = "Vec::is_empty")]
