@@ -8,7 +8,7 @@ use crate::experiments::runs::stored::Finished;
 use crate::experiments::study::execute::{execute, missing};
 use crate::experiments::study::export::{Engine, Export};
 use crate::experiments::study::forecast::Forecast;
-use crate::experiments::study::plan::{Place, Plan, Point};
+use crate::experiments::study::plan::{Location, Plan, Point};
 use crate::experiments::study::rows::{DONE, Rows, status};
 use crate::experiments::study::spec::StudyFile;
 use crate::experiments::study::{OWNER, answers, write};
@@ -159,7 +159,7 @@ impl StudyArgs {
     }
 
     fn plan(&self) -> Result<Plan, Failure> {
-        let place = Place {
+        let place = Location {
             out: &self.out(),
             cache: self.cache.as_deref(),
             program: &self.plugins.program()?,

@@ -8,7 +8,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// A run of a window.
-pub(super) struct Run {
+pub(super) struct WindowRun {
     /// Friction coefficient.
     pub friction: f64,
     /// Half-width of its interval within the run.
@@ -25,11 +25,11 @@ pub(super) struct Run {
 ///
 /// # Errors
 /// A sentence about the first folder without the summary of a complete run with a friction test.
-pub(super) fn read(folders: &[PathBuf]) -> Result<Vec<Run>, String> {
+pub(super) fn read(folders: &[PathBuf]) -> Result<Vec<WindowRun>, String> {
     folders.iter().map(|f| of(f)).collect()
 }
 
-fn of(folder: &Path) -> Result<Run, String> {
+fn of(folder: &Path) -> Result<WindowRun, String> {
     let path = folder.join("summary.json");
     let text = std::fs::read_to_string(&path).map_err(|e| {
         format!(
@@ -59,7 +59,7 @@ fn of(folder: &Path) -> Result<Run, String> {
         let rate = body["specific_rate"].as_f64()?;
         Some((body["body"].as_str()?.to_owned(), rate))
     };
-    Ok(Run {
+    Ok(WindowRun {
         friction: value.abs(),
         scatter: uncertainty["friction_coefficient"]["scatter"].as_f64(),
         numerical: numerical_error(&catalogue, "friction_coefficient"),
@@ -71,19 +71,19 @@ fn of(folder: &Path) -> Result<Run, String> {
 }
 
 /// The largest of a number that all runs have.
-pub(super) fn largest(runs: &[Run], of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
+pub(super) fn largest(runs: &[WindowRun], of: impl Fn(&WindowRun) -> Option<f64>) -> Option<f64> {
     runs.iter().map(of).try_fold(0.0f64, |a, b| Some(a.max(b?)))
 }
 
 /// The specific wear rate (m³/(N m)) of each first body, and of all of them together: the mean over
 /// the runs, with Student's 95 % interval and the numerical error; of a single run with the latter
 /// alone. Which body wears may differ from sample to sample where the sum does not.
-pub(super) fn wear_rates(runs: &[Run]) -> Vec<(String, Range)> {
+pub(super) fn wear_rates(runs: &[WindowRun]) -> Vec<(String, Range)> {
     let Some(first) = runs.first() else {
         return Vec::new();
     };
     let error = largest(runs, |r| r.wear_error).unwrap_or(0.0);
-    let of = |name: &str, rate: &dyn Fn(&Run) -> Option<f64>| {
+    let of = |name: &str, rate: &dyn Fn(&WindowRun) -> Option<f64>| {
         let values: Option<Vec<f64>> = runs.iter().map(rate).collect();
         let mean = Mean::of(&values?)?;
         let half = mean.half_width.unwrap_or(0.0) + error * mean.mean;

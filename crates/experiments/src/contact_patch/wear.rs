@@ -110,7 +110,7 @@ impl Wear {
 }
 
 /// The specific wear rates of a window times load and slip of the patch.
-fn carried_over(contact: &Contact, runs: &[runs::Run], slipped: &Range) -> Vec<WindowWear> {
+fn carried_over(contact: &Contact, runs: &[runs::WindowRun], slipped: &Range) -> Vec<WindowWear> {
     let of = |(body, specific_rate): (String, Range)| {
         let volume = Range::of(&specific_rate, slipped, |k, s| k * s);
         WindowWear {

@@ -84,7 +84,7 @@ impl Known {
 
 /// Where a study is made.
 #[derive(Debug)]
-pub struct Place<'a> {
+pub struct Location<'a> {
     /// Folder of its results.
     pub out: &'a Path,
     /// Folder of its runs, which other studies may share; `runs` in that of the results by default.
@@ -99,7 +99,7 @@ impl Plan {
     ///
     /// # Errors
     /// The study, its case, an output or a level that the case refuses.
-    pub fn new(read: &StudyFile, place: Place<'_>) -> Result<Self, Error> {
+    pub fn new(read: &StudyFile, place: Location<'_>) -> Result<Self, Error> {
         let spec = &read.spec;
         let case = read.beside(&spec.case);
         let mut factors = Vec::new();

@@ -37,7 +37,7 @@ pub struct Counts {
 }
 
 /// A run of the study as it is on disk.
-struct Row {
+struct RunRow {
     run: Option<Finished>,
     summary: Json,
     /// What the numbers of the summary are.
@@ -53,14 +53,14 @@ impl Rows {
             let place = plan.launcher.place(&p.run);
             let run = plan.launcher.ended_in(&place);
             let summary = run.as_ref().map_or(Json::Null, |_| summary(&place));
-            Row {
+            RunRow {
                 run,
                 catalogue: Catalogue::of(&summary),
                 summary,
                 place,
             }
         };
-        let rows: Vec<Row> = points.iter().map(row).collect();
+        let rows: Vec<RunRow> = points.iter().map(row).collect();
         let mut columns = vec![
             Column::whole("point", points.iter().map(|p| Some(p.number as f64))),
             Column::whole("setting", points.iter().map(|p| Some(p.setting as f64))),
@@ -75,7 +75,7 @@ impl Rows {
             let units = rows.iter().map(|r| unit_of(output, &r.catalogue, &r.place));
             let unit = units.into_iter().find(|u| !u.is_empty());
             let unit = unit.unwrap_or_default();
-            let value = |r: &Row| r.run.as_ref().and(output.read(&r.summary, &r.place));
+            let value = |r: &RunRow| r.run.as_ref().and(output.read(&r.summary, &r.place));
             columns.push(Column::real(&output.name, &unit, rows.iter().map(value)));
             let errors = rows
                 .iter()
@@ -85,7 +85,7 @@ impl Rows {
                 columns.push(errors);
             }
         }
-        let text = |name: &str, f: &dyn Fn(&Row) -> String| Column::text(name, rows.iter().map(f));
+        let text = |name: &str, f: &dyn Fn(&RunRow) -> String| Column::text(name, rows.iter().map(f));
         let of_run = |f: fn(&Finished) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
         for regime in &plan.regimes {
             columns.push(text(regime, &|r| regime_of(&r.summary, regime)));

@@ -32,7 +32,7 @@ const CORRECTION: f64 = 0.05;
 #[derive(Debug)]
 pub struct Deformability {
     /// The contact laws, in the order of the interfaces.
-    contacts: Vec<Contact>,
+    contacts: Vec<ContactLaw>,
     /// The materials of the grains that are rigid bodies.
     grains: Vec<Grains>,
     /// How the error of a step is measured.
@@ -41,7 +41,7 @@ pub struct Deformability {
 
 /// A contact law with its parameters in its own units.
 #[derive(Debug)]
-struct Contact {
+struct ContactLaw {
     law: String,
     compliant: bool,
     values: BTreeMap<String, f64>,
@@ -62,7 +62,7 @@ impl Deformability {
         let contacts = s.laws.iter().map(|interface| {
             let law = interface.contact();
             let names = law.plugin.parameters.iter().map(|p| p.name.clone());
-            Contact {
+            ContactLaw {
                 law: law.plugin.name.clone(),
                 compliant: interface.compliant(),
                 values: names.zip(law.parameters.iter().copied()).collect(),
@@ -102,7 +102,7 @@ impl Deformability {
         }
     }
 
-    fn contact(&self, k: usize) -> Option<&Contact> {
+    fn contact(&self, k: usize) -> Option<&ContactLaw> {
         self.contacts.get(k)
     }
 }

@@ -4,7 +4,7 @@ use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row};
 use super::figure::draw;
 use super::output::Wanted;
-use super::plan::Answer;
+use super::plan::Findings;
 use super::plan::Trade;
 use super::verdict::Verdict;
 use crate::Error;
@@ -17,7 +17,7 @@ use std::path::Path;
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(trade: &Trade, answer: &Answer, out: &Path) -> Result<(String, bool), Error> {
+pub fn write(trade: &Trade, answer: &Findings, out: &Path) -> Result<(String, bool), Error> {
     let found = &answer.found;
     let json = json(trade, found, &answer.verdicts, answer.complete);
     let json = serde_json::to_string_pretty(&json).unwrap_or_default();

@@ -35,7 +35,7 @@ mod verdict;
 
 pub use execute::Event;
 pub use files::write;
-pub use plan::{Answer, Trade};
+pub use plan::{Findings, Trade};
 pub use request::Request;
 
 use crate::folder::Owner;

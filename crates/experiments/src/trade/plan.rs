@@ -73,7 +73,7 @@ struct StoredPlan {
 
 /// What the runs of a trade say.
 #[derive(Debug)]
-pub struct Answer {
+pub struct Findings {
     /// Each setting compared with the reference.
     pub found: Comparison,
     /// The cheapest settings for the errors wanted.
@@ -84,9 +84,9 @@ pub struct Answer {
 
 impl Trade {
     /// What the runs so far say; `interrupted` if there would have been more.
-    pub fn answer(&self, interrupted: bool) -> Answer {
+    pub fn answer(&self, interrupted: bool) -> Findings {
         let found = self.compare();
-        Answer {
+        Findings {
             verdicts: verdicts(&found, &self.outputs, self.random),
             complete: self.left_out.is_empty() && self.dropped().is_empty() && !interrupted,
             found,

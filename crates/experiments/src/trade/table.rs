@@ -3,7 +3,7 @@
 use super::combination::Combination;
 use super::compare::{Comparison, OutputError, Row, ShownError, share};
 use super::output::{Output, Wanted};
-use super::plan::{Answer, Trade};
+use super::plan::{Findings, Trade};
 use super::verdict::{amount, three};
 use crate::duration::seconds;
 use crate::shell;
@@ -53,7 +53,7 @@ pub fn forecast(trade: &Trade) -> String {
 }
 
 /// The table of the settings and the verdicts.
-pub fn text(trade: &Trade, answer: &Answer) -> String {
+pub fn text(trade: &Trade, answer: &Findings) -> String {
     let found = &answer.found;
     let mut out = String::new();
     push_settings(&mut out, trade, found);
