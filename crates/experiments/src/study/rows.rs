@@ -85,7 +85,8 @@ impl Rows {
                 columns.push(errors);
             }
         }
-        let text = |name: &str, f: &dyn Fn(&RunRow) -> String| Column::text(name, rows.iter().map(f));
+        let text =
+            |name: &str, f: &dyn Fn(&RunRow) -> String| Column::text(name, rows.iter().map(f));
         let of_run = |f: fn(&Finished) -> f64| rows.iter().map(move |r| r.run.as_ref().map(f));
         for regime in &plan.regimes {
             columns.push(text(regime, &|r| regime_of(&r.summary, regime)));
