@@ -16,7 +16,7 @@ use super::figures;
 use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, WORD};
-use super::quantity::{Field, Findings, Role, Topic, field};
+use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
@@ -124,6 +124,9 @@ impl Counts {
         found.begin(Topic::Run, Role::Diagnostic);
         let doc = "whether the step was small enough to detect every contact in time";
         found.fields("haste", &self.step_size, &step_size::FIELDS, doc);
+        found.edit_all(&["haste"], |q| {
+            q.lacks(COURSE);
+        });
     }
 }
 
