@@ -17,6 +17,10 @@ mod record;
 mod tests;
 mod vector;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[allow(
+    clippy::needless_range_loop,
+    reason = "an index counts registers of several arrays"
+)]
 mod wide;
 #[cfg(target_arch = "x86_64")]
 mod x86;

@@ -32,6 +32,7 @@ pub fn schur<L: Lane, const D: usize>(w: &[[L; D]; D]) -> ([[L; 2]; 2], L) {
     let least = L::all(MIN_RATIO) * size;
     let bound = if D == 2 { least } else { least * size };
     let singular = determinant(&a).at_most(bound);
+    #[allow(clippy::needless_range_loop, reason = "the diagonal of a matrix")]
     for k in 0..2 {
         a[k][k] = L::select(singular, a[k][k] + least, a[k][k]);
     }

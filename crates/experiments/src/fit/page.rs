@@ -227,7 +227,7 @@ fn points(tests: &Tests, found: &Found, outcome: &Outcome) -> Vec<Points> {
 pub fn sheet(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Sheet {
     let known = &outcome.identification;
     let figures = charts(read, tests, found, outcome).into_iter();
-    let figures = figures.map(Block::Figure);
+    let figures = figures.map(|chart| Block::Figure(Box::new(chart)));
     let made = format!("Made by fretwork {}.", env!("CARGO_PKG_VERSION"));
     let text = read.source.text().to_owned();
     let sections = vec![
@@ -346,7 +346,7 @@ fn search_blocks(found: &Found) -> Vec<Block> {
             found.evaluations.len(),
             found.ended
         )),
-        Block::Figure(chart),
+        Block::Figure(Box::new(chart)),
     ]
 }
 
@@ -356,7 +356,8 @@ fn charts(read: &FitFile, tests: &Tests, found: &Found, outcome: &Outcome) -> Ve
     let chart = |(t, points): (usize, Points)| {
         let (x, y) = axes(read, t);
         let name = tests.target.tests()[t].name.clone();
-        let bars = |of: fn(&(f64, f64, f64, f64, f64)) -> [f64; 2]| {
+        type Bar = (f64, f64, f64, f64, f64);
+        let bars = |of: fn(&Bar) -> [f64; 2]| {
             let ends = points
                 .iter()
                 .map(of)

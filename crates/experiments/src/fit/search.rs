@@ -160,7 +160,6 @@ impl Search<'_> {
         .with_limits(Limits {
             step: CLOSE,
             value: FLAT,
-            ..Limits::default()
         });
         let mut seeds = SeedsPerPoint::new(fewest, most);
         // Each generation has seeds of its own, so that the minimum is not that of one set of

@@ -42,7 +42,7 @@ pub enum Block {
     /// A table.
     Table(SheetTable),
     /// A figure.
-    Figure(Chart),
+    Figure(Box<Chart>),
 }
 
 /// A table of texts; the first column heads the rows.
@@ -163,7 +163,7 @@ mod tests {
             let chart = Chart::new(title, Axis::new("a", "m"), Axis::new("b", "").log());
             let series = Series::new("curve", vec![(1.0, f64::NAN), (2e-3, 3.0)]);
             let other = Series::new("other", vec![(1.0, 2.0)]);
-            Block::Figure(chart.with(series).with(other))
+            Block::Figure(Box::new(chart.with(series).with(other)))
         };
         let table = Block::Table(SheetTable {
             heads: vec!["a<b".into()],

@@ -26,7 +26,7 @@ pub fn sheet(plan: &Plan, rows: &Rows, analysis: &Analysis) -> Sheet {
     }
     let maps = analysis.regimes.iter();
     let maps: Vec<Block> = maps
-        .filter_map(|r| Some(Block::Figure(regime_chart(plan, r)?)))
+        .filter_map(|r| Some(Block::Figure(Box::new(regime_chart(plan, r)?))))
         .collect();
     if !maps.is_empty() {
         sections.push(section("Regimes", maps));
@@ -74,7 +74,7 @@ fn output_section(plan: &Plan, output: &OutputAnalysis) -> Section {
         blocks.push(pairs_table(alternatives, &output.unit));
     }
     let figures = output.responses.iter();
-    blocks.extend(figures.map(|r| Block::Figure(response_chart(plan, output, r))));
+    blocks.extend(figures.map(|r| Block::Figure(Box::new(response_chart(plan, output, r)))));
     blocks.push(effect_block(plan, output));
     section(title_of(&output.name), blocks)
 }

@@ -463,8 +463,12 @@ mod tests {
     #[test]
     fn errors_name_what_to_change() {
         let drawn = chart().with(Series::new("a", vec![(0.0, 1.0)]));
-        let error =
-            draw_panels(&[drawn.clone()], 1, Path::new("no-such-folder/a.png")).unwrap_err();
+        let error = draw_panels(
+            std::slice::from_ref(&drawn),
+            1,
+            Path::new("no-such-folder/a.png"),
+        )
+        .unwrap_err();
         assert!(
             error.to_string().contains("no-such-folder/a.png"),
             "{error}"
