@@ -1,11 +1,12 @@
-//! Handling of signals that ask for an end: on the first one the current step is finished and results are written; a second SIGINT
-//! or SIGTERM ends the program at once.
+//! Handling of signals that ask for an end: on the first one the current step is finished and
+//! results are written; a second SIGINT or SIGTERM ends the program at once.
 //!
-//! Those are SIGINT (Ctrl-C) and SIGTERM, SIGHUP of a terminal that closes, and SIGXCPU and SIGXFSZ of limits on the time of the
-//! processor and on the size of files, which the system sends again and again. On Windows Ctrl-C arrives as SIGINT; the others are
-//! never sent there.
+//! Those are SIGINT (Ctrl-C) and SIGTERM, SIGHUP of a terminal that closes, and SIGXCPU and SIGXFSZ
+//! of limits on the time of the processor and on the size of files, which the system sends again
+//! and again. On Windows Ctrl-C arrives as SIGINT; the others are never sent there.
 //!
-//! Where the limit on time ends a process at once, as that of `ulimit -t` does, it is asked for its signal some seconds earlier.
+//! Where the limit on time ends a process at once, as that of `ulimit -t` does, it is asked for its
+//! signal some seconds earlier.
 
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
@@ -40,8 +41,9 @@ const OF_SYSTEM: [(i32, &str); 3] = [
 #[cfg(not(unix))]
 const OF_SYSTEM: [(i32, &str); 0] = [];
 
-/// Installs the handlers: the first signal sets the returned flag, a second one ends the program. If the
-/// system allows no handler, signals keep their default action; one that is ignored (`nohup`) stays ignored.
+/// Installs the handlers: the first signal sets the returned flag, a second one ends the program.
+/// If the system allows no handler, signals keep their default action; one that is ignored
+/// (`nohup`) stays ignored.
 pub fn watch() -> &'static AtomicBool {
     WATCH.call_once(|| {
         for (signal, _) in OF_SOMEBODY {
@@ -63,7 +65,8 @@ pub fn watch() -> &'static AtomicBool {
     &ASKED
 }
 
-/// Has SIGXCPU come before the end: a limit whose two parts are equal ends the process without a signal that it can handle.
+/// Has SIGXCPU come before the end: a limit whose two parts are equal ends the process without a
+/// signal that it can handle.
 #[cfg(unix)]
 fn ask_before_the_end() {
     let mut limit = libc::rlimit {
@@ -79,8 +82,8 @@ fn ask_before_the_end() {
     }
 }
 
-/// The time (s) at which the signal comes, where the limit that ends a process comes no later than that which asks: a tenth of it
-/// before, at least a second and at most ten.
+/// The time (s) at which the signal comes, where the limit that ends a process comes no later than
+/// that which asks: a tenth of it before, at least a second and at most ten.
 #[cfg(unix)]
 fn before(asks: libc::rlim_t, ends: libc::rlim_t) -> Option<libc::rlim_t> {
     let limited = ends != libc::RLIM_INFINITY && asks == ends && ends >= 2;

@@ -1,5 +1,5 @@
-//! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded at run
-//! time.
+//! Fretwork: tribology of dry contacts by non-smooth contact dynamics, with interface laws loaded
+//! at run time.
 //!
 //! # One step
 //!
@@ -41,14 +41,16 @@
 //! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
 //! | pictures | [`view`]: charts and pictures, reports |
 //!
-//! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`, `fretwork-observe`, `fretwork-store`,
-//! `fretwork-view`, `fretwork-experiments`. Here they meet: [`cli`] is the command line,
-//! [`shipped`] has the laws that come with the program, [`experiments`] makes runs of a case in
-//! processes of their own for studies and fits, [`contact_patch`] has contact patches in closed form.
+//! Each module is the front of a layer below: `fretwork-core`, `fretwork-scene`,
+//! `fretwork-observe`, `fretwork-store`, `fretwork-view`, `fretwork-experiments`. Here they meet:
+//! [`cli`] is the command line, [`shipped`] has the laws that come with the program,
+//! [`experiments`] makes runs of a case in processes of their own for studies and fits,
+//! [`contact_patch`] has contact patches in closed form.
 //!
 //! # A scene without files
 //!
-//! A ball dropped on a plane rests there, and the plane carries its weight. The page `docs/library.md` has more.
+//! A ball dropped on a plane rests there, and the plane carries its weight. The page
+//! `docs/library.md` has more.
 //!
 //! ```
 //! use fretwork::scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};

@@ -1,5 +1,5 @@
-//! Cases and materials, see [`fretwork_scene`]; in addition, cases can take grains from the results of other
-//! runs.
+//! Cases and materials, see [`fretwork_scene`]; in addition, cases can take grains from the results
+//! of other runs.
 
 pub use fretwork_scene::*;
 
@@ -7,7 +7,8 @@ use crate::record::results::state;
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a case and applies the `--set` arguments; grains of another run are read from its `results.h5`.
+/// Reads a case and applies the `--set` arguments; grains of another run are read from its
+/// `results.h5`.
 ///
 /// # Errors
 /// An [`InputError`] with file, line and column.

@@ -8,14 +8,16 @@ pub fn built_in() -> BuiltInLaws {
     static LAWS: OnceLock<BuiltInLaws> = OnceLock::new();
     LAWS.get_or_init(|| {
         let tables = fretwork_laws::plugins();
-        // SAFETY: the crate compiles the shipped laws with `plugin_table!`, and they live as long as the program.
+        // SAFETY: the crate compiles the shipped laws with `plugin_table!`, and they live as long
+        // as the program.
         unsafe { BuiltInLaws::from_tables(tables) }
     })
     .clone()
 }
 
-/// A search path with the shipped laws, for programs that use this library: the folders of the environment variable
-/// `FRETWORK_PLUGIN_PATH` come after them. [`SearchPath::new`] takes further folders.
+/// A search path with the shipped laws, for programs that use this library: the folders of the
+/// environment variable `FRETWORK_PLUGIN_PATH` come after them. [`SearchPath::new`] takes further
+/// folders.
 pub fn search_path() -> SearchPath {
     SearchPath::new(&[]).with_built_in(built_in())
 }

@@ -1,7 +1,8 @@
 //! Memory that NumPy looks at, through its array interface.
 //!
-//! A column of a simulation is shown without a copy while nothing changes it. Before a step the simulation hands the memory of
-//! each column that Python still holds over to its array, and goes on with a copy: an array never changes, and never dangles.
+//! A column of a simulation is shown without a copy while nothing changes it. Before a step the
+//! simulation hands the memory of each column that Python still holds over to its array, and goes
+//! on with a copy: an array never changes, and never dangles.
 
 use crate::simulation::Simulation;
 use pyo3::prelude::*;
@@ -73,7 +74,8 @@ impl Array {
         }
     }
 
-    /// An array on a column of a simulation, whose elements have `width` numbers each, which must be all that they have.
+    /// An array on a column of a simulation, whose elements have `width` numbers each, which must
+    /// be all that they have.
     pub(crate) fn shown<T, N: Number>(column: &[T], width: usize, of: Py<Simulation>) -> Self {
         debug_assert_eq!(size_of::<T>(), width.max(1) * size_of::<N>());
         Self {
@@ -84,7 +86,8 @@ impl Array {
         }
     }
 
-    /// Gives it the memory that it shows. Must be called with the column itself: moving a vector leaves its numbers in place.
+    /// Gives it the memory that it shows. Must be called with the column itself: moving a vector
+    /// leaves its numbers in place.
     pub(crate) fn hand_over(&self, memory: Box<dyn Any + Send>) {
         let mut owner = self.owner.lock().unwrap_or_else(|e| e.into_inner());
         *owner = Owner::Itself { _memory: memory };

@@ -192,7 +192,8 @@ impl Case {
         }
     }
 
-    /// The RON of a value with structs, maps or kinds: that which the case with it has at this path.
+    /// The RON of a value with structs, maps or kinds: that which the case with it has at this
+    /// path.
     fn written(&self, path: &str, value: Value) -> Result<String, InputError> {
         let parts = split_path(path)
             .ok_or_else(|| InputError::argument(path, "a part of the key is empty"))?;
@@ -214,8 +215,8 @@ fn parsed(json: &str) -> PyResult<Value> {
         .map_err(|e| wrong("the value", format!("it cannot be read as JSON: {e}")))
 }
 
-/// Reads a case from JSON. A number stands for a constant function of time, as in case files. `at` is the path that was set, for
-/// messages where the reader gives none.
+/// Reads a case from JSON. A number stands for a constant function of time, as in case files. `at`
+/// is the path that was set, for messages where the reader gives none.
 fn typed(mut value: Value, at: &str) -> Result<CaseSpec, InputError> {
     // As many as there are functions of time, each found by an attempt.
     const MAX_CONSTANTS: usize = 10_000;
@@ -267,7 +268,8 @@ fn pointer<'a>(root: &'a mut Value, parts: &[String]) -> Option<&'a mut Value> {
     })
 }
 
-/// The error of a JSON reader, such as "unknown field `stp`, expected one of `step`, `end`", with a proposal.
+/// The error of a JSON reader, such as "unknown field `stp`, expected one of `step`, `end`", with a
+/// proposal.
 fn explained(place: &str, said: &str) -> InputError {
     let (message, expected) = match said.split_once(", expected ") {
         Some((message, expected)) => (message, Some(expected)),

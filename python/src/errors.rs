@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use std::fmt::Display;
 use std::path::Path;
 
-/// Arguments of an [`InputError`] as Python takes them: text, file, line, column, message, expected, proposal.
+/// Arguments of an [`InputError`] as Python takes them: text, file, line, column, message,
+/// expected, proposal.
 type InputArguments = (
     String,
     String,

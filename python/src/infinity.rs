@@ -1,5 +1,5 @@
-//! Infinite numbers of cases in JSON, which has none: the largest number but one stands for infinity, here and in
-//! `fretwork/_values.py`.
+//! Infinite numbers of cases in JSON, which has none: the largest number but one stands for
+//! infinity, here and in `fretwork/_values.py`.
 
 use fretwork::scene::source::Tree;
 use fretwork::scene::{Case, InputError};

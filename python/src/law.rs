@@ -30,8 +30,8 @@ fn wrong(e: LawError) -> PyErr {
     PyValueError::new_err(e.to_string())
 }
 
-/// The laws with a name or kind/name; all without one. Each is a JSON object; a library that cannot be used has the key `error`
-/// if all were asked for.
+/// The laws with a name or kind/name; all without one. Each is a JSON object; a library that cannot
+/// be used has the key `error` if all were asked for.
 #[pyfunction]
 #[pyo3(signature = (name=None, plugin_path=Vec::new()))]
 fn laws(py: Python<'_>, name: Option<&str>, plugin_path: Vec<PathBuf>) -> PyResult<String> {
@@ -79,8 +79,8 @@ fn certify_law(
     })
 }
 
-/// Runs `fretwork law drive` with these arguments in a process of its own, so that a law that crashes or hangs does not take this
-/// one along; returns its table as JSON and its remarks.
+/// Runs `fretwork law drive` with these arguments in a process of its own, so that a law that
+/// crashes or hangs does not take this one along; returns its table as JSON and its remarks.
 #[pyfunction]
 fn drive_laws(py: Python<'_>, arguments: Vec<String>) -> PyResult<(String, String)> {
     let failed =

@@ -1,8 +1,9 @@
 //! Observers that are written in Python.
 //!
-//! The package gives them as objects with `name`, `every`, `columns` (name, unit and explanation of each) and the methods
-//! `begin(simulation)`, `step(simulation)`, which returns the values of the columns, nothing, or a reason to stop, `save()` and
-//! `restore(bytes)`; see `fretwork/_observers.py`.
+//! The package gives them as objects with `name`, `every`, `columns` (name, unit and explanation of
+//! each) and the methods `begin(simulation)`, `step(simulation)`, which returns the values of the
+//! columns, nothing, or a reason to stop, `save()` and `restore(bytes)`; see
+//! `fretwork/_observers.py`.
 
 use crate::simulation::Simulation;
 use fretwork::geometry::space::Space;
@@ -168,7 +169,8 @@ impl<S: Space> Observer<S> for PythonObserver {
     }
 }
 
-/// A text that lasts: columns name their units for the whole life of a program. Each text is kept once.
+/// A text that lasts: columns name their units for the whole life of a program. Each text is kept
+/// once.
 fn lasting(text: String) -> &'static str {
     static KEPT: Mutex<Option<HashSet<&'static str>>> = Mutex::new(None);
     let mut kept = KEPT.lock().unwrap_or_else(|e| e.into_inner());

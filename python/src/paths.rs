@@ -2,7 +2,8 @@
 
 use serde_json::{Map, Value};
 
-/// What has the fields of a value: a variant is `{"Name": {fields}}`, and its fields are named without the variant.
+/// What has the fields of a value: a variant is `{"Name": {fields}}`, and its fields are named
+/// without the variant.
 fn inner<'a>(mut value: &'a Value, part: &str) -> &'a Value {
     while let Some(name) = variant(value).filter(|name| *name != part) {
         value = &value[name];
@@ -39,7 +40,8 @@ pub(crate) fn find<'a>(root: &'a Value, path: &[String]) -> Option<&'a Value> {
     })
 }
 
-/// Puts a value at a path, with the structs and maps around it; the first part of the path that cannot be there, if so.
+/// Puts a value at a path, with the structs and maps around it; the first part of the path that
+/// cannot be there, if so.
 pub(crate) fn put<'a>(root: &mut Value, path: &'a [String], new: Value) -> Result<(), &'a str> {
     let Some((part, rest)) = path.split_first() else {
         *root = new;

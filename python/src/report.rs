@@ -12,7 +12,8 @@ fn raised(error: &ReportError, folder: Option<&Path>) -> PyErr {
     }
 }
 
-/// Makes the report of the run in a folder, of at most so many bytes, or of all that was recorded; gives its path.
+/// Makes the report of the run in a folder, of at most so many bytes, or of all that was recorded;
+/// gives its path.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, folder: PathBuf, bytes: Option<usize>) -> PyResult<PathBuf> {
     let made = py.detach(|| make_report(&folder, bytes));

@@ -1,4 +1,5 @@
-//! Runs of a case: computed by threads of their own, while Python's thread shows progress and listens for Ctrl-C.
+//! Runs of a case: computed by threads of their own, while Python's thread shows progress and
+//! listens for Ctrl-C.
 
 use crate::case::Case;
 use crate::errors;
@@ -25,8 +26,8 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// Limit on the duration of a call of a law (s), as that of the command line.
 const LAW_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Progress as Python sees it: steps done and in total, steps before a resumed part, cycle and number of cycles, contacts,
-/// iterations, error, steps that missed the tolerance, damage ratio.
+/// Progress as Python sees it: steps done and in total, steps before a resumed part, cycle and
+/// number of cycles, contacts, iterations, error, steps that missed the tolerance, damage ratio.
 type ProgressLine = (u64, u64, u64, u32, u32, usize, u32, f64, u64, f64);
 
 fn line_of(p: &Progress) -> ProgressLine {
@@ -86,7 +87,8 @@ fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|e| e.into_inner())
 }
 
-/// Runs a case. Files are in `out` when it returns, and also when it raises an exception once the run has begun.
+/// Runs a case. Files are in `out` when it returns, and also when it raises an exception once the
+/// run has begun.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "the keywords of Case.run")]
 pub(crate) fn run(

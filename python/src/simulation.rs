@@ -33,9 +33,10 @@ enum Held {
 /// A simulation of a run, while an observer is called.
 struct Lent<S: Space>(*const step::Simulation<S>);
 
-// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before the reference ends. The simulation
-// is read by one thread at a time, while that which owns it waits for the observer; what of it has no `Sync`, the guarded memory of
-// laws under certification, holds addresses that are used through `&mut` only.
+// SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before
+// the reference ends. The simulation is read by one thread at a time, while that which owns it
+// waits for the observer; what of it has no `Sync`, the guarded memory of laws under certification,
+// holds addresses that are used through `&mut` only.
 unsafe impl<S: Space> Send for Lent<S> {}
 
 /// A simulation in one of the dimensions, for what is the same in both.
@@ -112,7 +113,8 @@ impl Simulation {
         }
     }
 
-    /// A loan of a simulation of a run, which must be [ended](Self::end_loan) before the reference ends.
+    /// A loan of a simulation of a run, which must be [ended](Self::end_loan) before the reference
+    /// ends.
     pub(crate) fn lend<S: Space>(simulation: &step::Simulation<S>) -> Self {
         Self::lent(match step::InDimension::of(simulation) {
             step::InDimension::Dim2(s) => Held::Lent2(Lent(s)),
@@ -419,7 +421,8 @@ impl Simulation {
     }
 }
 
-/// A field of all things that carry it: a row of three numbers each for a vector, a number each for others.
+/// A field of all things that carry it: a row of three numbers each for a vector, a number each for
+/// others.
 fn of_field<S: Space, T>(
     s: &step::Simulation<S>,
     field: &Field<S, T>,

@@ -13,7 +13,8 @@ pub(crate) struct Moment {
     pub(crate) step: f64,
 }
 
-/// A simulation, the observers whose columns the statistics of a run have, and the report of the last step.
+/// A simulation, the observers whose columns the statistics of a run have, and the report of the
+/// last step.
 #[derive(Debug)]
 pub(crate) struct Stepper<S: Observed> {
     pub(crate) simulation: Simulation<S>,

@@ -12,7 +12,8 @@ pub(super) fn keep(words: &[OsString]) {
     let _ = WORDS.set(words.to_vec());
 }
 
-/// The arguments of this call, quoted for a shell, with those of `with` appended if they are missing.
+/// The arguments of this call, quoted for a shell, with those of `with` appended if they are
+/// missing.
 pub(super) fn command(with: &[&str]) -> String {
     let words = WORDS.get().map_or(&[][..], Vec::as_slice).iter();
     let mut words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();

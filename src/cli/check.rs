@@ -1,4 +1,5 @@
-//! `fretwork check`: the features that a case uses, its size and dimensionless groups; writes no files.
+//! `fretwork check`: the features that a case uses, its size and dimensionless groups; writes no
+//! files.
 
 mod bonds;
 mod deformable;
@@ -67,7 +68,8 @@ fn line_of(label: &str, text: &str) -> String {
     format!("  {label:<20} {text}")
 }
 
-/// A line of the answer: what it is about, and the text. Lines that go on with that of the line before have no label.
+/// A line of the answer: what it is about, and the text. Lines that go on with that of the line
+/// before have no label.
 pub type CheckLine = (String, String);
 
 /// The estimated time of a run, from steps that are made for half a second.
@@ -94,8 +96,8 @@ fn chosen_steps<S: Space>(case: &crate::scene::case::Case, s: &Simulation<S>) ->
     }
 }
 
-/// What `fretwork check` prints of a case below its title, but for the [run time](run_time). Deformable bodies are timed if
-/// `timed`.
+/// What `fretwork check` prints of a case below its title, but for the [run time](run_time).
+/// Deformable bodies are timed if `timed`.
 pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<CheckLine> {
     let (case, s) = (&loaded.case, &built.simulation);
     let mut out = Vec::new();
@@ -175,7 +177,8 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     out
 }
 
-/// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the largest radius of a grain (m).
+/// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the
+/// largest radius of a grain (m).
 fn bodies<S: Space>(s: &Simulation<S>, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
     let range = |radii: &mut dyn Iterator<Item = f64>| {
         let start = (0, f64::INFINITY, 0.0f64);
@@ -232,8 +235,8 @@ fn interfaces<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) 
     }
 }
 
-/// The solvers that support the case, and why the others do not. A case whose own solver does not support it
-/// is rejected earlier.
+/// The solvers that support the case, and why the others do not. A case whose own solver does not
+/// support it is rejected earlier.
 fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
     let demands = Demands::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
@@ -354,7 +357,8 @@ fn groups<S: Space>(
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;
-        // Solid fraction of random packings of disks and spheres, slightly below random close packing.
+        // Solid fraction of random packings of disks and spheres, slightly below random close
+        // packing.
         let solid = if S::D == 2 { 0.8 } else { 0.6 };
         let thickness = volume / solid / area;
         let inertial = speed / thickness * 2.0 * largest * (density / pressure).sqrt();

@@ -1,4 +1,5 @@
-//! `fretwork contact-patch`: from load, radii and moduli to the contact patch, its slip and its wear.
+//! `fretwork contact-patch`: from load, radii and moduli to the contact patch, its slip and its
+//! wear.
 
 use super::Failure;
 use super::output::{answer, answer_json};
@@ -29,7 +30,8 @@ pub struct ContactPatchArgs {
     /// Normal load: a force, or a force per length for a line contact
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     load: String,
-    /// Radii of the two bodies along the motion; `flat` is a plane, a negative radius is concave, one alone is against a plane
+    /// Radii of the two bodies along the motion; `flat` is a plane, a negative radius is concave,
+    /// one alone is against a plane
     #[arg(
         long,
         value_name = "R1[,R2]",
@@ -64,13 +66,15 @@ pub struct ContactPatchArgs {
     /// Friction coefficient, for slip and rolling
     #[arg(long, value_name = "RANGE")]
     friction: Option<String>,
-    /// Take the friction coefficient from this run; repeat for runs with other seeds, whose scatter gives the interval
+    /// Take the friction coefficient from this run; repeat for runs with other seeds, whose scatter
+    /// gives the interval
     #[arg(long = "friction-of", value_name = "DIR")]
     runs: Vec<PathBuf>,
     /// Tangential force: what sticks under it
     #[arg(long, value_name = "FORCE", allow_hyphen_values = true)]
     force: Option<String>,
-    /// Amplitude of the displacement of distant points in fretting: what sticks, and how far the middle slips
+    /// Amplitude of the displacement of distant points in fretting: what sticks, and how far the
+    /// middle slips
     #[arg(long, value_name = "LENGTH")]
     displacement: Option<String>,
     /// Longitudinal creepage in rolling: adhesion, T gamma

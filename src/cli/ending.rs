@@ -1,10 +1,10 @@
-//! Termination of the process: by the program itself, by a law through `exit`, `abort`, a fault or an exception, or by the system that
-//! has no more memory.
+//! Termination of the process: by the program itself, by a law through `exit`, `abort`, a fault or
+//! an exception, or by the system that has no more memory.
 
 use crate::laws::child::NO_MEMORY;
 
-/// Guard during whose lifetime an unexpected termination is reported and gets exit code 1. Has no effect on
-/// systems without POSIX signals.
+/// Guard during whose lifetime an unexpected termination is reported and gets exit code 1. Has no
+/// effect on systems without POSIX signals.
 #[derive(Debug)]
 pub struct Armed(());
 
@@ -27,8 +27,8 @@ impl Drop for Armed {
     }
 }
 
-/// Terminates the process immediately, without running exit handlers of libraries: a law that hangs while it
-/// is loaded holds locks that these need.
+/// Terminates the process immediately, without running exit handlers of libraries: a law that hangs
+/// while it is loaded holds locks that these need.
 pub fn now(code: u8) -> ! {
     use std::io::Write;
     let _ = std::io::stdout().flush();
@@ -144,13 +144,14 @@ mod posix {
             Some((law, call)) => format!("{law} ended the program in {call} (it called exit)"),
             None => "something that a law loaded ended the program (it called exit)".to_owned(),
         };
-        // A library that ends the program while it is loaded holds a lock of the dynamic linker that a new thread
-        // would wait for.
+        // A library that ends the program while it is loaded holds a lock of the dynamic linker
+        // that a new thread would wait for.
         if watch::nothing_to_save() {
             put(&[&format!("error: {who}; {}\n", Saved::Nothing.words())]);
             super::now(FAILED);
         }
-        // The calling thread's thread-local variables are already destroyed; another thread does the saving.
+        // The calling thread's thread-local variables are already destroyed; another thread does
+        // the saving.
         let (done, saved) = std::sync::mpsc::sync_channel(1);
         let told = who.clone();
         let rescue = std::thread::Builder::new().spawn(move || done.send(watch::save(&told)));
@@ -187,8 +188,8 @@ mod posix {
     fn catch_faults() {
         let before = FAULTS.map(|(signal, _)| {
             let mut old = MaybeUninit::<libc::sigaction>::zeroed();
-            // SAFETY: the handler calls only async-signal-safe functions, on the alternate stack of the
-            // standard library; an all-zero action is valid.
+            // SAFETY: the handler calls only async-signal-safe functions, on the alternate stack of
+            // the standard library; an all-zero action is valid.
             unsafe {
                 let mut new = MaybeUninit::<libc::sigaction>::zeroed().assume_init();
                 let handler: extern "C" fn(c_int, *mut libc::siginfo_t, *mut libc::c_void) =
@@ -203,8 +204,8 @@ mod posix {
         let _ = BEFORE.set(before);
     }
 
-    /// Reports a fault within a law and ends the program with exit code 1; any other fault goes to the
-    /// previous handler.
+    /// Reports a fault within a law and ends the program with exit code 1; any other fault goes to
+    /// the previous handler.
     extern "C" fn on_fault(signal: c_int, _: *mut libc::siginfo_t, _: *mut libc::c_void) {
         let called = watch::inside().filter(|_| ARMED.load(Ordering::SeqCst));
         let Some(who) = called.filter(|_| !FAULT.swap(true, Ordering::SeqCst)) else {
@@ -222,7 +223,8 @@ mod posix {
         unsafe { libc::_exit(FAILED.into()) }
     }
 
-    /// Has the other thread save what was recorded, and waits for it. It takes no lock and no memory.
+    /// Has the other thread save what was recorded, and waits for it. It takes no lock and no
+    /// memory.
     fn rescued(why: &Why) -> Saved {
         WHY.store(std::ptr::from_ref(why).cast_mut(), Ordering::SeqCst);
         let wake = WAKE.load(Ordering::SeqCst);
@@ -246,13 +248,15 @@ mod posix {
         unsafe { libc::nanosleep(&pause, std::ptr::null_mut()) };
     }
 
-    /// Says that memory ran out, has saved what was recorded, and ends the program with exit code 1.
+    /// Says that memory ran out, has saved what was recorded, and ends the program with exit code
+    /// 1.
     fn on_refused_memory(bytes: usize) {
         if !ARMED.load(Ordering::SeqCst) {
             return;
         }
         if RESCUES.try_with(Cell::get).unwrap_or(false) {
-            // What is saved takes more than there is: the thread that waits for it ends the program.
+            // What is saved takes more than there is: the thread that waits for it ends the
+            // program.
             SAVED.store(2, Ordering::SeqCst);
         }
         if FAULT.swap(true, Ordering::SeqCst) {
@@ -285,8 +289,8 @@ mod posix {
                     0
                 }
             };
-            // A fault recurs by itself when the handler returns; a signal that was sent must be raised
-            // again.
+            // A fault recurs by itself when the handler returns; a signal that was sent must be
+            // raised again.
             if matches!(signal, libc::SIGABRT | libc::SIGTRAP | libc::SIGSYS) {
                 libc::raise(signal);
             }

@@ -30,7 +30,8 @@ pub enum LawCommand {
     /// Drive one contact along a path and print the response of the laws
     #[command(after_help = drive::EXAMPLES)]
     Drive(Box<drive::DriveArgs>),
-    /// Test a law: energy, dissipation, frame indifference, step size, reproducible bits, invalid numbers
+    /// Test a law: energy, dissipation, frame indifference, step size, reproducible bits, invalid
+    /// numbers
     #[command(after_help = certify::EXAMPLES)]
     Certify(certify::CertifyArgs),
 }

@@ -1,4 +1,5 @@
-//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `law`, `solve`, `study`, `fit`, `trade`.
+//! The command line: `run`, `report`, `compare`, `check`, `contact-patch`, `law`, `solve`, `study`,
+//! `fit`, `trade`.
 //!
 //! Exit codes: 0 done; 1 the run failed, but what was computed is on disk; 2 wrong input.
 
@@ -67,7 +68,8 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Print what a case uses and what it will cost, without running it or writing files
     Check(check::CheckArgs),
-    /// From load, radii and moduli to a contact patch: pressure, size, slip, friction and wear against creepage
+    /// From load, radii and moduli to a contact patch: pressure, size, slip, friction and wear
+    /// against creepage
     #[command(after_help = contact_patch::EXAMPLES)]
     ContactPatch(contact_patch::ContactPatchArgs),
     /// Interface laws: list, show, make, drive and certify them
@@ -90,7 +92,8 @@ enum Command {
         after_help = "Exit code: 0 done, also where the measurements do not determine a parameter (it says so), 1 interrupted, or nothing was found, 2 wrong input.\n\nExample:\n  fretwork fit fits/bond_opening.ron --jobs 2\n\ndocs/fit.md says what a fit is made of and what its intervals mean."
     )]
     Fit(fit::FitArgs),
-    /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over seeds
+    /// What accuracy costs: vary step, tolerance, solver and more, and compare with the finest over
+    /// seeds
     #[command(
         allow_negative_numbers = true,
         after_help = "Exit code: 0 done, also where the budget ended it early (it says so), 1 no reference could be run, 2 wrong input.\n\nExample:\n  fretwork trade cases/shear_cell_3d.ron --output friction_coefficient=5% --knob step --knob tolerance --budget 30m\n\ndocs/trade.md says how errors are judged and what the search does not explore."
@@ -270,9 +273,10 @@ pub fn main() -> ExitCode {
     ExitCode::from(call(&words))
 }
 
-/// Runs the program with given words, of which the first is its name; returns the exit code. For processes that are not the
-/// program themselves, such as a Python interpreter: see [`crate::program`]. One call in a process: signals are handled from
-/// then on as the program handles them.
+/// Runs the program with given words, of which the first is its name; returns the exit code. For
+/// processes that are not the program themselves, such as a Python interpreter: see
+/// [`crate::program`]. One call in a process: signals are handled from then on as the program
+/// handles them.
 pub fn call(words: &[OsString]) -> u8 {
     again::keep(words);
     // The main thread uses a pool of one; only `run --threads` computes on more.

@@ -1,6 +1,7 @@
-//! Output to the standard streams. A closed or full terminal, pipe or file never ends a run; only an
-//! explicitly requested answer that cannot be delivered is a failure. Terminal control characters are
-//! removed, since titles and names come from the user, and documentation of laws comes from plugins.
+//! Output to the standard streams. A closed or full terminal, pipe or file never ends a run; only
+//! an explicitly requested answer that cannot be delivered is a failure. Terminal control
+//! characters are removed, since titles and names come from the user, and documentation of laws
+//! comes from plugins.
 
 use super::Failure;
 use crate::scene::source::{clean_json, clean_lines};
@@ -11,8 +12,8 @@ use std::sync::{Mutex, OnceLock};
 /// Standard output of the program, once [`keep_from_laws`] has taken it.
 static TAKEN: OnceLock<Mutex<File>> = OnceLock::new();
 
-/// Keeps standard output for the program's answers: what laws print goes to standard error from then on. Without the system's help
-/// (Windows) both go to standard output.
+/// Keeps standard output for the program's answers: what laws print goes to standard error from
+/// then on. Without the system's help (Windows) both go to standard output.
 pub fn keep_from_laws() {
     #[cfg(unix)]
     {

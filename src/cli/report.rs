@@ -16,7 +16,8 @@ pub struct ReportArgs {
     /// Put all recorded states and rows into the page, however large it gets
     #[arg(long, conflicts_with = "size")]
     full: bool,
-    /// Largest size of the page (MB); states, fields and rows are left out to stay below it, which the page says
+    /// Largest size of the page (MB); states, fields and rows are left out to stay below it, which
+    /// the page says
     #[arg(long, value_name = "MB", default_value_t = 5.0)]
     size: f64,
 }
@@ -64,8 +65,8 @@ pub fn make(folder: &Path, bytes: Option<usize>) -> Result<(PathBuf, usize), Rep
     })
 }
 
-/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. That there is none is said, and does not
-/// change how the run ended.
+/// Makes the report of a run that has just ended, in a folder that the user calls `shown`. That
+/// there is none is said, and does not change how the run ended.
 pub fn of_run(folder: &Path, shown: &Path, quiet: bool) {
     match make(folder, Some(DEFAULT_BYTES)) {
         Ok(_) if !quiet => {

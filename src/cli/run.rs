@@ -29,8 +29,8 @@ pub struct RunArgs {
     /// Continue from the last checkpoint in the folder; results equal those of an uninterrupted run
     #[arg(long)]
     resume: bool,
-    /// Exit with 1 also if the run finished but is not trustworthy (steps missed the tolerance, or a check
-    /// failed)
+    /// Exit with 1 also if the run finished but is not trustworthy (steps missed the tolerance, or
+    /// a check failed)
     #[arg(long)]
     strict: bool,
     /// Print all details at the end: first and last cycle, measures, phases, solver, laws

@@ -23,9 +23,9 @@ pub struct SolveArgs {
     /// Error to reach: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|)
     #[arg(long, value_name = "T", default_value = "1e-8", value_parser = positive)]
     tolerance: f64,
-    /// Also bound the scale-free error |r| / max(|u|, |q|) in velocities: iterate until both are met, and
-    /// exit with 1 if it stays above T. Without this option it is reported, with a warning above 100 times
-    /// the tolerance (at least 1e-3, at most 0.1)
+    /// Also bound the scale-free error |r| / max(|u|, |q|) in velocities: iterate until both are
+    /// met, and exit with 1 if it stays above T. Without this option it is reported, with a warning
+    /// above 100 times the tolerance (at least 1e-3, at most 0.1)
     #[arg(long, value_name = "T", value_parser = positive)]
     scale_free_tolerance: Option<f64>,
     /// Largest number of iterations

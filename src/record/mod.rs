@@ -1,5 +1,5 @@
-//! The run loop and its results: analysis by [`fretwork_observe`], files by [`fretwork_store`], pictures by
-//! [`fretwork_view`].
+//! The run loop and its results: analysis by [`fretwork_observe`], files by [`fretwork_store`],
+//! pictures by [`fretwork_view`].
 pub mod run;
 
 pub use fretwork_observe::picture::{Paint, Picture, Shows};

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 const COLUMNS: usize = 100;
 
 /// Folders and files, from the root of the repository.
-const CHECKED: [&str; 13] = [
+const CHECKED: [&str; 14] = [
     "docs",
-    "crates/math",
-    "crates/view",
+    "crates",
+    "src",
+    "python",
     "plugins",
     "tests",
     "benches",

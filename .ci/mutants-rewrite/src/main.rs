@@ -1,9 +1,11 @@
-//! Writes faults into source text as choices: `a + b` becomes `(if crate::mutant::active(7) { (a) - (b) } else { a + b })`, so that one
-//! build holds many faults, of which at most one acts in a run. See docs/dev/mutants.md.
+//! Writes faults into source text as choices: `a + b` becomes `(if crate::mutant::active(7) { (a) -
+//! (b) } else { a + b })`, so that one build holds many faults, of which at most one acts in a run.
+//! See docs/dev/mutants.md.
 //!
-//! `mutants-rewrite TREE < MUTANTS` reads a list of mutants as `cargo mutants --list --json` writes it, each with a `number`, rewrites
-//! the files in the tree, and prints the numbers of those that are now choices. Each stands between `/*7[*/` and `/*]7*/`, by which errors of
-//! the compiler are traced to it.
+//! `mutants-rewrite TREE < MUTANTS` reads a list of mutants as `cargo mutants --list --json` writes
+//! it, each with a `number`, rewrites the files in the tree, and prints the numbers of those that
+//! are now choices. Each stands between `/*7[*/` and `/*]7*/`, by which errors of the compiler are
+//! traced to it.
 
 use proc_macro2::{LineColumn, Span};
 use serde::Deserialize;
@@ -50,13 +52,15 @@ impl Point {
     }
 }
 
-/// A piece of the text with a fault: new text, or a part of the old, in which there may be other choices.
+/// A piece of the text with a fault: new text, or a part of the old, in which there may be other
+/// choices.
 enum Piece {
     New(String),
     Old(Range<usize>),
 }
 
-/// A choice between the text of a range (bytes) and one with a fault. What stands at an empty range is put in as it is.
+/// A choice between the text of a range (bytes) and one with a fault. What stands at an empty range
+/// is put in as it is.
 struct Choice {
     range: Range<usize>,
     number: usize,
@@ -293,8 +297,8 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     }
 }
 
-/// The text of a range with the choices in it, from the `next`-th on; they are in the order of their places, an outer one before those
-/// in it.
+/// The text of a range with the choices in it, from the `next`-th on; they are in the order of
+/// their places, an outer one before those in it.
 fn written(text: &str, choices: &[Choice], range: Range<usize>, mut next: usize) -> String {
     let (mut out, mut done) = (String::new(), range.start);
     while let Some(choice) = choices.get(next) {

@@ -1,7 +1,7 @@
 //! Binary serialization of state. Floats keep their bits, including infinities and NaN.
 //!
-//! The format is postcard: fields in order without names, so a state can only be read by the program version
-//! that wrote it. The enclosing frame records that version.
+//! The format is postcard: fields in order without names, so a state can only be read by the
+//! program version that wrote it. The enclosing frame records that version.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;

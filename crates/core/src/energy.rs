@@ -1,20 +1,23 @@
-//! The energy ledger of a run: supplied, stored and dissipated energy, and the residual of the balance.
+//! The energy ledger of a run: supplied, stored and dissipated energy, and the residual of the
+//! balance.
 
 use crate::laws::Totals;
 use serde::{Deserialize, Serialize};
 
 /// Energies since the start (J; per metre of depth in 2D).
 ///
-/// With theta = 1/2 the balance closes to rounding and to the solver's tolerance:
-/// kinetic + potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
+/// With theta = 1/2 the balance closes to rounding and to the solver's tolerance: kinetic +
+/// potential + elastic + fracture + friction + impact + adhesion + viscous + correction + scheme
 /// plus carried minus external work and expansion equals the initial energy.
 ///
-/// Dynamical systems are booked where rigid bodies and bonds are: their motion in `kinetic`, the energy of their deformation in
-/// `elastic`, their weight in `potential`, their damping in `viscous`, forces and motions imposed on them in `external_work`, and in
-/// `scheme` what the time integration takes of them. The impulses of contacts do work on a system through the velocities of its
-/// nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides of a contact together it is the friction,
-/// impact and adhesion of the contact, the change of its bond, and the work of the correction. Energy that a system stores
-/// when it is added counts as external work, its kinetic energy as initial.
+/// Dynamical systems are booked where rigid bodies and bonds are: their motion in `kinetic`, the
+/// energy of their deformation in `elastic`, their weight in `potential`, their damping in
+/// `viscous`, forces and motions imposed on them in `external_work`, and in `scheme` what the time
+/// integration takes of them. The impulses of contacts do work on a system through the velocities
+/// of its nodes; this work has no entry of its own, as that on rigid bodies has none: on both sides
+/// of a contact together it is the friction, impact and adhesion of the contact, the change of its
+/// bond, and the work of the correction. Energy that a system stores when it is added counts as
+/// external work, its kinetic energy as initial.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic energy of bodies and dynamical systems now.
@@ -37,15 +40,15 @@ pub struct Energy {
     /// `solver.projection`.
     pub correction: f64,
     /// Dissipated by the scheme, (theta - 1/2) |v+ - v|_M^2, and of dynamical systems what
-    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not linear and for
-    /// compliant contacts, whose springs are integrated by implicit Euler.
+    /// [`crate::bodies::SystemWork::scheme`] says; zero at theta = 1/2 but for systems that are not
+    /// linear and for compliant contacts, whose springs are integrated by implicit Euler.
     pub scheme: f64,
     /// Kinetic energy that bodies had when they were removed from the scene.
     pub carried: f64,
     /// Work that bodies do by thermal expansion, taken from their heat.
     pub expansion: f64,
-    /// Work of imposed forces and motions, what dynamical systems stored when they were added, and what
-    /// compliant contacts stored at the start.
+    /// Work of imposed forces and motions, what dynamical systems stored when they were added, and
+    /// what compliant contacts stored at the start.
     pub external_work: f64,
     /// Residual of the balance.
     pub residual: f64,
@@ -53,8 +56,9 @@ pub struct Energy {
     pub initial_kinetic: f64,
     /// Largest scale of the balance so far: the work done or the energy held.
     pub scale: f64,
-    /// Energy that friction of compliant contacts gave back, summed over the steps in which these together dissipated less than nothing by it. A
-    /// law of friction cannot make energy. Rigid contacts do so within the error of a step only, where their friction is p_t . u_t.
+    /// Energy that friction of compliant contacts gave back, summed over the steps in which these
+    /// together dissipated less than nothing by it. A law of friction cannot make energy. Rigid
+    /// contacts do so within the error of a step only, where their friction is p_t . u_t.
     pub given_by_friction: f64,
 }
 
@@ -110,19 +114,20 @@ impl Energy {
         self.scale = seen.iter().fold(self.scale, |m, x| m.max(x.abs()));
     }
 
-    /// Records a displacement of bodies at constant velocity: the change of potential energy and the work of
-    /// imposed forces along it (J). The next recorded step closes the balance.
+    /// Records a displacement of bodies at constant velocity: the change of potential energy and
+    /// the work of imposed forces along it (J). The next recorded step closes the balance.
     pub fn book_projection(&mut self, potential: f64, external: f64) {
         self.potential += potential;
         self.external_work += external;
         self.correction -= potential - external;
     }
 
-    /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry is the
-    /// sum of all before expansion, minus expansion, external work and initial kinetic energy.
+    /// Returns every entry of the balance: name, description, value (J; J/m in 2D). The last entry
+    /// is the sum of all before expansion, minus expansion, external work and initial kinetic
+    /// energy.
     pub fn entries(&self) -> [(&'static str, &'static str, f64); 15] {
-        // Destructured field by field, so that a new entry of the ledger does not compile until it is listed
-        // here.
+        // Destructured field by field, so that a new entry of the ledger does not compile until it
+        // is listed here.
         let Self {
             kinetic,
             potential,
@@ -205,8 +210,8 @@ impl Energy {
         ]
     }
 
-    /// Raises the scale of the balance to an energy (J) that is stored and released within one step, because
-    /// its rounding error enters the residual.
+    /// Raises the scale of the balance to an energy (J) that is stored and released within one
+    /// step, because its rounding error enters the residual.
     pub fn see(&mut self, energy: f64) {
         self.scale = self.scale.max(energy.abs());
     }
@@ -230,8 +235,8 @@ impl Energy {
 mod tests {
     use super::*;
 
-    /// What is supplied goes into all of the other entries in equal parts, so that none of them is as large: the residual is zero, and the
-    /// scale is what was supplied.
+    /// What is supplied goes into all of the other entries in equal parts, so that none of them is
+    /// as large: the residual is zero, and the scale is what was supplied.
     #[test]
     fn the_scale_is_the_largest_energy_and_what_adds_up_has_no_residual() {
         let totals = Totals {
@@ -243,7 +248,8 @@ mod tests {
             correction: -1.0,
             ..Totals::default()
         };
-        // Sinks: friction, impact, adhesion, fracture, viscous 1 each, the correction and the scheme -1 and 1.
+        // Sinks: friction, impact, adhesion, fracture, viscous 1 each, the correction and the
+        // scheme -1 and 1.
         let spent = BodyWork {
             potential: 1.0,
             damping: 0.5,
@@ -279,7 +285,8 @@ mod tests {
         }
     }
 
-    /// Each of the energies that may stand alone is a scale by itself; without any there is nothing that could be wrong.
+    /// Each of the energies that may stand alone is a scale by itself; without any there is nothing
+    /// that could be wrong.
     #[test]
     fn every_energy_raises_the_scale() {
         let scale = |given: Energy| {
@@ -336,7 +343,8 @@ mod tests {
         }
     }
 
-    /// A body that is lifted by h at constant velocity against its weight, by a force of that weight: no energy is missing.
+    /// A body that is lifted by h at constant velocity against its weight, by a force of that
+    /// weight: no energy is missing.
     #[test]
     fn a_projection_takes_its_work_from_the_correction() {
         let mut energy = Energy::default();

@@ -1,13 +1,16 @@
-//! Memory of large arrays in huge pages: a step passes over arrays that are larger than what the processor's table of pages of 4 KiB covers.
+//! Memory of large arrays in huge pages: a step passes over arrays that are larger than what the
+//! processor's table of pages of 4 KiB covers.
 
 use crate::out_of_memory::refused;
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// Allocations from this size on ask for huge pages (bytes): any block of this size contains a whole page of the usual 2 MiB.
+/// Allocations from this size on ask for huge pages (bytes): any block of this size contains a
+/// whole page of the usual 2 MiB.
 const LARGE: usize = 4 << 20;
 
-/// The system's allocator, which on Linux asks for transparent huge pages (`madvise`, `MADV_HUGEPAGE`) for large allocations. Where the kernel has none or
-/// may not give them, it is the system's allocator.
+/// The system's allocator, which on Linux asks for transparent huge pages (`madvise`,
+/// `MADV_HUGEPAGE`) for large allocations. Where the kernel has none or may not give them, it is
+/// the system's allocator.
 ///
 /// A program chooses it by
 /// ```
@@ -17,9 +20,11 @@ const LARGE: usize = 4 << 20;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HugePages;
 
-/// Asks for huge pages for an allocation, where it is large. One that the system refused is [reported](crate::out_of_memory).
+/// Asks for huge pages for an allocation, where it is large. One that the system refused is
+/// [reported](crate::out_of_memory).
 ///
-/// The advice remains where the system reuses the memory for small blocks; the memory that the process holds can then be somewhat larger.
+/// The advice remains where the system reuses the memory for small blocks; the memory that the
+/// process holds can then be somewhat larger.
 #[cfg(target_os = "linux")]
 fn advise(start: *mut u8, size: usize) {
     if start.is_null() {
@@ -34,8 +39,8 @@ fn advise(start: *mut u8, size: usize) {
     if skipped >= size {
         return;
     }
-    // SAFETY: the range is inside the allocation, and the advice changes no contents. A kernel without huge pages refuses, which must not
-    // be seen in `errno` of a caller.
+    // SAFETY: the range is inside the allocation, and the advice changes no contents. A kernel
+    // without huge pages refuses, which must not be seen in `errno` of a caller.
     unsafe {
         let error = *libc::__errno_location();
         libc::madvise(

@@ -1,14 +1,19 @@
-//! The computing core of Fretwork: rigid bodies in dry contact, integrated in time by non-smooth contact
-//! dynamics, with interface laws from plugins.
+//! The computing core of Fretwork: rigid bodies in dry contact, integrated in time by non-smooth
+//! contact dynamics, with interface laws from plugins.
 //!
-//! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra, shapes, distances), [`bodies`],
-//! [`contact`] (detection and what each contact remembers), [`solve`] (the contact problem and its solvers), [`laws`] (the
-//! plugin host), [`certify`] (what a law promises, tested), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`] (temperatures and current), [`step`] (the time
-//! step), [`process`] (what acts on a simulation at the named moments of a step), and [`view`] (a simulation without its dimension). State goes to bytes and back by [`code`].
+//! Modules in the order in which they build on each other: [`geometry`] (dimension, algebra,
+//! shapes, distances), [`bodies`], [`contact`] (detection and what each contact remembers),
+//! [`solve`] (the contact problem and its solvers), [`laws`] (the plugin host), [`certify`] (what a
+//! law promises, tested), [`wear`], [`energy`] and [`momentum`] (the ledgers of a step), [`heat`]
+//! (temperatures and current), [`step`] (the time step), [`process`] (what acts on a simulation at
+//! the named moments of a step), and [`view`] (a simulation without its dimension). State goes to
+//! bytes and back by [`code`].
 //!
-//! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the [`Options`](step::Options) of the
-//! computation, which no step changes, and its [`State`](step::State), which a checkpoint holds whole. It steps; its [`contacts`](step::Simulation::contacts),
-//! [`positions`](step::Simulation::positions) and [`energies`](step::Simulation::energies) are read between steps:
+//! A [`Simulation`](step::Simulation) holds what a case gives (shapes, laws, phases), the
+//! [`Options`](step::Options) of the computation, which no step changes, and its
+//! [`State`](step::State), which a checkpoint holds whole. It steps; its
+//! [`contacts`](step::Simulation::contacts), [`positions`](step::Simulation::positions) and
+//! [`energies`](step::Simulation::energies) are read between steps:
 //!
 //! ```
 //! use fretwork_core::bodies::Bodies;
@@ -42,7 +47,8 @@
 //! # Ok::<(), fretwork_core::step::StepError>(())
 //! ```
 //!
-//! Scenes with interface laws are made with less work by the layer above, `fretwork_scene::CaseBuilder`.
+//! Scenes with interface laws are made with less work by the layer above,
+//! `fretwork_scene::CaseBuilder`.
 //!
 //! The core neither parses cases nor writes result files; the layers above it do.
 

@@ -3,18 +3,20 @@
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// Momentum of the free rigid bodies less what gravity and the contacts with other bodies gave them, since the start: zero but for
-/// rounding where the contacts among them act on one place of both bodies (N s and N m s; per metre of depth in 2D).
+/// Momentum of the free rigid bodies less what gravity and the contacts with other bodies gave
+/// them, since the start: zero but for rounding where the contacts among them act on one place of
+/// both bodies (N s and N m s; per metre of depth in 2D).
 ///
-/// Outside are first bodies and dynamical systems. Between steps nothing is booked: what removes, adds, pushes or displaces bodies there
-/// acts from outside.
+/// Outside are first bodies and dynamical systems. Between steps nothing is booked: what removes,
+/// adds, pushes or displaces bodies there acts from outside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Momentum {
     /// Linear momentum, x, y, z (N s).
     pub linear: [f64; 3],
     /// Angular momentum, x, y, z (in 2D z), about [`Self::about`] (N m s).
     pub angular: [f64; 3],
-    /// The mean place of the free bodies at the start (m), none before the first step. In periodic scenes there is no angular momentum.
+    /// The mean place of the free bodies at the start (m), none before the first step. In periodic
+    /// scenes there is no angular momentum.
     pub about: Option<[f64; 3]>,
     /// Largest sums so far of the sizes of the bodies' linear and angular momenta (N s, N m s).
     pub scale: [f64; 2],
@@ -69,7 +71,8 @@ impl Momentum {
         [self.linear, self.angular].map(|v| v[0].hypot(v[1]).hypot(v[2]))
     }
 
-    /// The drift, linear and angular, over the largest sums of the sizes of momenta; zero where nothing moved.
+    /// The drift, linear and angular, over the largest sums of the sizes of momenta; zero where
+    /// nothing moved.
     pub fn relative(&self) -> [f64; 2] {
         let drift = self.drift();
         [0, 1].map(|k| match self.scale[k] > 0.0 {

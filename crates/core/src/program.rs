@@ -1,7 +1,7 @@
 //! The program that this process runs: its file, and how its command line is called again.
 //!
-//! Both are those of the executable, unless a process that loads this code as a library, such as a Python interpreter, declares
-//! others before it uses them.
+//! Both are those of the executable, unless a process that loads this code as a library, such as a
+//! Python interpreter, declares others before it uses them.
 //!
 //! ```standalone_crate
 //! use fretwork_core::program::{self, Program};
@@ -28,7 +28,8 @@ static DECLARED: OnceLock<Program> = OnceLock::new();
 /// A program in place of the executable of the process.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// The file with this code: its SHA-256 identifies the built-in laws, and shipped libraries are looked for beside it.
+    /// The file with this code: its SHA-256 identifies the built-in laws, and shipped libraries are
+    /// looked for beside it.
     pub file: PathBuf,
     /// Program and arguments that start the command line; empty where it cannot be called.
     pub command: Vec<OsString>,

@@ -1,13 +1,16 @@
-//! Division of a loop among the threads of the current pool, where there is enough to do for that to pay.
+//! Division of a loop among the threads of the current pool, where there is enough to do for that
+//! to pay.
 //!
-//! Loops are cut into chunks of a fixed size, whatever the number of threads, and what chunks give is joined in their
-//! order: the results have the same bits on any number of threads, one after the other included.
+//! Loops are cut into chunks of a fixed size, whatever the number of threads, and what chunks give
+//! is joined in their order: the results have the same bits on any number of threads, one after the
+//! other included.
 
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Least work that pays for waking other threads (ns): many times what that takes, since other programs may run on their cores.
+/// Least work that pays for waking other threads (ns): many times what that takes, since other
+/// programs may run on their cores.
 const LEAST_WORK: u64 = 170_000;
 
 /// Least items of a task in [`fill`].
@@ -15,13 +18,15 @@ const LEAST_ITEMS: usize = 256;
 
 static LEAST: AtomicU64 = AtomicU64::new(LEAST_WORK);
 
-/// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured one. Results do not depend on it:
-/// tests set zero, so that small scenes run on several threads too.
+/// Sets the least work (ns) that is divided, for the whole process; `None` restores the measured
+/// one. Results do not depend on it: tests set zero, so that small scenes run on several threads
+/// too.
 pub fn divide_from(nanoseconds: Option<u64>) {
     LEAST.store(nanoseconds.unwrap_or(LEAST_WORK), Ordering::Relaxed);
 }
 
-/// Returns the size of the chunks of a loop whose results do not depend on it: smaller ones where all loops are divided.
+/// Returns the size of the chunks of a loop whose results do not depend on it: smaller ones where
+/// all loops are divided.
 pub fn any_size(size: usize) -> usize {
     match LEAST.load(Ordering::Relaxed) {
         0 => size.div_ceil(16),
@@ -29,7 +34,8 @@ pub fn any_size(size: usize) -> usize {
     }
 }
 
-/// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller allows several threads.
+/// Returns whether to divide a loop of `items`, each of about `each` nanoseconds, if the caller
+/// allows several threads.
 #[inline]
 pub fn pays(parallel: bool, items: usize, each: f64) -> bool {
     parallel
@@ -37,7 +43,8 @@ pub fn pays(parallel: bool, items: usize, each: f64) -> bool {
         && rayon::current_num_threads() > 1
 }
 
-/// Returns what `of` gives for each chunk of `size` items, which it gets with the index of the first; in the order of the chunks.
+/// Returns what `of` gives for each chunk of `size` items, which it gets with the index of the
+/// first; in the order of the chunks.
 pub fn map_chunks<T: Sync, R: Send>(
     divide: bool,
     items: &[T],
@@ -65,8 +72,8 @@ pub fn map_ranges<R: Send>(
     }
 }
 
-/// Returns what `of` gives for each chunk of `size` items, which it may change and gets with the index of the first; in the order of
-/// the chunks.
+/// Returns what `of` gives for each chunk of `size` items, which it may change and gets with the
+/// index of the first; in the order of the chunks.
 pub fn map_chunks_mut<T: Send, R: Send>(
     divide: bool,
     items: &mut [T],
@@ -82,8 +89,8 @@ pub fn map_chunks_mut<T: Send, R: Send>(
     }
 }
 
-/// Returns what `of` gives for each pair of chunks of `size` items of two lists of the same length, which it may change and
-/// gets with the index of the first; in the order of the chunks.
+/// Returns what `of` gives for each pair of chunks of `size` items of two lists of the same length,
+/// which it may change and gets with the index of the first; in the order of the chunks.
 pub fn map_chunks_of_two<A: Send, B: Send, R: Send>(
     divide: bool,
     size: usize,
@@ -143,8 +150,9 @@ impl<T> Spread<T> {
         unsafe { self.0.add(place as usize).write(item) }
     }
 
-    /// Writes what `of` gives for each index to its place. A function of its own, so that `of` is called from one place, where it is inlined and makes
-    /// its items in the list: large ones would be copied.
+    /// Writes what `of` gives for each index to its place. A function of its own, so that `of` is
+    /// called from one place, where it is inlined and makes its items in the list: large ones would
+    /// be copied.
     ///
     /// # Safety
     /// The places are in the allocation, and nobody else uses them.
@@ -157,8 +165,8 @@ impl<T> Spread<T> {
     }
 }
 
-/// Empties a list that will have `count` items: with room for some more, but not for twice as many as lists that grow by
-/// doubling have.
+/// Empties a list that will have `count` items: with room for some more, but not for twice as many
+/// as lists that grow by doubling have.
 fn empty<T>(list: &mut Vec<T>, count: usize) {
     list.clear();
     let capacity = list.capacity();
@@ -169,8 +177,8 @@ fn empty<T>(list: &mut Vec<T>, count: usize) {
     }
 }
 
-/// Replaces the items of a list: that with index `places[k]` is what `of` gives for k. Items are made in the order of k, so that what
-/// they are made of is read in order.
+/// Replaces the items of a list: that with index `places[k]` is what `of` gives for k. Items are
+/// made in the order of k, so that what they are made of is read in order.
 ///
 /// # Safety
 /// `places` has each index below its length once.
@@ -195,8 +203,9 @@ pub unsafe fn fill_places<T: Send>(
     unsafe { list.set_len(count) };
 }
 
-/// Returns what `of` gives for each index below `count`, in their order. `of` gets memory that `memory` made for its part of the indices: about as
-/// many as there are threads; results must not depend on its contents.
+/// Returns what `of` gives for each index below `count`, in their order. `of` gets memory that
+/// `memory` made for its part of the indices: about as many as there are threads; results must not
+/// depend on its contents.
 pub fn map_with_memory<M, R: Send>(
     divide: bool,
     count: usize,
@@ -229,8 +238,8 @@ pub fn map_tasks<T: Send, R: Send>(
 /// Items of a partial sum.
 const SUM: usize = 1024;
 
-/// Returns the sum of what `of` gives for each index below `count`, which takes about `each` nanoseconds: partial sums of a fixed number of
-/// items, added in their order.
+/// Returns the sum of what `of` gives for each index below `count`, which takes about `each`
+/// nanoseconds: partial sums of a fixed number of items, added in their order.
 pub fn sum(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
     let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {
         items.map(&of).sum::<f64>()
@@ -255,7 +264,8 @@ pub fn any(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> bool +
     parts.contains(&true)
 }
 
-/// Returns the largest of what `of` gives for each index below `count`, which takes about `each` nanoseconds; 0 if none is larger, NaN if one is.
+/// Returns the largest of what `of` gives for each index below `count`, which takes about `each`
+/// nanoseconds; 0 if none is larger, NaN if one is.
 pub fn largest(parallel: bool, count: usize, each: f64, of: impl Fn(usize) -> f64 + Sync) -> f64 {
     let larger = |far: f64, x: f64| if x <= far || far.is_nan() { far } else { x };
     let parts = map_ranges(pays(parallel, count, each), count, SUM, |items| {

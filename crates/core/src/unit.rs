@@ -1,5 +1,5 @@
-//! Units of quantities. In a plane scene extensive quantities are per metre of depth; here alone a unit
-//! depends on the dimension.
+//! Units of quantities. In a plane scene extensive quantities are per metre of depth; here alone a
+//! unit depends on the dimension.
 
 /// The SI unit of a quantity, in space and in the plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

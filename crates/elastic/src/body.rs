@@ -1,15 +1,17 @@
-//! A body of finite elements, as a dynamical system. In small strain its inertia, stiffness and damping are constant, so that
+//! A body of finite elements, as a dynamical system. In small strain its inertia, stiffness and
+//! damping are constant, so that
 //!
 //! ```text
 //! A = M + h theta C + h^2 theta^2 K
 //! ```
 //!
-//! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its corners. Contacts act on the points
-//! of a part of the boundary; columns of the compliance of these, P A^-1 P^T, are found once too, as points are touched. In large
-//! strain K is a tangent, and A is formed anew in each iteration of Newton's method, see [`crate::large_strain`].
+//! is factorised once for each h and theta. M is lumped: a (D + 1)-th of each element at its
+//! corners. Contacts act on the points of a part of the boundary; columns of the compliance of
+//! these, P A^-1 P^T, are found once too, as points are touched. In large strain K is a tangent,
+//! and A is formed anew in each iteration of Newton's method, see [`crate::large_strain`].
 //!
-//! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The non-smooth contact dynamics
-//! method", Comput. Methods Appl. Mech. Eng. 177 (1999).
+//! Sources: T. J. R. Hughes, "The Finite Element Method" (2000), chapters 2, 3 and 7; M. Jean, "The
+//! non-smooth contact dynamics method", Comput. Methods Appl. Mech. Eng. 177 (1999).
 
 mod conduction;
 mod expansion;
@@ -271,7 +273,8 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
                 end[c] = speeds.end;
             }
         }
-        // With imposed coordinates at their final velocity, what the others lack is A^-1 of the rest of the forces.
+        // With imposed coordinates at their final velocity, what the others lack is A^-1 of the
+        // rest of the forces.
         let pairs = v.iter().zip(&end);
         let average: Vec<f64> = pairs.map(|(v, w)| v + theta * (w - v)).collect();
         let at: Vec<f64> = q

@@ -1,4 +1,5 @@
-//! The bodies, compiled once for each dimension, so that dependent crates do not compile them again.
+//! The bodies, compiled once for each dimension, so that dependent crates do not compile them
+//! again.
 
 use crate::body::ElasticBody;
 use crate::error::BodyError;
@@ -13,8 +14,8 @@ use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 
 /// A dimension for which this crate compiles its bodies.
 pub trait Deformable: Space {
-    /// The surface of vertices (m) and, in space, of triangles between them; in the plane with a period along x (m), of which the last vertex is
-    /// the image of the first.
+    /// The surface of vertices (m) and, in space, of triangles between them; in the plane with a
+    /// period along x (m), of which the last vertex is the image of the first.
     ///
     /// # Errors
     /// Why they form no surface.
@@ -24,7 +25,8 @@ pub trait Deformable: Space {
         period: Option<f64>,
     ) -> Result<Box<dyn Surface<Self>>, String>;
 
-    /// The surface around a solid, of vertices (m), in the plane clockwise, and triangles between them.
+    /// The surface around a solid, of vertices (m), in the plane clockwise, and triangles between
+    /// them.
     ///
     /// # Errors
     /// Why they form no surface.

@@ -1,15 +1,18 @@
-//! Linear elasticity in a frame that turns with the element: F = R U, with the rotation R and the stretch U, and
+//! Linear elasticity in a frame that turns with the element: F = R U, with the rotation R and the
+//! stretch U, and
 //!
 //! ```text
 //! W = mu |U - 1|^2 + lambda/2 (tr(U - 1))^2
 //! ```
 //!
-//! On simplices of constant strain its forces are those of the stiffness in the turned frame, R K (R^T x - X), and its tangent,
-//! taken from W, has all that R K R^T leaves out. U comes from the eigenvalues of C = U^2, so that no rotation is computed.
+//! On simplices of constant strain its forces are those of the stiffness in the turned frame, R K
+//! (R^T x - X), and its tangent, taken from W, has all that R K R^T leaves out. U comes from the
+//! eigenvalues of C = U^2, so that no rotation is computed.
 //!
-//! Sources: C. A. Felippa and B. Haugen, "A unified formulation of small-strain corotational finite elements: I. Theory", Comput.
-//! Methods Appl. Mech. Eng. 194 (2005); I. Chao, U. Pinkall, P. Sanan and P. Schröder, "A simple geometric model for elastic
-//! deformations", ACM Trans. Graph. 29 (2010).
+//! Sources: C. A. Felippa and B. Haugen, "A unified formulation of small-strain corotational finite
+//! elements: I. Theory", Comput. Methods Appl. Mech. Eng. 194 (2005); I. Chao, U. Pinkall, P. Sanan
+//! and P. Schröder, "A simple geometric model for elastic deformations", ACM Trans. Graph. 29
+//! (2010).
 
 use crate::material::Elasticity;
 use nalgebra::{Matrix3, Vector3};

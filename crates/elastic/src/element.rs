@@ -112,7 +112,8 @@ mod tests {
         assert!((simplex.volume / volume - 1.0).abs() < 1e-14);
     }
 
-    /// Neither a translation nor a small rotation stresses an element, and a uniform strain has Hooke's stress.
+    /// Neither a translation nor a small rotation stresses an element, and a uniform strain has
+    /// Hooke's stress.
     #[test]
     fn stresses_are_hookes() {
         let corners = tetrahedron();

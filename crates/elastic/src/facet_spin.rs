@@ -1,16 +1,19 @@
-//! How the facets of a surface that touches turn, by the velocities of their corners, and the forces on these that a moment on a facet is.
+//! How the facets of a surface that touches turn, by the velocities of their corners, and the
+//! forces on these that a moment on a facet is.
 //!
-//! With the gradients g_a of the shape functions of a facet along it and its normal n, the curl of the velocity over the facet is
-//! c = sum_a g_a x v_a, and the facet turns with
+//! With the gradients g_a of the shape functions of a facet along it and its normal n, the curl of
+//! the velocity over the facet is c = sum_a g_a x v_a, and the facet turns with
 //!
 //! ```text
 //! w = c - n (n . c)/2        in the plane w = c
 //! ```
 //!
-//! about axes along it with its normal, about its normal by half of the curl, that is by the skew part of the gradient. Forces
-//! f_a = (m - n (n . m)/2) x g_a are the dual of it: their sum is zero, their moment is m, and their power m . w.
+//! about axes along it with its normal, about its normal by half of the curl, that is by the skew
+//! part of the gradient. Forces f_a = (m - n (n . m)/2) x g_a are the dual of it: their sum is
+//! zero, their moment is m, and their power m . w.
 //!
-//! Source: L. E. Malvern, "Introduction to the Mechanics of a Continuous Medium" (1969), section 4.5, of the vorticity.
+//! Source: L. E. Malvern, "Introduction to the Mechanics of a Continuous Medium" (1969), section
+//! 4.5, of the vorticity.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 
@@ -25,7 +28,8 @@ struct Corner<S: Space> {
     normal: S::Vector,
 }
 
-/// How a place of a surface turns: as its facet, or, at a point, as the mean of the facets at it by length or area.
+/// How a place of a surface turns: as its facet, or, at a point, as the mean of the facets at it by
+/// length or area.
 #[derive(Clone, Debug)]
 pub struct FacetSpin<S: Space> {
     corners: Vec<Corner<S>>,
@@ -34,7 +38,8 @@ pub struct FacetSpin<S: Space> {
 }
 
 impl<S: Space> FacetSpin<S> {
-    /// Of facets by the points of the mesh at their D corners. `position` gives the current place of a point (m).
+    /// Of facets by the points of the mesh at their D corners. `position` gives the current place
+    /// of a point (m).
     pub fn new(facets: &[[u32; 3]], position: impl Fn(u32) -> S::Vector) -> Self {
         let mut corners = Vec::with_capacity(S::D * facets.len());
         let mut total = 0.0;
@@ -89,7 +94,8 @@ impl<S: Space> FacetSpin<S> {
         out
     }
 
-    /// The forces on points of the mesh that a moment (N m) is, a point of several facets several times (N).
+    /// The forces on points of the mesh that a moment (N m) is, a point of several facets several
+    /// times (N).
     pub fn forces(&self, moment: S::Spin) -> impl Iterator<Item = (u32, S::Vector)> {
         self.corners.iter().map(move |corner| {
             let moment = halved::<S>(&corner.normal, &moment);
@@ -104,7 +110,8 @@ fn halved<S: Space>(normal: &S::Vector, spin: &S::Spin) -> S::Spin {
     *spin - S::spin_about(normal, 0.5 * twist)
 }
 
-/// Gradients of the shape functions of a facet along it (1/m), its normal (zero in the plane), and its length (m) or area (m^2).
+/// Gradients of the shape functions of a facet along it (1/m), its normal (zero in the plane), and
+/// its length (m) or area (m^2).
 fn gradients<S: Space>(at: &[S::Vector; 3]) -> ([S::Vector; 3], S::Vector, f64) {
     let [a, b, c] = *at;
     let (u, v) = (b - a, c - a);
@@ -136,7 +143,8 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector1, Vector2, Vector3};
 
-    /// A rotation as a whole is found from any facets, and no translation or stretch is taken for one.
+    /// A rotation as a whole is found from any facets, and no translation or stretch is taken for
+    /// one.
     #[test]
     fn a_rotation_is_found() {
         let at = [
@@ -178,7 +186,8 @@ mod tests {
         assert!((facet.length - 1.0).abs() < 1e-15);
     }
 
-    /// A moment is forces without a sum, whose moment it is about any place, and whose power is that of the moment at any velocities.
+    /// A moment is forces without a sum, whose moment it is about any place, and whose power is
+    /// that of the moment at any velocities.
     #[test]
     fn a_moment_is_a_couple_of_forces() {
         let at = [

@@ -1,4 +1,5 @@
-//! Degrees of freedom of a mesh with supports: which displacement of which point is which generalised coordinate.
+//! Degrees of freedom of a mesh with supports: which displacement of which point is which
+//! generalised coordinate.
 
 use crate::error::BodyError;
 use crate::mesh::Mesh;
@@ -40,8 +41,8 @@ impl<S: Space> Freedoms<S> {
     /// Numbers the coordinates of a mesh.
     ///
     /// # Errors
-    /// A part that the mesh has not, a point in two parts that are driven differently along an axis, or a drive that imposes
-    /// motion at one time and a force at another.
+    /// A part that the mesh has not, a point in two parts that are driven differently along an
+    /// axis, or a drive that imposes motion at one time and a force at another.
     pub fn new(mesh: &Mesh<S>, supports: &[Support]) -> Result<Self, BodyError> {
         let d = S::D;
         // The holder of each displacement: support and axis.

@@ -14,19 +14,21 @@ use grid::Place;
 pub use grid::{Coarsening, Grid, GridError};
 use std::collections::BTreeMap;
 
-/// Names of the sides of a block, at the low and the high end of each axis. In 2D `bottom` and `top` are those of y, in 3D
-/// those of z.
+/// Names of the sides of a block, at the low and the high end of each axis. In 2D `bottom` and
+/// `top` are those of y, in 3D those of z.
 const SIDES: [&[[&str; 2]]; 2] = [
     &[["left", "right"], ["bottom", "top"]],
     &[["left", "right"], ["front", "back"], ["bottom", "top"]],
 ];
 
-/// A block with the given coordinates of its points along each axis (m), which must rise. Its sides are the parts `left` and
-/// `right` (x), `bottom` and `top` (y in 2D, z in 3D), `front` and `back` (y in 3D).
+/// A block with the given coordinates of its points along each axis (m), which must rise. Its sides
+/// are the parts `left` and `right` (x), `bottom` and `top` (y in 2D, z in 3D), `front` and `back`
+/// (y in 3D).
 ///
-/// In 2D each cell is cut in four by its centre, so that all points of a side are alike. In 3D it is cut along the paths from one
-/// corner to the opposite one (Kuhn's simplices), mirrored from cell to cell so that no direction of the cuts is preferred; points
-/// of a side then have more and fewer elements in turn.
+/// In 2D each cell is cut in four by its centre, so that all points of a side are alike. In 3D it
+/// is cut along the paths from one corner to the opposite one (Kuhn's simplices), mirrored from
+/// cell to cell so that no direction of the cuts is preferred; points of a side then have more and
+/// fewer elements in turn.
 ///
 /// # Errors
 /// Fewer than two coordinates along an axis, or some that do not rise: elements without volume.
@@ -37,7 +39,8 @@ pub fn block<S: Space>(coordinates: &[Vec<f64>]) -> Result<Mesh<S>, MeshError> {
 /// A [`block`] whose points are moved before its cells are cut.
 ///
 /// # Errors
-/// Fewer than two coordinates along an axis, coordinates that do not rise, or points or elements that the map makes invalid.
+/// Fewer than two coordinates along an axis, coordinates that do not rise, or points or elements
+/// that the map makes invalid.
 pub fn mapped_block<S: Space>(
     coordinates: &[Vec<f64>],
     map: impl Fn(&S::Vector) -> S::Vector,
@@ -46,11 +49,11 @@ pub fn mapped_block<S: Space>(
     mapped_grid(&grid, map)
 }
 
-/// The cells of a grid of as many axes as the space, whose points are moved before the cells are cut; its sides are parts as those
-/// of a [`block`].
+/// The cells of a grid of as many axes as the space, whose points are moved before the cells are
+/// cut; its sides are parts as those of a [`block`].
 ///
-/// A cell with a point of a smaller one on its side is cut by its centre, in triangles or, in 3D, in tetrahedra on the triangles of its faces, which its
-/// neighbours share.
+/// A cell with a point of a smaller one on its side is cut by its centre, in triangles or, in 3D,
+/// in tetrahedra on the triangles of its faces, which its neighbours share.
 ///
 /// # Errors
 /// Points or elements that the map makes invalid; a grid of another dimension.
@@ -148,8 +151,8 @@ pub fn even(from: f64, to: f64, cells: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Coordinates from `from` to `to` (m) whose parts have the length `first` at `from` and grow by at most the ratio `growth` from
-/// one to the next. The lengths are scaled to end at `to`.
+/// Coordinates from `from` to `to` (m) whose parts have the length `first` at `from` and grow by at
+/// most the ratio `growth` from one to the next. The lengths are scaled to end at `to`.
 pub fn graded(from: f64, to: f64, first: f64, growth: f64) -> Vec<f64> {
     let (length, mut part) = ((to - from).abs(), first);
     let mut sums = vec![0.0];

@@ -1,24 +1,29 @@
 //! Elements in large strain or rotation: what they do over a step, and their tangent.
 //!
-//! With the gradients F and F+ of the motion at the start and at the end of a step, the forces of the step are those of
+//! With the gradients F and F+ of the motion at the start and at the end of a step, the forces of
+//! the step are those of
 //!
 //! ```text
 //! P = F_theta S(C_theta),   F_theta = (1 - theta) F + theta F+,   C_theta = (1 - theta) F^T F + theta F+^T F+
 //! ```
 //!
-//! on the nodes f_a = V P g_a. The strain is averaged, not the place: a rotation over the step strains nothing, whatever its angle,
-//! where F_theta^T F_theta would shrink by a factor cos^2 of half the angle. At theta = 1/2 the moment of these forces about any point is zero at the middle of the
-//! step, so that angular momentum is kept, and their work is that of S along the change of C.
+//! on the nodes f_a = V P g_a. The strain is averaged, not the place: a rotation over the step
+//! strains nothing, whatever its angle, where F_theta^T F_theta would shrink by a factor cos^2 of
+//! half the angle. At theta = 1/2 the moment of these forces about any point is zero at the middle
+//! of the step, so that angular momentum is kept, and their work is that of S along the change of
+//! C.
 //!
-//! The tangent is that of P with the strain's own derivative taken at F_theta in place of F+, which makes it symmetric:
+//! The tangent is that of P with the strain's own derivative taken at F_theta in place of F+, which
+//! makes it symmetric:
 //!
 //! ```text
 //! K_t = df/dq at theta = 1;   otherwise it is off by about half of (F+ - F), and iterations converge by that factor
 //! ```
 //!
-//! Sources: J. C. Simo and N. Tarnow, "The discrete energy-momentum method", Z. Angew. Math. Phys. 43 (1992); J. Bonet and R. D.
-//! Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd edition (2008), chapters 8 and 9; for tangents that are not
-//! positive J. Teran, E. Sifakis, G. Irving and R. Fedkiw, "Robust quasistatic finite elements and flesh simulation" (2005).
+//! Sources: J. C. Simo and N. Tarnow, "The discrete energy-momentum method", Z. Angew. Math. Phys.
+//! 43 (1992); J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis",
+//! 2nd edition (2008), chapters 8 and 9; for tangents that are not positive J. Teran, E. Sifakis,
+//! G. Irving and R. Fedkiw, "Robust quasistatic finite elements and flesh simulation" (2005).
 
 use crate::element::{CORNERS, Simplex};
 use crate::freedom::Freedoms;
@@ -202,8 +207,8 @@ impl<S: Space> LargeStrain<S> {
         out
     }
 
-    /// The tangent of a step, with that of damping over h theta, in the pattern of the stiffness. With `positive` what is negative of
-    /// each element is left out.
+    /// The tangent of a step, with that of damping over h theta, in the pattern of the stiffness.
+    /// With `positive` what is negative of each element is left out.
     pub fn tangent(&self, step: &Stretch, stiffness: &Sparse, positive: bool) -> Sparse {
         let mut values = vec![0.0; stiffness.values().len()];
         let side = (S::D + 1) * S::D;
@@ -283,7 +288,8 @@ impl<S: Space> LargeStrain<S> {
         response.map_or(0.0, |r| r.energy() * self.simplices[e].volume)
     }
 
-    /// Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain with that along the depth.
+    /// Cauchy stress in each element at coordinates (Pa), F S F^T/J; in plane strain with that
+    /// along the depth.
     pub fn stresses(&self, q: &[f64], free_strain: &[f64]) -> Vec<Symmetric> {
         let one = |e: usize| {
             let h = self.gradient(e, q);

@@ -1,5 +1,5 @@
-//! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large rotation, and in large strain, and
-//! elastic half-spaces; and contact patches in closed form.
+//! Bodies that deform, as dynamical systems of the core: finite elements in small strain, in large
+//! rotation, and in large strain, and elastic half-spaces; and contact patches in closed form.
 
 pub mod body;
 pub mod compiled;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Strain or stress by its components: xx, yy, zz, yz, xz, xy; shear strains are those of the tensor, half of the engineering
-/// ones.
+/// Strain or stress by its components: xx, yy, zz, yz, xz, xy; shear strains are those of the
+/// tensor, half of the engineering ones.
 pub type Symmetric = [f64; 6];
 
 /// A homogeneous isotropic linear elastic material. In two dimensions the strain is plane.
@@ -64,7 +64,8 @@ impl Elasticity {
         0.5 * self.young / (1.0 + self.poisson)
     }
 
-    /// Three times the bulk modulus, 3 lambda + 2 G (Pa): the pressure of a free strain that is held, over that strain.
+    /// Three times the bulk modulus, 3 lambda + 2 G (Pa): the pressure of a free strain that is
+    /// held, over that strain.
     pub fn thermal_modulus(&self) -> f64 {
         3.0 * self.lambda() + 2.0 * self.shear()
     }

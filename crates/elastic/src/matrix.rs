@@ -154,7 +154,8 @@ pub struct Factor {
     values: Vec<f64>,
 }
 
-/// The pattern of a matrix with the order of elimination, for factors of several matrices that share it.
+/// The pattern of a matrix with the order of elimination, for factors of several matrices that
+/// share it.
 #[derive(Clone, Debug, Default)]
 pub struct Pattern {
     /// None without rows.
@@ -165,7 +166,8 @@ pub struct Pattern {
 #[derive(Debug)]
 struct Order {
     symbolic: SymbolicCholesky<u32>,
-    /// How solutions walk a factor whose columns share few rows; none of one that `faer` keeps as dense blocks.
+    /// How solutions walk a factor whose columns share few rows; none of one that `faer` keeps as
+    /// dense blocks.
     panels: Option<Panels>,
 }
 
@@ -246,7 +248,8 @@ pub struct FactorSize {
 }
 
 impl FactorSize {
-    /// Of a matrix, in the order of elimination that [`Pattern::of`] takes; `None` where it has too many entries.
+    /// Of a matrix, in the order of elimination that [`Pattern::of`] takes; `None` where it has too
+    /// many entries.
     pub fn of(a: &Sparse) -> Option<Self> {
         if a.rows() == 0 {
             return Some(Self::default());
@@ -271,7 +274,8 @@ impl FactorSize {
                         factorise += ((c as usize + below) as f64).powi(2);
                     }
                 }
-                // Rows of all blocks, the blocks of all rows, and for each block where it begins and ends.
+                // Rows of all blocks, the blocks of all rows, and for each block where it begins
+                // and ends.
                 let indices = 2 * blocks.row_idx().len() + 6 * blocks.n_supernodes();
                 values * size_of::<f64>() + indices * size_of::<u32>()
             }
@@ -327,7 +331,8 @@ impl Factor {
 mod tests {
     use super::*;
 
-    /// The Laplacian of a grid with several unknowns at each point that are coupled, as those of a mesh, plus a diagonal.
+    /// The Laplacian of a grid with several unknowns at each point that are coupled, as those of a
+    /// mesh, plus a diagonal.
     fn coupled_grid(cells: [usize; 3], unknowns: usize) -> Sparse {
         let [nx, ny, nz] = cells;
         let at = |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;

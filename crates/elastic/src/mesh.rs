@@ -13,8 +13,8 @@ pub struct Mesh<S: Space> {
     points: Vec<S::Vector>,
     /// D + 1 points of each element, of positive volume.
     elements: Vec<u32>,
-    /// D points of each facet of the boundary. In 2D the body is on the left of a facet, in 3D its points are anticlockwise seen
-    /// from outside.
+    /// D points of each facet of the boundary. In 2D the body is on the left of a facet, in 3D its
+    /// points are anticlockwise seen from outside.
     boundary: Vec<u32>,
     /// Facets of the boundary by the name of their part, in increasing order.
     parts: BTreeMap<String, Vec<u32>>,
@@ -67,8 +67,8 @@ pub(crate) fn place<V: VectorLike>(at: &V) -> String {
 }
 
 impl<S: Space> Mesh<S> {
-    /// Of points (m), the D + 1 points of each element one after the other, and named parts of the boundary by the D points of
-    /// each of their facets, in any order.
+    /// Of points (m), the D + 1 points of each element one after the other, and named parts of the
+    /// boundary by the D points of each of their facets, in any order.
     ///
     /// # Errors
     /// The mesh has no elements, or one of the faults that [`MeshError`] lists.
@@ -188,7 +188,8 @@ impl<S: Space> Mesh<S> {
         0.5 * product.max(0.0).sqrt()
     }
 
-    /// Length or area of a part of the boundary that belongs to each point of the mesh: a D-th of its facets there (m; m^2).
+    /// Length or area of a part of the boundary that belongs to each point of the mesh: a D-th of
+    /// its facets there (m; m^2).
     pub fn tributary(&self, part: &str) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for f in self.part(part).unwrap_or_default() {
@@ -269,13 +270,15 @@ fn check_connected<S: Space>(points: &[S::Vector], elements: &[u32]) -> Result<(
 fn boundary<S: Space>(points: &[S::Vector], elements: &[u32]) -> Result<Vec<u32>, MeshError> {
     let corners = S::D + 1;
     let mut count: HashMap<Vec<u32>, u32> = HashMap::new();
-    // The facet opposite to each corner. An element in order has its facets seen from outside after an even permutation.
+    // The facet opposite to each corner. An element in order has its facets seen from outside after
+    // an even permutation.
     let facet = |element: &[u32], opposite: usize| {
         let mut facet: Vec<u32> = (0..corners)
             .filter(|k| *k != opposite)
             .map(|k| element[k])
             .collect();
-        // In 2D the edges are (1, 2), (0, 2), (0, 1): the second is turned. In 3D those opposite to corners 1 and 3 are.
+        // In 2D the edges are (1, 2), (0, 2), (0, 1): the second is turned. In 3D those opposite to
+        // corners 1 and 3 are.
         if (S::D == 2 && opposite == 1) || (S::D == 3 && opposite % 2 == 1) {
             facet.swap(0, 1);
         }

@@ -15,7 +15,8 @@ use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, Nodes, System
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-/// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column has as many numbers, 160 kB.
+/// Most coordinates of a surface whose compliance is kept, as far as they were touched: a column
+/// has as many numbers, 160 kB.
 const MAX_SURFACE: usize = 20_000;
 
 /// What is formed for the length of a step.
@@ -23,9 +24,11 @@ const MAX_SURFACE: usize = 20_000;
 pub struct Formed<S: Space> {
     /// h and theta.
     pub of: [f64; 2],
-    /// None where A is not positive definite in double precision: velocities are then not finite, and the step ends with an error.
+    /// None where A is not positive definite in double precision: velocities are then not finite,
+    /// and the step ends with an error.
     pub factor: Option<Factor>,
-    /// Compliance of the points of the surface, column by column as they are touched; none where there are too many.
+    /// Compliance of the points of the surface, column by column as they are touched; none where
+    /// there are too many.
     pub surface: Option<Arc<Compliance<S>>>,
 }
 
@@ -65,7 +68,8 @@ impl<S: Space> Model<S> {
         out
     }
 
-    /// Displacements less their mean along each axis, which strains nothing and would leave its rounding in K q.
+    /// Displacements less their mean along each axis, which strains nothing and would leave its
+    /// rounding in K q.
     pub fn strained(&self, q: &[f64]) -> Vec<f64> {
         let (mut sum, mut count) = ([0.0; 3], [0.0; 3]);
         for (q, axis) in q.iter().zip(&self.freedoms.axis) {
@@ -149,8 +153,8 @@ impl<S: Space> Model<S> {
         }
     }
 
-    /// The column of the compliance of a surface point, of which the place in the list of the kept compliance is given: of all surface
-    /// points for an impulse on it.
+    /// The column of the compliance of a surface point, of which the place in the list of the kept
+    /// compliance is given: of all surface points for an impulse on it.
     pub fn column<'a>(&self, formed: &'a Formed<S>, at: usize) -> &'a [f64] {
         let Some(surface) = &formed.surface else {
             return &[];

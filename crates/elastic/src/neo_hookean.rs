@@ -4,8 +4,8 @@
 //! W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2,   S = mu (1 - C^-1) + lambda ln J C^-1
 //! ```
 //!
-//! with I1 = tr C and J = det F. Source: J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", 2nd
-//! edition (2008), section 6.4.3.
+//! with I1 = tr C and J = det F. Source: J. Bonet and R. D. Wood, "Nonlinear Continuum Mechanics
+//! for Finite Element Analysis", 2nd edition (2008), section 6.4.3.
 
 use crate::material::Elasticity;
 use nalgebra::Matrix3;
@@ -43,7 +43,8 @@ impl NeoHookean {
 
     /// W (Pa).
     pub fn energy(&self) -> f64 {
-        // (I1 - 3)/2 - ln J = (J^2 - 1 - ln J^2)/2 less what of J^2 - 1 is not linear in C: no difference of large numbers.
+        // (I1 - 3)/2 - ln J = (J^2 - 1 - ln J^2)/2 less what of J^2 - 1 is not linear in C: no
+        // difference of large numbers.
         let g = &self.c_less_one;
         let shape = 0.5 * (less_log(self.swelling) - second(g) - g.determinant());
         self.shear * shape + 0.5 * self.lambda * self.log * self.log

@@ -1,16 +1,18 @@
 //! Newton's method for a body in large strain or rotation, around the contact problem of a step.
 //!
-//! At velocities v_k the step has the internal forces f_k and the matrix A_k = M + h theta C + h^2 theta^2 K_t, and its contacts are
-//! solved with
+//! At velocities v_k the step has the internal forces f_k and the matrix A_k = M + h theta C + h^2
+//! theta^2 K_t, and its contacts are solved with
 //!
 //! ```text
 //! v_free = v_k - A_k^-1 (M (v_k - v) - h (F - C v_theta - f_k)),   v_k+1 = v_free + A_k^-1 P^T p
 //! ```
 //!
-//! until M (v_k+1 - v) = h (F - C v_theta - f_k+1) + P^T p. Contacts obey their laws in each iteration, with its compliance.
+//! until M (v_k+1 - v) = h (F - C v_theta - f_k+1) + P^T p. Contacts obey their laws in each
+//! iteration, with its compliance.
 //!
-//! An iterate in which an element would turn inside out is drawn back towards the one before. Where A_k is not positive definite, what
-//! is negative of the tangent of each element is left out; that slows the iterations, and changes nothing of what they lead to.
+//! An iterate in which an element would turn inside out is drawn back towards the one before. Where
+//! A_k is not positive definite, what is negative of the tangent of each element is left out; that
+//! slows the iterations, and changes nothing of what they lead to.
 //!
 //! Source: P. Wriggers, "Computational Contact Mechanics", 2nd edition (2006), chapters 2 and 10.
 
@@ -80,7 +82,8 @@ impl<S: Deformable> ElasticBody<S> {
         })
     }
 
-    /// Internal forces of a step at the velocities that the body has, with their mean: of elasticity, and of damping.
+    /// Internal forces of a step at the velocities that the body has, with their mean: of
+    /// elasticity, and of damping.
     pub(crate) fn internal_of_step(
         &self,
         large: &LargeStrain<S>,
@@ -101,7 +104,8 @@ impl<S: Deformable> ElasticBody<S> {
         large.inverted(&self.model.mesh, &self.end_of(step, velocity))
     }
 
-    /// Linearises a step for the first time: at the velocities of its start, or as near to them as no element is inverted.
+    /// Linearises a step for the first time: at the velocities of its start, or as near to them as
+    /// no element is inverted.
     pub(crate) fn begin_iterations(&mut self, step: &SystemStep<S>) {
         self.iterate.count = 0;
         self.iterate.imbalance = f64::INFINITY;
@@ -114,7 +118,8 @@ impl<S: Deformable> ElasticBody<S> {
         self.linearise_at(step, velocity, None);
     }
 
-    /// The wanted velocities, or others between them and those of `from` at which no element is inverted.
+    /// The wanted velocities, or others between them and those of `from` at which no element is
+    /// inverted.
     fn drawn_back(
         &self,
         step: &SystemStep<S>,
@@ -168,8 +173,8 @@ impl<S: Deformable> ElasticBody<S> {
         self.iterate.count += 1;
     }
 
-    /// What velocities lack of balance without contacts (N s; N s/m in 2D), on coordinates that move freely:
-    /// M (v_k - v) - h (F - C v_theta - f).
+    /// What velocities lack of balance without contacts (N s; N s/m in 2D), on coordinates that
+    /// move freely: M (v_k - v) - h (F - C v_theta - f).
     fn imbalance(&self, step: &SystemStep<S>, velocity: &[f64], forces: &Forces) -> Vec<f64> {
         let model = &self.model;
         let SystemStep { h, theta, .. } = *step;
@@ -195,7 +200,8 @@ impl<S: Deformable> ElasticBody<S> {
         let SystemStep { time, h, theta, .. } = *step;
         let mut impulse = self.imbalance(step, &at.velocity, &at.forces);
         let mut end = at.velocity.clone();
-        // Imposed coordinates go to their final velocity, and the tangent says what that does to the others.
+        // Imposed coordinates go to their final velocity, and the tangent says what that does to
+        // the others.
         let mut change = vec![0.0; end.len()];
         for (c, drive) in model.freedoms.imposed(&self.drives) {
             let drive = drive.over(time, h);
@@ -218,8 +224,8 @@ impl<S: Deformable> ElasticBody<S> {
         end
     }
 
-    /// Compares the forces of the step with the velocities that were reached, and linearises at these where they do not balance;
-    /// false where they do.
+    /// Compares the forces of the step with the velocities that were reached, and linearises at
+    /// these where they do not balance; false where they do.
     ///
     /// # Errors
     /// They come to no balance, or an element turns inside out.

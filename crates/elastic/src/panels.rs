@@ -1,8 +1,10 @@
-//! Solutions with a sparse Cholesky factor L by panels: up to four columns of L whose rows below their diagonal are the same, as those of the
-//! coordinates of a point. A row of a panel is read at once, with one index for its entries; walked column by column the same factor
-//! takes twice the time, and a step of a body of finite elements has two solutions.
+//! Solutions with a sparse Cholesky factor L by panels: up to four columns of L whose rows below
+//! their diagonal are the same, as those of the coordinates of a point. A row of a panel is read at
+//! once, with one index for its entries; walked column by column the same factor takes twice the
+//! time, and a step of a body of finite elements has two solutions.
 //!
-//! Source: T. A. Davis, "Direct Methods for Sparse Linear Systems" (2006), sections 3.2 and 4.8 (supernodes).
+//! Source: T. A. Davis, "Direct Methods for Sparse Linear Systems" (2006), sections 3.2 and 4.8
+//! (supernodes).
 
 use std::ops::Range;
 
@@ -15,7 +17,8 @@ pub struct Panels {
     panels: Vec<Panel>,
     /// Rows below the diagonal blocks, panel by panel.
     rows: Vec<u32>,
-    /// Number of values: of each panel the triangle of its diagonal block row by row, then its other rows.
+    /// Number of values: of each panel the triangle of its diagonal block row by row, then its
+    /// other rows.
     values: usize,
 }
 
@@ -30,7 +33,8 @@ struct Panel {
 }
 
 impl Panels {
-    /// Of a factor in compressed columns, of which the first row is that of the diagonal; none where it has too many values.
+    /// Of a factor in compressed columns, of which the first row is that of the diagonal; none
+    /// where it has too many values.
     pub fn new(starts: &[u32], rows: &[u32]) -> Option<Self> {
         u32::try_from(rows.len()).ok()?;
         let n = starts.len() - 1;

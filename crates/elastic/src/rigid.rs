@@ -1,4 +1,5 @@
-//! Motions of a body as a rigid one: whether supports leave it free to turn, which small strain cannot follow, and how it starts.
+//! Motions of a body as a rigid one: whether supports leave it free to turn, which small strain
+//! cannot follow, and how it starts.
 
 use crate::element::Simplex;
 use crate::freedom::Freedoms;
@@ -8,9 +9,9 @@ use fretwork_core::bodies::Dof;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::DMatrix;
 
-/// Whether some rigid motion with a rotation meets all supports: u = t + w x X, of which u along a held axis is zero where motion
-/// is imposed and the same at all points of a part elsewhere. (Imposed motion other than zero changes nothing: a part in its
-/// holder does not turn.)
+/// Whether some rigid motion with a rotation meets all supports: u = t + w x X, of which u along a
+/// held axis is zero where motion is imposed and the same at all points of a part elsewhere.
+/// (Imposed motion other than zero changes nothing: a part in its holder does not turn.)
 pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
     let d = S::D;
     let spins = if d == 2 { 1 } else { 3 };
@@ -68,8 +69,9 @@ pub fn turns<S: Space>(mesh: &Mesh<S>, supports: &[Support]) -> bool {
     })
 }
 
-/// Velocities of all coordinates of a body that moves as a rigid one, with a velocity of its centre of mass (m/s) and an angular
-/// velocity about it (rad/s). Parts that move as one do not turn, and imposed coordinates are at rest.
+/// Velocities of all coordinates of a body that moves as a rigid one, with a velocity of its centre
+/// of mass (m/s) and an angular velocity about it (rad/s). Parts that move as one do not turn, and
+/// imposed coordinates are at rest.
 pub fn velocities<S: Space>(
     mesh: &Mesh<S>,
     freedoms: &Freedoms<S>,

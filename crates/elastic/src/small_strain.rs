@@ -1,5 +1,6 @@
-//! How small the strain of a body in small strain is: its elements take e = (H + H^T)/2 of the gradient H of the displacement for the strain
-//! e + H^T H/2, and the place without load for where forces act.
+//! How small the strain of a body in small strain is: its elements take e = (H + H^T)/2 of the
+//! gradient H of the displacement for the strain e + H^T H/2, and the place without load for where
+//! forces act.
 
 use crate::element::Simplex;
 use crate::mesh::Mesh;

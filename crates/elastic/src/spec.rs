@@ -6,7 +6,8 @@ use crate::strain::Strain;
 use crate::support::{Rayleigh, Support};
 use fretwork_core::geometry::space::Space;
 
-/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one with the finer mesh.
+/// What of a body touches. Where two surfaces meet one of them must touch by its points: the one
+/// with the finer mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Touching<'a> {
     /// Nothing.
@@ -14,7 +15,8 @@ pub enum Touching<'a> {
     Nothing,
     /// The points of a part of the boundary, by its name: they touch balls, pieces and surfaces.
     Points(&'a str),
-    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of pieces.
+    /// A part of the boundary as a surface: it touches grains, points, and corners and edges of
+    /// pieces.
     Surface(&'a str),
 }
 
@@ -39,6 +41,7 @@ pub struct BodySpec<'a, S: Space> {
     pub surface_material: u16,
     /// Its velocity at the start (m/s), of all that is not held.
     pub velocity: S::Vector,
-    /// Its angular velocity at the start about its centre of mass (rad/s); none in small strain, and of parts that move as one.
+    /// Its angular velocity at the start about its centre of mass (rad/s); none in small strain,
+    /// and of parts that move as one.
     pub spin: S::Spin,
 }

@@ -1,7 +1,8 @@
 //! How the strain of a body is measured, and what stress and energy an element has by it.
 //!
-//! For large strain both are functions of C = F^T F alone, with F the gradient of the motion, so that a rotation leaves no stress at
-//! all. C is kept as C - 1, of which small strains do not vanish in the rounding of 1.
+//! For large strain both are functions of C = F^T F alone, with F the gradient of the motion, so
+//! that a rotation leaves no stress at all. C is kept as C - 1, of which small strains do not
+//! vanish in the rounding of 1.
 
 use crate::corotational::Corotational;
 use crate::material::Elasticity;
@@ -12,12 +13,14 @@ use serde::{Deserialize, Serialize};
 /// How the strain of a body is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Strain {
-    /// The symmetric part of the gradient of the displacement: linear elasticity, for strains and rotations that are small.
+    /// The symmetric part of the gradient of the displacement: linear elasticity, for strains and
+    /// rotations that are small.
     #[default]
     Small,
     /// Linear elasticity in a frame that turns with each element: any rotation, small strain.
     Corotational,
-    /// The compressible neo-Hookean material W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2: any rotation, large strain.
+    /// The compressible neo-Hookean material W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2: any
+    /// rotation, large strain.
     NeoHookean,
 }
 
@@ -30,8 +33,9 @@ impl Strain {
 
 /// An element at a strain C - 1: its energy, stress and tangent.
 ///
-/// Where it expands freely by lambda = 1 + e its energy is lambda^3 W(C/lambda^2), that of F/lambda per volume before the expansion (M. E. Gurtin, E. Fried, L.
-/// Anand, "The Mechanics and Thermodynamics of Continua" (2010), section 60).
+/// Where it expands freely by lambda = 1 + e its energy is lambda^3 W(C/lambda^2), that of F/lambda
+/// per volume before the expansion (M. E. Gurtin, E. Fried, L. Anand, "The Mechanics and
+/// Thermodynamics of Continua" (2010), section 60).
 #[derive(Clone, Copy, Debug)]
 pub struct Response {
     kind: Kind,
@@ -112,7 +116,8 @@ mod tests {
         h + h.transpose() + h.transpose() * h
     }
 
-    /// S = 2 dW/dC and its change, by central differences; small strains of any size have Hooke's stress and energy.
+    /// S = 2 dW/dC and its change, by central differences; small strains of any size have Hooke's
+    /// stress and energy.
     #[test]
     fn stress_and_tangent_are_derivatives_of_the_energy() {
         for strain in [Strain::Corotational, Strain::NeoHookean] {
@@ -153,7 +158,8 @@ mod tests {
         }
     }
 
-    /// A body that does not move while it would expand by lambda: by hand from (1 + e)^3 W(F/(1 + e)) at F = 1.
+    /// A body that does not move while it would expand by lambda: by hand from (1 + e)^3 W(F/(1 +
+    /// e)) at F = 1.
     #[test]
     fn what_is_held_has_the_stress_of_its_free_strain() {
         let (l, g) = (RUBBER.lambda(), RUBBER.shear());

@@ -3,15 +3,17 @@
 use fretwork_core::bodies::Dof;
 use serde::{Deserialize, Serialize};
 
-/// A part of the boundary in a holder that does not turn: along each axis all its points move as one, free, fixed, at an imposed
-/// velocity or displacement, or under a force. Axes that are `None` are left to the points.
+/// A part of the boundary in a holder that does not turn: along each axis all its points move as
+/// one, free, fixed, at an imposed velocity or displacement, or under a force. Axes that are `None`
+/// are left to the points.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// Name of the part in the mesh.
     pub part: String,
     /// The drive along each axis; a force (N; N/m in 2D) is that on the whole part.
     pub axes: Vec<Option<Dof>>,
-    /// Drives that take over during the run ([`ElasticBody`](crate::ElasticBody) is told when): index of the phase, axis, drive. Parts with a common corner must have the same.
+    /// Drives that take over during the run ([`ElasticBody`](crate::ElasticBody) is told when):
+    /// index of the phase, axis, drive. Parts with a common corner must have the same.
     pub later: Vec<(usize, usize, Dof)>,
 }
 
@@ -27,7 +29,8 @@ impl Support {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rayleigh {
-    /// Factor alpha of the mass (1/s): a mode of angular frequency w is damped by alpha/(2 w) of its critical damping.
+    /// Factor alpha of the mass (1/s): a mode of angular frequency w is damped by alpha/(2 w) of
+    /// its critical damping.
     #[serde(default)]
     pub mass: f64,
     /// Factor beta of the stiffness (s): beta w/2 of the critical damping.

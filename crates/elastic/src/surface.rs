@@ -1,5 +1,5 @@
-//! A part of the boundary that touches as a surface: its vertices follow the points of the mesh, and an impulse anywhere on it goes
-//! to the points of the facet there, by its shape functions.
+//! A part of the boundary that touches as a surface: its vertices follow the points of the mesh,
+//! and an impulse anywhere on it goes to the points of the facet there, by its shape functions.
 
 use crate::error::BodyError;
 use crate::mesh::{Mesh, place};
@@ -7,7 +7,8 @@ use fretwork_core::bodies::Nodes;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Share of a facet within which a place is on an edge or at a vertex of it, where rounding decides which facet is nearest.
+/// Share of a facet within which a place is on an edge or at a vertex of it, where rounding decides
+/// which facet is nearest.
 const AT_BORDER: f64 = 1e-9;
 
 /// What of a surface is nearest to a place.
@@ -24,15 +25,18 @@ pub enum NearestPart {
 /// Points and facets of a part of the boundary.
 #[derive(Clone, Debug)]
 pub struct SurfacePart {
-    /// Points of the mesh, in the order of the vertices of the surface: along the chain in 2D, with the body on its right.
+    /// Points of the mesh, in the order of the vertices of the surface: along the chain in 2D, with
+    /// the body on its right.
     pub points: Vec<u32>,
-    /// The D vertices of each facet, by their place in `points`; outside is where they are anticlockwise (3D).
+    /// The D vertices of each facet, by their place in `points`; outside is where they are
+    /// anticlockwise (3D).
     pub facets: Vec<[u32; 3]>,
     /// By point the facets at it, and its place among the corners of each.
     about: Vec<Vec<(u32, u8)>>,
     /// Place in `points` of each point of the mesh on it.
     places: HashMap<u32, u32>,
-    /// Whether the vertices of a chain follow each other along its direction, so that a place on it is found by bisection.
+    /// Whether the vertices of a chain follow each other along its direction, so that a place on it
+    /// is found by bisection.
     single_valued: bool,
     dimension: usize,
 }
@@ -106,7 +110,8 @@ impl SurfacePart {
         self.points[self.points.len() / 2]
     }
 
-    /// The facets at a point, by its place in `points`: the points of each, and which of them it is. Of a chain the third point stands for nothing.
+    /// The facets at a point, by its place in `points`: the points of each, and which of them it
+    /// is. Of a chain the third point stands for nothing.
     pub fn facets_at(&self, k: usize) -> impl Iterator<Item = ([u32; 3], usize)> + '_ {
         let facets = self.about.get(k).into_iter().flatten();
         facets.map(|(facet, place)| {
@@ -121,8 +126,8 @@ impl SurfacePart {
         Nodes::sum(&terms.collect::<Vec<_>>())
     }
 
-    /// The nodes of a place on the surface, by the shape functions of its facet. `position` gives the current place of a point of the
-    /// mesh (m).
+    /// The nodes of a place on the surface, by the shape functions of its facet. `position` gives
+    /// the current place of a point of the mesh (m).
     pub fn nodes<S: Space>(&self, at: &S::Vector, position: impl Fn(u32) -> S::Vector) -> Nodes {
         let vertex = |k: u32| self.points[k as usize];
         let (facet, weights) = self.nearest::<S>(at, position);
@@ -154,7 +159,8 @@ impl SurfacePart {
         facets.filter(move |f| self.facets[*f].contains(&to))
     }
 
-    /// What of the surface is nearest to a place. `position` gives the current place of a point of the mesh (m).
+    /// What of the surface is nearest to a place. `position` gives the current place of a point of
+    /// the mesh (m).
     pub fn nearest_part<S: Space>(
         &self,
         at: &S::Vector,
@@ -174,8 +180,9 @@ impl SurfacePart {
         }
     }
 
-    /// The facet that is nearest to a place, the first of equally near ones, with the weights of its corners at the nearest point.
-    /// `position` gives the current place of a point of the mesh (m).
+    /// The facet that is nearest to a place, the first of equally near ones, with the weights of
+    /// its corners at the nearest point. `position` gives the current place of a point of the mesh
+    /// (m).
     pub fn nearest<S: Space>(
         &self,
         at: &S::Vector,
@@ -195,7 +202,8 @@ impl SurfacePart {
         found.unwrap_or((0, [1.0, 0.0, 0.0]))
     }
 
-    /// Area (m^2; length in the plane, m) that each point stands for: an equal share of each facet at it.
+    /// Area (m^2; length in the plane, m) that each point stands for: an equal share of each facet
+    /// at it.
     pub fn areas<S: Space>(&self, position: impl Fn(u32) -> S::Vector) -> Vec<f64> {
         let mut out = vec![0.0; self.points.len()];
         for facet in &self.facets {
@@ -256,8 +264,8 @@ fn about(facets: &[[u32; 3]], vertices: usize, dimension: usize) -> Vec<Vec<(u32
     out
 }
 
-/// Distance of a place from a facet (m), of which the first D corners count, and the weights of its corners at the nearest point,
-/// clamped to the facet.
+/// Distance of a place from a facet (m), of which the first D corners count, and the weights of its
+/// corners at the nearest point, clamped to the facet.
 pub fn on_facet<S: Space>(at: &S::Vector, corners: &[S::Vector; 3]) -> (f64, [f64; 3]) {
     if S::D > 2 {
         return on_triangle(at, corners);
@@ -268,8 +276,8 @@ pub fn on_facet<S: Space>(at: &S::Vector, corners: &[S::Vector; 3]) -> (f64, [f6
     ((arm - edge * s).norm(), [1.0 - s, s, 0.0])
 }
 
-/// Distance of a place from a triangle (m), and the weights of its corners at the nearest point of its plane, clamped to the
-/// triangle.
+/// Distance of a place from a triangle (m), and the weights of its corners at the nearest point of
+/// its plane, clamped to the triangle.
 fn on_triangle<V: VectorLike>(at: &V, corners: &[V; 3]) -> (f64, [f64; 3]) {
     let [a, b, c] = *corners;
     let (u, v, arm) = (b - a, c - a, *at - a);

@@ -1,4 +1,5 @@
-//! What a body says that its solutions take is what they take. This binary holds this test alone: it counts what is allocated.
+//! What a body says that its solutions take is what they take. This binary holds this test alone:
+//! it counts what is allocated.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 

@@ -19,13 +19,13 @@ crate::described! {
         pub interior_tried: u64 => ONE,
         /// Steps in which it converged.
         pub interior_ended: u64 => ONE,
-        /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the steps in which
-        /// either solver was tried.
+        /// Ratio of unknowns to degrees of freedom of the contacts that carry force; mean over the
+        /// steps in which either solver was tried.
         pub hyperstaticity_mean: f64 => ONE,
         /// Mean number of NLGS iterations before they were tried.
         pub sweeps_before_mean: f64 => ONE,
-        /// Steps in which NLGS converged after Newton would have been tried on other contact sets; on hyperstatic
-        /// sets it is tried later.
+        /// Steps in which NLGS converged after Newton would have been tried on other contact sets;
+        /// on hyperstatic sets it is tried later.
         pub swept_longer: u64 => ONE,
         /// Steps that stayed with NLGS because Newton does not support friction against rotation.
         pub newton_unserved: u64 => ONE,

@@ -4,20 +4,20 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use std::collections::HashSet;
 
-/// A contact counts if its normal force exceeds this fraction of the mean; smaller forces are within the
-/// solver's tolerance.
+/// A contact counts if its normal force exceeds this fraction of the mean; smaller forces are
+/// within the solver's tolerance.
 const FAINT: f64 = 1e-3;
 
 /// Coordination of the free grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Coordination {
-    /// Mean number of contacts that carry force, over all grains; a contact with a wall counts once, and a neighbour of a grain that
-    /// deforms.
+    /// Mean number of contacts that carry force, over all grains; a contact with a wall counts
+    /// once, and a neighbour of a grain that deforms.
     pub mean: f64,
     /// The same for the grains and contacts that remain after removing rattlers.
     pub carried: f64,
-    /// Fraction of rattlers: grains with fewer than two such contacts, which cannot be in equilibrium, and
-    /// those that become so when other rattlers are removed.
+    /// Fraction of rattlers: grains with fewer than two such contacts, which cannot be in
+    /// equilibrium, and those that become so when other rattlers are removed.
     pub rattlers: f64,
 }
 
@@ -26,7 +26,8 @@ pub fn coordination<S: Space>(s: &Simulation<S>) -> Coordination {
     count_pairs(&s.state.bodies.grain_flags(), &bearing(s))
 }
 
-/// Number of contacts of each body that carry force in the last step, with the threshold of [`coordination`].
+/// Number of contacts of each body that carry force in the last step, with the threshold of
+/// [`coordination`].
 pub fn degrees<S: Space>(s: &Simulation<S>) -> Vec<u32> {
     let mut degree = vec![0; s.state.bodies.len()];
     for body in bearing(s).into_iter().flatten() {
@@ -97,7 +98,8 @@ mod tests {
 
     #[test]
     fn rattlers_are_taken_out_one_after_another() {
-        // A triangle of grains on a wall (body 0), a chain of two attached to it, and one single grain.
+        // A triangle of grains on a wall (body 0), a chain of two attached to it, and one single
+        // grain.
         let free = [false, true, true, true, true, true, true];
         let pairs = [[1, 2], [2, 3], [1, 3], [1, 0], [3, 4], [4, 5]];
         let z = count_pairs(&free, &pairs);

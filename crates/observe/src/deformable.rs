@@ -1,5 +1,5 @@
-//! Deformable bodies: displacement and force of what holds them, and at the end of a run their mesh with displacements and stresses
-//! and the tractions along what touches.
+//! Deformable bodies: displacement and force of what holds them, and at the end of a run their mesh
+//! with displacements and stresses and the tractions along what touches.
 
 use super::chart::{Axis, Chart, Series, Style};
 use super::figures::contact_map;
@@ -44,11 +44,13 @@ pub struct Deformable {
     materials: Vec<String>,
 }
 
-/// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about half of the strain as a share, here a
-/// per cent, and its forces act in directions that are off by the rotation, here two per cent.
+/// Strain and rotation (rad) from which a body in small strain is warned of. Its stress lacks about
+/// half of the strain as a share, here a per cent, and its forces act in directions that are off by
+/// the rotation, here two per cent.
 const LARGE: f64 = 0.02;
-/// The same of grains that deform: most of their strain is at contacts. The force of a disk between two plates is off by less than 1.5 per cent
-/// up to there (`tests/physics/elastic/soft_strain.rs`); rotations are those against their frame.
+/// The same of grains that deform: most of their strain is at contacts. The force of a disk between
+/// two plates is off by less than 1.5 per cent up to there
+/// (`tests/physics/elastic/soft_strain.rs`); rotations are those against their frame.
 const LARGE_IN_GRAINS: f64 = 0.1;
 
 crate::described! {
@@ -178,7 +180,8 @@ fn larger(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> Option<[f64; 2]> {
 }
 
 impl Deformable {
-    /// Largest strains of what is computed in small strain, and loads on borders, with those of the current state.
+    /// Largest strains of what is computed in small strain, and loads on borders, with those of the
+    /// current state.
     fn distortions<S: Space>(&self, s: &Simulation<S>) -> (Vec<SmallStrain>, Vec<BorderLoad>) {
         let (mut strains, mut borders) = (Vec::new(), Vec::new());
         for (k, name) in self.bodies.iter().enumerate() {
@@ -357,7 +360,8 @@ impl<S: Space> Observer<S> for Deformable {
     }
 
     fn file_names(&self) -> Vec<String> {
-        // Links to the results are of the program; without these names they would outlive the bodies that they show.
+        // Links to the results are of the program; without these names they would outlive the
+        // bodies that they show.
         let of = |name: &String| {
             [
                 format!("{name}.vtk"),
@@ -461,7 +465,8 @@ struct Traction<S: Space> {
     place: S::Vector,
     /// Force on the body (N; N/m in 2D).
     force: S::Vector,
-    /// Its part along the normal, positive in compression, and along the surface: in the plane positive along +x.
+    /// Its part along the normal, positive in compression, and along the surface: in the plane
+    /// positive along +x.
     parts: [f64; 2],
     /// Length (m) or area (m^2) that a point of the surface stands for; none where it is not known.
     area: Option<f64>,
@@ -491,14 +496,15 @@ fn tractions<S: Space>(s: &Simulation<S>, system: usize) -> Vec<Traction<S>> {
     out
 }
 
-/// Whether forces of points over the areas that they stand for are tractions. (In space the points of a block have more and fewer elements
-/// in turn.)
+/// Whether forces of points over the areas that they stand for are tractions. (In space the points
+/// of a block have more and fewer elements in turn.)
 fn has_tractions<S: Space>(s: &Simulation<S>, system: usize) -> bool {
     let system = s.state.systems.get(system);
     S::D == 2 || system.is_some_and(|s| s.has_equal_points())
 }
 
-/// The contacts of a system as a table. Where a surface touches by its points also pressure and shear.
+/// The contacts of a system as a table. Where a surface touches by its points also pressure and
+/// shear.
 fn traction_table<S: Space>(s: &Simulation<S>, system: usize) -> String {
     let axes = &["x", "y", "z"][..S::D];
     let newton = FORCE.symbol(S::D);

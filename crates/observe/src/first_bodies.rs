@@ -23,7 +23,8 @@ crate::described! {
     }
 }
 
-/// What each first body lost: volume and depths of its scars. A friction test adds the specific wear rate.
+/// What each first body lost: volume and depths of its scars. A friction test adds the specific
+/// wear rate.
 pub fn wear<S: Space>(s: &Simulation<S>) -> Vec<BodyWear> {
     let mut bodies: BTreeMap<u32, Worn> = BTreeMap::new();
     for (surface, volume) in &s.state.network.worn {

@@ -6,9 +6,9 @@ use super::quantity::unit::{ENERGY, VOLUME, WEAR_PER_ENERGY, WORD};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an elastic
-/// sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent, "Quantification of fretting
-/// damage", Wear 200 (1996) 186.
+/// A_t: energy ratio E_d/(4 Q delta) from which the whole contact slides. It is the value for an
+/// elastic sphere on a flat at the end of partial slip; S. Fouvry, Ph. Kapsa, L. Vincent,
+/// "Quantification of fretting damage", Wear 200 (1996) 186.
 pub const TRANSITION: f64 = 0.2;
 
 /// How a contact slides.
@@ -77,8 +77,9 @@ crate::described! {
         pub energy: f64 => ENERGY,
         /// Volume worn off first bodies in these cycles.
         pub wear_volume: f64 => VOLUME,
-        /// Slope alpha of wear volume against cumulative energy; `None` without wear. E_d is the area of
-        /// the loop: if bodies also collide or move normally, the energy dissipated by friction alone is smaller.
+        /// Slope alpha of wear volume against cumulative energy; `None` without wear. E_d is the
+        /// area of the loop: if bodies also collide or move normally, the energy dissipated by
+        /// friction alone is smaller.
         pub alpha: Option<Slope> = part::<Slope>(),
     }
 }
@@ -90,8 +91,8 @@ impl Outcome {
         let first = complete.first()?;
         let kind = Regime::of(first.energy_ratio);
         let same = complete.iter().all(|c| Regime::of(c.energy_ratio) == kind);
-        // A cycle that represents several holds the fracture energy of all of them; its neighbours give that
-        // of a single one.
+        // A cycle that represents several holds the fracture energy of all of them; its neighbours
+        // give that of a single one.
         let single = |c: &&&Cycle| c.jumped == 0;
         let energy = |k: usize| {
             let cycle = complete[k];
@@ -122,9 +123,9 @@ impl Outcome {
     }
 }
 
-/// Sum of y over sum of x for independent pairs (x, y): the slope of cumulative y against cumulative x. The
-/// interval is Student's, from the jackknife's pseudo-values (B. Efron, The Jackknife, the Bootstrap and
-/// Other Resampling Plans, 1982).
+/// Sum of y over sum of x for independent pairs (x, y): the slope of cumulative y against
+/// cumulative x. The interval is Student's, from the jackknife's pseudo-values (B. Efron, The
+/// Jackknife, the Bootstrap and Other Resampling Plans, 1982).
 fn slope(points: &[(f64, f64)]) -> Option<Slope> {
     let n = points.len() as f64;
     let (x, y) = points

@@ -1,4 +1,5 @@
-//! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from dissipation.
+//! Friction test: Q-delta loops, and the friction coefficient of each cycle from forces and from
+//! dissipation.
 
 use super::fretting::Regime;
 use super::layer::Balance;
@@ -40,11 +41,11 @@ crate::described! {
         pub tangential_amplitude: f64 => FORCE,
         /// Length of the sliding path.
         pub path: f64 => METRE,
-        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from forces; 0 if the
-        /// body was not pressed.
+        /// Integral of Q d delta over integral of P |d delta|: the friction coefficient from
+        /// forces; 0 if the body was not pressed.
         pub friction_coefficient: f64 => ONE,
-        /// From the energy ledger: (dissipation + change of stored energy - other work of the driven bodies) over the
-        /// integral of P |d delta|.
+        /// From the energy ledger: (dissipation + change of stored energy - other work of the
+        /// driven bodies) over the integral of P |d delta|.
         pub friction_from_dissipation: f64 => ONE,
         /// Bonds broken in the cycle.
         pub broken: u64 => ONE,
@@ -66,7 +67,8 @@ crate::described! {
         pub regime: Regime => WORD,
         /// Volume worn off first bodies.
         pub wear_volume: f64 => VOLUME,
-        /// Number of further cycles that it represents by a jump: wear and damage are of all of them, the rest is of one.
+        /// Number of further cycles that it represents by a jump: wear and damage are of all of
+        /// them, the rest is of one.
         pub jumped: u32 => ONE,
     }
 }
@@ -119,8 +121,8 @@ impl Cycles {
         }
     }
 
-    /// Cycles of length `period` from `start` on; without a period the second half of the time from `start`
-    /// to `end` is one cycle.
+    /// Cycles of length `period` from `start` on; without a period the second half of the time from
+    /// `start` to `end` is one cycle.
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         Self::of(CycleClock::new(start, period, end), end)
     }
@@ -144,7 +146,8 @@ impl Cycles {
         }
     }
 
-    /// Scatter of the friction coefficient over the later cycles; without a period over the finished blocks.
+    /// Scatter of the friction coefficient over the later cycles; without a period over the
+    /// finished blocks.
     pub fn scatter(&self) -> Option<Scatter> {
         if self.oscillates() {
             return scatter::over_cycles(&self.list, |c| c.friction_coefficient);
@@ -263,8 +266,8 @@ impl Cycles {
 mod tests {
     use super::*;
 
-    /// Two cycles of a sine at friction `mu`, with the lid rising and falling with the stroke; `measured` is
-    /// the ratio of the measured to the true force.
+    /// Two cycles of a sine at friction `mu`, with the lid rising and falling with the stroke;
+    /// `measured` is the ratio of the measured to the true force.
     fn loops(mu: f64, lift: f64, measured: f64) -> Cycles {
         let (p, a, f, h) = (1e3, 5e-5, 10.0, 1e-5);
         let omega = std::f64::consts::TAU * f;

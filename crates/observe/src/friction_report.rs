@@ -9,16 +9,19 @@ use super::warning::Warning;
 use serde::Serialize;
 
 crate::described! {
-    /// Friction over the last complete cycle, or the second half of the time; all null without a friction test.
+    /// Friction over the last complete cycle, or the second half of the time; all null without a
+    /// friction test.
     #[derive(Clone, Debug, Default, Serialize)]
     pub struct Friction {
         /// Friction from forces: tangential force along the path over normal force along the path.
         pub friction_coefficient: Option<f64> => ONE,
-        /// Energy dissipated and stored by the energy ledger over the same path: an independent check of the forces.
+        /// Energy dissipated and stored by the energy ledger over the same path: an independent
+        /// check of the forces.
         pub friction_from_dissipation: Option<f64> => ONE,
         /// Largest tangential force over the mean normal force of the same cycle.
         pub peak_friction: Option<f64> => ONE,
-        /// Friction over the second half of each stroke, without the elastic travel after a reversal.
+        /// Friction over the second half of each stroke, without the elastic travel after a
+        /// reversal.
         pub plateau_friction: Option<f64> => ONE,
         /// How the coefficient scatters over cycles or blocks, for its interval.
         #[serde(skip)]

@@ -1,4 +1,5 @@
-//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and what they say together.
+//! The friction test as an observer: forces and sliding of the rubbed body, its cycles, and what
+//! they say together.
 
 use super::figures;
 use super::fretting;

@@ -96,7 +96,8 @@ impl HeatObserver {
     }
 }
 
-/// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat capacities (K).
+/// Highest temperature of grains and first bodies, and mean temperature of the grains by their heat
+/// capacities (K).
 fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f64; 2] {
     let removed = &s.state.bodies.removed;
     let grain = s.state.bodies.grain_flags();

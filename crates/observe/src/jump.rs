@@ -67,7 +67,8 @@ impl<S: Space> Observer<S> for CycleJumps {
     }
 }
 
-/// Relative change of the work per cycle over a jump above which the jump may have passed into another state.
+/// Relative change of the work per cycle over a jump above which the jump may have passed into
+/// another state.
 const CHANGED: f64 = 0.2;
 
 /// What is said of a checked jump, and of the state at the end of a computed cycle.

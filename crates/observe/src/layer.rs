@@ -1,8 +1,9 @@
-//! Energy balance of the bodies between the driven bodies, from contact forces and the paths of the driven bodies.
+//! Energy balance of the bodies between the driven bodies, from contact forces and the paths of the
+//! driven bodies.
 //!
-//! The driven bodies do the work -sum (h p . v_theta + moment . w_theta) on the rest through their contacts:
-//! it is dissipated in contacts or stored by the other bodies.
-//! The ledger's external work is not used here, so the two balances check each other.
+//! The driven bodies do the work -sum (h p . v_theta + moment . w_theta) on the rest through their
+//! contacts: it is dissipated in contacts or stored by the other bodies. The ledger's external work
+//! is not used here, so the two balances check each other.
 
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::process::cycle::{Rubbed, RubbedBody};
@@ -12,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Energies since the start (J; J/m in 2D).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
-    /// Energy dissipated in all contacts, and stored (kinetic, potential, elastic) by bodies that are not
-    /// driven.
+    /// Energy dissipated in all contacts, and stored (kinetic, potential, elastic) by bodies that
+    /// are not driven.
     pub taken: f64,
     /// Work of the driven bodies on their contacts, except the tangential drive of the test.
     pub other: f64,
@@ -25,7 +26,8 @@ pub struct Balance {
 pub struct Layer<S: Space> {
     /// Velocities of the driven bodies at the end of the last processed step.
     velocity: Vec<(S::Vector, S::Spin)>,
-    /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger includes.
+    /// Potential energy, and dissipation by the scheme, of the driven bodies, which the ledger
+    /// includes.
     apart: f64,
     other: f64,
     /// External work in the ledger at the end of the last processed step.
@@ -43,8 +45,9 @@ impl<S: Space> Layer<S> {
         }
     }
 
-    /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given, which is kept apart. Where the body of the test deforms, the work of
-    /// all other drives is that of the ledger.
+    /// Takes in the last step. Of a test its body and the work of its drive (J; J/m) are given,
+    /// which is kept apart. Where the body of the test deforms, the work of all other drives is
+    /// that of the ledger.
     pub fn follow(&mut self, s: &Simulation<S>, test: Option<(&RubbedBody, f64)>) {
         let external = s.state.energy.external_work;
         let deforms = test.filter(|(body, _)| matches!(body.rubbed, Rubbed::System { .. }));

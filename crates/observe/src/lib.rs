@@ -1,8 +1,9 @@
-//! Observers of a run of Fretwork, which produce rows, tables and charts: the friction test and its cycles,
-//! fretting, biaxial tests, third bodies, wear scars, and the measured quantities of a case.
+//! Observers of a run of Fretwork, which produce rows, tables and charts: the friction test and its
+//! cycles, fretting, biaxial tests, third bodies, wear scars, and the measured quantities of a
+//! case.
 //!
-//! They read the simulation of `fretwork-core` and the case of `fretwork-scene`. Charts are data here
-//! ([`chart`], [`output`]); higher layers write and draw them.
+//! They read the simulation of `fretwork-core` and the case of `fretwork-scene`. Charts are data
+//! here ([`chart`], [`output`]); higher layers write and draw them.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,4 +1,5 @@
-//! Shape of a fretting loop Q(delta): its crossings of Q = 0, Q/P at the reversals of the motion, and its plateau.
+//! Shape of a fretting loop Q(delta): its crossings of Q = 0, Q/P at the reversals of the motion,
+//! and its plateau.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,8 +13,8 @@ pub struct Loop {
     crossings: Option<[f64; 2]>,
     /// Sum of |Q|/P over the reversals, and their number.
     reversals: (f64, u32),
-    /// Path since the last reversal, and the longest path between two reversals so far (m): before the second one, twice that to
-    /// the first.
+    /// Path since the last reversal, and the longest path between two reversals so far (m): before
+    /// the second one, twice that to the first.
     stroke: [f64; 2],
     /// Reversals since the first cycle.
     turns: u32,
@@ -71,7 +72,8 @@ impl Loop {
     }
 
     /// |Q|/P over the second half of the strokes, weighted by the path; `None` before the first reversal. A stroke is the path
-    /// between two reversals; its half is that of the longest so far (of twice the path to the first reversal, before there are two).
+    /// between two reversals; its half is that of the longest so far (of twice the path to the
+    /// first reversal, before there are two).
     pub fn plateau(&self) -> Option<f64> {
         (self.plateau[1] > 0.0).then(|| self.plateau[0] / self.plateau[1])
     }
@@ -91,8 +93,9 @@ impl Loop {
 mod tests {
     use super::*;
 
-    /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading delta =
-    /// delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing's rule twice that at half the force from a reversal.
+    /// The loop of a sphere on a flat in partial slip at Q* = share mu P, by Mindlin: on loading
+    /// delta = delta_0 (1 - (1 - Q/mu P)^(2/3)), and by Masing's rule twice that at half the force
+    /// from a reversal.
     fn mindlin(share: f64, steps: u32) -> (Loop, f64, f64) {
         let (p, mu, gross) = (100.0, 0.5, 2e-6);
         let load = |q: f64| gross * (1.0 - (1.0 - q / (mu * p)).powf(2.0 / 3.0));
@@ -145,7 +148,8 @@ mod tests {
         assert!((l.reversal() - 0.4).abs() < 1e-12);
     }
 
-    /// An elastic slider (spring k, friction mu P) under +-a: Q rises by k delta after each reversal up to mu P at 2 mu P/k.
+    /// An elastic slider (spring k, friction mu P) under +-a: Q rises by k delta after each
+    /// reversal up to mu P at 2 mu P/k.
     #[test]
     fn the_plateau_of_an_elastic_slider_leaves_its_elastic_travel_out() {
         let (a, n, mu, p, k) = (1e-5, 4000, 0.4, 100.0, 1e7);

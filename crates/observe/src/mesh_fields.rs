@@ -1,5 +1,6 @@
-//! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line of explanation: inside a body of
-//! finite elements, and along the surface of every body that touches.
+//! Fields of deformable bodies in `results.h5`, each registered once with its name, unit and a line
+//! of explanation: inside a body of finite elements, and along the surface of every body that
+//! touches.
 
 use super::tractions::{SurfaceState, Zone, signed};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
@@ -86,7 +87,8 @@ impl<S: Space> Default for GrainsState<S> {
 }
 
 impl<S: Space> GrainsState<S> {
-    /// Of the systems of these indices; those that have no mesh are left out. Grains that left the period of the scene are shown in it.
+    /// Of the systems of these indices; those that have no mesh are left out. Grains that left the
+    /// period of the scene are shown in it.
     pub fn of(s: &Simulation<S>, systems: &[usize]) -> Self {
         let mut out = Self::default();
         for k in systems {

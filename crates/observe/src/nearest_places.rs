@@ -1,4 +1,5 @@
-//! Contacts between deformable bodies that act on the nearest place, where the mean one is not to be found.
+//! Contacts between deformable bodies that act on the nearest place, where the mean one is not to
+//! be found.
 
 use super::quantity::unit::ONE;
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -9,7 +10,8 @@ use serde::{Deserialize, Serialize};
 const NEGLIGIBLE: f64 = 1e-3;
 
 crate::described! {
-    /// Contacts of points of deformable bodies with surfaces of others that act on the nearest place, over the rows of the statistics.
+    /// Contacts of points of deformable bodies with surfaces of others that act on the nearest
+    /// place, over the rows of the statistics.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct NearestPlaces {
         /// Loaded contacts that act on the nearest place, at the row where these carry most.

@@ -1,8 +1,9 @@
-//! Observers: everything that reads the state of a run without changing it. The run loop keeps a list of them, independent of
-//! their types; users of the library can add their own.
+//! Observers: everything that reads the state of a run without changing it. The run loop keeps a
+//! list of them, independent of their types; users of the library can add their own.
 //!
-//! After a step: `before_step` ─► the step ─► `after_step` ─► the processes act between the steps ─► `after_processes` ─► where
-//! a row of the statistics is due `sample`. At the end: `report`, `files` and `figures`.
+//! After a step: `before_step` ─► the step ─► `after_step` ─► the processes act between the steps
+//! ─► `after_processes` ─► where a row of the statistics is due `sample`. At the end: `report`,
+//! `files` and `figures`.
 
 use super::output::Output;
 use super::picture::Picture;
@@ -24,7 +25,8 @@ pub struct RunEnd<'a, S: Space> {
     pub table: &'a Table,
     /// Title of the case.
     pub title: &'a str,
-    /// The main results with what is known of their error. Filled only when files and figures are written.
+    /// The main results with what is known of their error. Filled only when files and figures are
+    /// written.
     pub uncertainty: &'a Uncertainty,
     /// Time that the run took by the clock.
     pub wall: Duration,
@@ -37,7 +39,8 @@ pub struct EventTable {
     pub name: &'static str,
     /// Its columns, one value an event.
     pub columns: Vec<Column>,
-    /// A column of which an event has any number of values, one event after another; none where there is none.
+    /// A column of which an event has any number of values, one event after another; none where
+    /// there is none.
     pub list: Option<Column>,
 }
 
@@ -52,22 +55,24 @@ pub struct Event {
     pub list: Vec<f64>,
 }
 
-/// Something that looks at a run and leaves columns, events, quantities and files. All but its name may be left out.
+/// Something that looks at a run and leaves columns, events, quantities and files. All but its name
+/// may be left out.
 pub trait Observer<S: Space>: Debug + Send {
     /// Its name: tells the observers of a run apart in checkpoints.
     fn name(&self) -> String;
 
-    /// The current state is the one from which deformations count: that of the start, and again that at which the second phase
-    /// begins.
+    /// The current state is the one from which deformations count: that of the start, and again
+    /// that at which the second phase begins.
     fn begin(&mut self, _: &Simulation<S>) {}
 
-    /// Whether the simulation is to keep what each contact dissipates in a step (`network.dissipation`).
+    /// Whether the simulation is to keep what each contact dissipates in a step
+    /// (`network.dissipation`).
     fn needs_dissipation(&self) -> bool {
         false
     }
 
-    /// Whether what it reports, or its files, are made of the rows of the statistics: they are read back at the end
-    /// where an observer says so, or where figures are drawn.
+    /// Whether what it reports, or its files, are made of the rows of the statistics: they are read
+    /// back at the end where an observer says so, or where figures are drawn.
     fn reads_statistics(&self) -> bool {
         true
     }
@@ -98,7 +103,8 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// Its columns of the balls, and then of the pieces, in the recorded states of `results.h5`; the same over the run.
+    /// Its columns of the balls, and then of the pieces, in the recorded states of `results.h5`;
+    /// the same over the run.
     fn grain_columns(&self) -> Vec<Column> {
         Vec::new()
     }
@@ -123,18 +129,18 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// Names of all pictures that it may have. A run that starts over in a folder first removes those that an older run left
-    /// there, `frames/NAME_STEP.png`.
+    /// Names of all pictures that it may have. A run that starts over in a folder first removes
+    /// those that an older run left there, `frames/NAME_STEP.png`.
     fn picture_names(&self) -> Vec<&'static str> {
         Vec::new()
     }
 
-    /// Adds what it found to that of a run at its end: quantities and warnings. Observers come in their order, so that what
-    /// earlier ones found is there.
+    /// Adds what it found to that of a run at its end: quantities and warnings. Observers come in
+    /// their order, so that what earlier ones found is there.
     fn report(&self, _: &RunEnd<'_, S>, _: &mut Findings) {}
 
-    /// Adds what it knows without the simulation, as of its last [`Observer::before_step`]: of a run that a law ends within a
-    /// step, and for what is said of a run as it goes.
+    /// Adds what it knows without the simulation, as of its last [`Observer::before_step`]: of a
+    /// run that a law ends within a step, and for what is said of a run as it goes.
     fn report_so_far(&self, _: &mut Findings) {}
 
     /// Files that it writes at the end of a run, independently of `output.figures`.
@@ -142,20 +148,22 @@ pub trait Observer<S: Space>: Debug + Send {
         Vec::new()
     }
 
-    /// Figures of the run, and tables that are written beside them if the case asks for figures (`output.figures`). Figures are
-    /// also asked for at the start of a run: its report has them wherever the run ends.
+    /// Figures of the run, and tables that are written beside them if the case asks for figures
+    /// (`output.figures`). Figures are also asked for at the start of a run: its report has them
+    /// wherever the run ends.
     fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
         Vec::new()
     }
 
-    /// Names of files that it may leave at the end. A run that starts over in a folder first removes them, so that no file of an
-    /// older run is taken for one of a run that was stopped; and no two observers may name the same.
+    /// Names of files that it may leave at the end. A run that starts over in a folder first
+    /// removes them, so that no file of an older run is taken for one of a run that was stopped;
+    /// and no two observers may name the same.
     fn file_names(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What it carries from step to step, as bytes for a checkpoint ([`fretwork_core::code::encode`]); none where it carries
-    /// nothing.
+    /// What it carries from step to step, as bytes for a checkpoint
+    /// ([`fretwork_core::code::encode`]); none where it carries nothing.
     ///
     /// # Errors
     /// It cannot be put into bytes.
@@ -171,7 +179,8 @@ pub trait Observer<S: Space>: Debug + Send {
         Ok(())
     }
 
-    /// The run that it was restored in ends at a time (s), which is later than it was to end where `later` says so.
+    /// The run that it was restored in ends at a time (s), which is later than it was to end where
+    /// `later` says so.
     ///
     /// # Errors
     /// Why it cannot go on beyond the end that the run was begun with.

@@ -1,11 +1,16 @@
-//! How many elements lie across a contact of deformable bodies, and what that does to the heat of partial slip.
+//! How many elements lie across a contact of deformable bodies, and what that does to the heat of
+//! partial slip.
 //!
-//! Where a part of a contact sticks, heat is made in the strip that slips alone, of w elements. Its heat is off by a share of
+//! Where a part of a contact sticks, heat is made in the strip that slips alone, of w elements. Its
+//! heat is off by a share of
 //!
-//! * 0.3/w at most in cycles of a tangential force, against Cattaneo and Mindlin: 24, 14, 7, 3.6 and 1.6 % at w = 1.2, 1.3, 2.3, 2.7 and 5.5;
-//! * 1/(w + 0.6) in rolling by one cell a step, too low, against Carter: 56, 39, 22, 12, 6 and 3.6 % at w = 1, 2, 4, 8, 16 and 28
+//! * 0.3/w at most in cycles of a tangential force, against Cattaneo and Mindlin: 24, 14, 7, 3.6
+//!   and 1.6 % at w = 1.2, 1.3, 2.3, 2.7 and 5.5;
+//! * 1/(w + 0.6) in rolling by one cell a step, too low, against Carter: 56, 39, 22, 12, 6 and 3.6
+//!   % at w = 1, 2, 4, 8, 16 and 28
 //!
-//! (`tests/physics/elastic/resolution.rs`; `docs/half_spaces.md`). A strip of less than an element may have no heat at all.
+//! (`tests/physics/elastic/resolution.rs`; `docs/half_spaces.md`). A strip of less than an element
+//! may have no heat at all.
 
 use super::quantity::unit::{ONE, WORD};
 use super::quantity::{Findings, Topic};
@@ -22,11 +27,13 @@ const OF_CYCLES: f64 = 0.3;
 const OF_ROLLING: f64 = 0.6;
 /// Fewest contacts with one body that are a contact of surfaces.
 const FEWEST: usize = 4;
-/// Share of the largest load of a contact from which one counts: some methods leave traces on those that do not touch.
+/// Share of the largest load of a contact from which one counts: some methods leave traces on those
+/// that do not touch.
 const TRACE: f64 = 1e-3;
 /// Share of the load of a body that a counterpart carries where the two are a contact of surfaces.
 const MOST: f64 = 0.5;
-/// Elements across a contact below which the error of cycles is a lower bound: 29 % are told of 63 % with four.
+/// Elements across a contact below which the error of cycles is a lower bound: 29 % are told of 63
+/// % with four.
 const FEW: f64 = 8.0;
 /// Error of the heat from which it is worth a note, and from which it is a reason not to trust it.
 const LIMITS: [f64; 2] = [0.05, 0.2];
@@ -37,12 +44,14 @@ crate::described! {
     pub struct Resolution {
         /// Name of the body.
         pub body: String => WORD,
-        /// Loaded elements over the width of the contact, in 3D over its mean diameter, at the row where these are fewest while it slips in
-        /// part, and otherwise at the last row with a load.
+        /// Loaded elements over the width of the contact, in 3D over its mean diameter, at the row
+        /// where these are fewest while it slips in part, and otherwise at the last row with a
+        /// load.
         pub across: f64 => ONE,
         /// Elements over what sticks there; null where it never sticks and slips at once.
         pub stick: Option<f64> => ONE,
-        /// Elements over the width of each strip that slips there; null where it never sticks and slips at once.
+        /// Elements over the width of each strip that slips there; null where it never sticks and
+        /// slips at once.
         pub slip: Option<f64> => ONE,
         /// Estimated error of the heat of friction over the run, as a share: too low in rolling.
         pub heat_error: f64 => ONE,
@@ -89,8 +98,9 @@ impl Resolution {
         self.heat_error = share(sums);
     }
 
-    /// Adds a row of the statistics: the state of a system after its last step, with the heat of friction of all contacts so far (J; J/m).
-    /// `rolls` says of each system whether its material passes.
+    /// Adds a row of the statistics: the state of a system after its last step, with the heat of
+    /// friction of all contacts so far (J; J/m). `rolls` says of each system whether its material
+    /// passes.
     pub fn add<S: Space>(&mut self, s: &Simulation<S>, system: usize, rolls: &[bool], heat: f64) {
         let made = (heat - self.before).max(0.0);
         self.before = heat;
@@ -120,7 +130,8 @@ impl Resolution {
         self.heat_error = share(self.sums);
     }
 
-    /// Whether the error is a lower bound: in cycles, where few elements do not show the strips as they are.
+    /// Whether the error is a lower bound: in cycles, where few elements do not show the strips as
+    /// they are.
     fn is_least(&self) -> bool {
         !self.rolls && self.across < FEW && self.heat_error > 0.0 && self.heat_error < 1.0
     }
@@ -172,8 +183,8 @@ impl Resolution {
     }
 }
 
-/// Adds the contacts of all bodies, with a sentence and a warning of the one whose elements leave most doubt of the heat. Two
-/// bodies that touch each other have one contact.
+/// Adds the contacts of all bodies, with a sentence and a warning of the one whose elements leave
+/// most doubt of the heat. Two bodies that touch each other have one contact.
 pub(crate) fn report(contacts: Vec<Resolution>, found: &mut Findings) {
     let all = contacts.iter().enumerate();
     let Some((k, worst)) = all.max_by(|(_, a), (_, b)| a.heat_error.total_cmp(&b.heat_error))
@@ -217,7 +228,8 @@ struct Loaded<S: Space> {
 
 /// A body, or a system of bodies, on the other side.
 type Counterpart = (u32, u32);
-/// A point of a deformable body may touch several facets at their corner; points of other bodies are told apart by their contacts.
+/// A point of a deformable body may touch several facets at their corner; points of other bodies
+/// are told apart by their contacts.
 type Point = (u32, usize);
 
 impl Strip {
@@ -332,7 +344,8 @@ mod tests {
         assert_eq!(other, kept);
     }
 
-    /// Points along a line in the plane, loaded as in Hertz' contact, of which the outer ones slip, with traces beyond.
+    /// Points along a line in the plane, loaded as in Hertz' contact, of which the outer ones slip,
+    /// with traces beyond.
     fn along_a_line(towards: [f64; 2], traces: usize) -> Vec<Loaded<Dim2>> {
         let normal = Vector2::new(-towards[1], towards[0]);
         let of = |k: i32, load: f64, slips: bool| Loaded {

@@ -158,8 +158,8 @@ impl<S: Space> Observer<S> for Scars {
     }
 }
 
-/// The scar as a table: positions in the body's frame, current and initial height, depth (m). A case can read
-/// it as the `file` of a `Profile`.
+/// The scar as a table: positions in the body's frame, current and initial height, depth (m). A
+/// case can read it as the `file` of a `Profile`.
 pub fn table<S: Space>(s: &Simulation<S>, scar: &Scar<S>) -> String {
     let across = if S::D == 2 { "x [m]" } else { "x [m],y [m]" };
     let mut text = format!("{across},z [m],z_first [m],depth [m]\n");

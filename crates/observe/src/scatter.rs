@@ -1,8 +1,8 @@
-//! Scatter of a quantity within one run: Student's 95 % confidence interval of its mean over the later half
-//! of the cycles, or over blocks of equal time if there are no cycles.
+//! Scatter of a quantity within one run: Student's 95 % confidence interval of its mean over the
+//! later half of the cycles, or over blocks of equal time if there are no cycles.
 //!
-//! Cycles are used as batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). If they show a
-//! trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
+//! Cycles are used as batches (A. M. Law, Simulation Modeling and Analysis, section 9.5.3). If they
+//! show a trend by the Mann-Kendall test, the quantity is not steady and no interval is given.
 
 use super::friction::Cycle;
 use super::steady::{self, Flow};
@@ -63,7 +63,8 @@ impl Scatter {
     }
 }
 
-/// Scatter of a value over the later half of the complete cycles, at least three; `None` if there are fewer.
+/// Scatter of a value over the later half of the complete cycles, at least three; `None` if there
+/// are fewer.
 pub fn over_cycles(cycles: &[Cycle], value: impl Fn(&Cycle) -> f64) -> Option<Scatter> {
     let complete: Vec<&Cycle> = cycles.iter().filter(|c| c.complete).collect();
     let count = complete.len().div_ceil(2).max(FEWEST).min(complete.len());
@@ -96,8 +97,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_student_s_over_the_later_half() {
-        // For 0.39, 0.41, 0.40: mean 0.40, standard deviation 0.01, t(2, 0.975) = 4.302653, half-width
-        // 0.0248414.
+        // For 0.39, 0.41, 0.40: mean 0.40, standard deviation 0.01, t(2, 0.975) = 4.302653,
+        // half-width 0.0248414.
         let list = cycles(&[0.9, 0.8, 0.7, 0.39, 0.41, 0.40]);
         let scatter = over_cycles(&list, |c| c.friction_coefficient).unwrap();
         assert_eq!(scatter.over, "cycles 4 to 6");

@@ -8,14 +8,16 @@ use fretwork_core::step::Agreement;
 use serde::{Deserialize, Serialize};
 
 crate::described! {
-    /// Parts of the error over the steps of a run, each weighted by the heat of slip of its step: what matters for friction.
+    /// Parts of the error over the steps of a run, each weighted by the heat of slip of its step:
+    /// what matters for friction.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct ErrorPartsOfRun {
         /// Mean unbalanced share of the work of a step.
         pub force_balance: f64 => ONE,
         /// Mean of the residual velocities over the relative velocities of the contacts.
         pub velocity: f64 => ONE,
-        /// Mean energy that residuals make in violation of the contact law, over the heat of slip (the error of the norm `Power`).
+        /// Mean energy that residuals make in violation of the contact law, over the heat of slip
+        /// (the error of the norm `Power`).
         pub contact_law: f64 => ONE,
         /// Heat of slip of all steps.
         pub slip_energy: f64 => ENERGY,
@@ -37,15 +39,17 @@ impl ErrorPartsOfRun {
 }
 
 crate::described! {
-    /// How friction that depends on the velocity of sliding, and attraction that depends on the gap, agree with the steps of a run, each of which is
-    /// solved until they do.
+    /// How friction that depends on the velocity of sliding, and attraction that depends on the
+    /// gap, agree with the steps of a run, each of which is solved until they do.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct LawsOfRun {
         /// Mean number of solves per step; 1 where no law asks for more.
         pub solves_mean: f64 => ONE,
-        /// Mean over the steps of the share of the friction by which it differs from that of the laws at the velocities reached.
+        /// Mean over the steps of the share of the friction by which it differs from that of the
+        /// laws at the velocities reached.
         pub friction_mean: f64 => ONE,
-        /// Largest share of a step's attractions and loads by which attractions differ from those over the gaps passed.
+        /// Largest share of a step's attractions and loads by which attractions differ from those
+        /// over the gaps passed.
         pub attraction_max: f64 => ONE,
         /// Steps.
         pub steps: u64 => ONE,
@@ -77,10 +81,11 @@ crate::described! {
         pub error_parts: ErrorPartsOfRun = part::<ErrorPartsOfRun>(),
         /// Steps that did not reach the tolerance.
         pub unconverged_steps: u64 => ONE,
-        /// Steps of which another solution was found, of more energy than the one that was taken, in which a loaded contact slides that holds in the
-        /// other.
+        /// Steps of which another solution was found, of more energy than the one that was taken,
+        /// in which a loaded contact slides that holds in the other.
         pub several_steps: u64 => ONE,
-        /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek another solution.
+        /// Steps in which a loaded contact began to slide in a hyperstatic set too large to seek
+        /// another solution.
         #[serde(default)]
         pub not_searched_steps: u64 => ONE,
         /// Those of them in which it was a contact of a grain that first bodies squeeze.
@@ -90,7 +95,8 @@ crate::described! {
         pub uncoupled_steps: u64 => ONE,
         /// Mean number of solves per step with implicit coupling; 0 for explicit coupling.
         pub coupling_iterations_mean: f64 => ONE,
-        /// What the laws at the velocities and gaps reached in the steps differ from what the steps used.
+        /// What the laws at the velocities and gaps reached in the steps differ from what the steps
+        /// used.
         pub laws: LawsOfRun = part::<LawsOfRun>(),
         /// First unconverged step; 0 if there is none.
         pub first_unconverged: u64 => ONE,

@@ -27,7 +27,8 @@ use fretwork_scene::case::{Case, InterfaceSpec};
 use fretwork_scene::processes;
 use std::time::Duration;
 
-/// A dimension for which this crate compiles the observers, so that the program does not compile them again.
+/// A dimension for which this crate compiles the observers, so that the program does not compile
+/// them again.
 pub trait Observed: Dimensional {
     /// The observers of a run, see [`observers`].
     fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self>;
@@ -45,14 +46,14 @@ impl Observed for Dim3 {
     }
 }
 
-/// The observers of a run of a case, from the current state of its simulation on, in the order of the columns of the
-/// statistics. `density` is that of the first bodies (kg/m^3).
+/// The observers of a run of a case, from the current state of its simulation on, in the order of
+/// the columns of the statistics. `density` is that of the first bodies (kg/m^3).
 pub fn observers<S: Observed>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
     S::observers(case, s, density)
 }
 
-/// What a run of a case will say, as far as it is known before its first step: values are those of the start, and what a case
-/// cannot have says why.
+/// What a run of a case will say, as far as it is known before its first step: values are those of
+/// the start, and what a case cannot have says why.
 pub fn declared<S: Observed>(case: &Case, s: &Simulation<S>) -> Findings {
     let observers = observers(case, s, 0.0);
     let end = RunEnd {

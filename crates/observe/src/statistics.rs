@@ -38,8 +38,8 @@ impl Column {
     }
 }
 
-/// A table that is written row by row and read back at the end, so that memory does not grow with the length
-/// of the run.
+/// A table that is written row by row and read back at the end, so that memory does not grow with
+/// the length of the run.
 #[derive(Debug, Default)]
 pub struct Table {
     /// Columns.
@@ -116,7 +116,8 @@ impl Table {
         Ok(self.file.as_mut().map_or(Ok(()), |f| f.1.flush())?)
     }
 
-    /// Reads the rows back; the written digits reproduce the same bits. An incomplete last row is dropped.
+    /// Reads the rows back; the written digits reproduce the same bits. An incomplete last row is
+    /// dropped.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -159,8 +160,8 @@ impl Table {
         }
     }
 
-    /// Number and start (s) of the last cycle that is as long as the one before it, from the columns `cycle`
-    /// and `time`; `None` if there are no two cycles.
+    /// Number and start (s) of the last cycle that is as long as the one before it, from the
+    /// columns `cycle` and `time`; `None` if there are no two cycles.
     pub fn last_cycle(&self) -> Option<(u32, f64)> {
         let (cycles, times) = (self.column("cycle"), self.column("time"));
         // The row before the first row of a cycle is the last one of the previous cycle.
@@ -200,7 +201,8 @@ mod tests {
         assert_eq!(bits(&table.rows), bits(rows.as_flattened()));
         assert_eq!(table.column("b").len(), 3);
         let text = std::fs::read_to_string(&path).unwrap();
-        // Cut within the last number such that it is still a number, such that it is not one, and at once.
+        // Cut within the last number such that it is still a number, such that it is not one, and
+        // at once.
         for (cut, left) in [(text.len() - 4, 2), (text.len() - 3, 2), (0, 0)] {
             std::fs::write(&path, &text[..cut]).unwrap();
             table.recall().unwrap();

@@ -1,8 +1,8 @@
 //! Test whether a flow is steady, and the confidence interval of its mean.
 //!
-//! The cumulative quantity is divided into blocks of equal time. Their means give the flow with Student's
-//! interval (batch means: A. M. Law, Simulation Modeling and Analysis, section 9.5.3); a trend is tested with
-//! the Mann-Kendall test (M. G. Kendall, Rank Correlation Methods, 1975).
+//! The cumulative quantity is divided into blocks of equal time. Their means give the flow with
+//! Student's interval (batch means: A. M. Law, Simulation Modeling and Analysis, section 9.5.3); a
+//! trend is tested with the Mann-Kendall test (M. G. Kendall, Rank Correlation Methods, 1975).
 
 use super::quantity::unit::{MASS_FLOW, ONE, WORD};
 use serde::Serialize;
@@ -35,8 +35,8 @@ impl Flow {
     }
 }
 
-/// Mean rate of a cumulative quantity after a time. `points` are (time, cumulative value), with increasing
-/// times; `None` if a block has fewer than two points.
+/// Mean rate of a cumulative quantity after a time. `points` are (time, cumulative value), with
+/// increasing times; `None` if a block has fewer than two points.
 pub fn flow(points: &[(f64, f64)], start: f64, end: f64) -> Option<Flow> {
     if start >= end || points.len() < 2 {
         return None;

@@ -1,10 +1,11 @@
-//! Local shear strain of the grains since a reference time, from the motion of their neighbours at that time.
+//! Local shear strain of the grains since a reference time, from the motion of their neighbours at
+//! that time.
 //!
-//! The deformation gradient F of a grain minimises the sum of |x - F X|^2 over its neighbours, where X and x
-//! are the vectors to a neighbour at the reference time and now (M. L. Falk, J. S. Langer, Phys. Rev. E 57
-//! (1998) 7192). Its largest and smallest singular values a and b give the shear g = (a - b)/sqrt(a b): the
-//! amount of simple shear that has the same ratio of stretches, at finite strain. Rotation and dilation do
-//! not contribute.
+//! The deformation gradient F of a grain minimises the sum of |x - F X|^2 over its neighbours,
+//! where X and x are the vectors to a neighbour at the reference time and now (M. L. Falk, J. S.
+//! Langer, Phys. Rev. E 57 (1998) 7192). Its largest and smallest singular values a and b give the
+//! shear g = (a - b)/sqrt(a b): the amount of simple shear that has the same ratio of stretches, at
+//! finite strain. Rotation and dilation do not contribute.
 
 use super::observer::Observer;
 use super::picture::{Picture, Shows};
@@ -34,8 +35,8 @@ pub struct Strain<S: Space> {
 }
 
 impl<S: Space> Strain<S> {
-    /// Takes the current state as reference. Neighbours of a grain are those with a gap below a mean
-    /// diameter: two shells, so that no single neighbour dominates.
+    /// Takes the current state as reference. Neighbours of a grain are those with a gap below a
+    /// mean diameter: two shells, so that no single neighbour dominates.
     pub fn new(s: &Simulation<S>) -> Self {
         let balls = &s.shapes.balls;
         let centres: Vec<S::Vector> = balls.iter().map(|b| centre(b, &s.state.bodies)).collect();
@@ -64,8 +65,8 @@ impl<S: Space> Strain<S> {
         Self { around }
     }
 
-    /// Shear of each ball since the reference time; NaN for balls of first bodies, and if the neighbours do
-    /// not span the space.
+    /// Shear of each ball since the reference time; NaN for balls of first bodies, and if the
+    /// neighbours do not span the space.
     pub fn shear(&self, s: &Simulation<S>) -> Vec<f64> {
         let now: Vec<S::Vector> = s
             .shapes
@@ -84,7 +85,8 @@ impl<S: Space> Strain<S> {
     }
 }
 
-/// Observes the local shear since the second phase began, or the start: a column of the grains, and a picture.
+/// Observes the local shear since the second phase began, or the start: a column of the grains, and
+/// a picture.
 #[derive(Clone, Debug)]
 pub struct LocalShear<S: Space> {
     strain: Strain<S>,
@@ -182,8 +184,8 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Matrix2, Rotation2, Rotation3, Vector2, Vector3};
 
-    /// A simple shear, rotated and dilated, gives its own amount at small and large strain, and a pure
-    /// rotation gives zero.
+    /// A simple shear, rotated and dilated, gives its own amount at small and large strain, and a
+    /// pure rotation gives zero.
     #[test]
     fn simple_shear_has_its_amount() {
         let star: Vec<Vector2<f64>> = (0..7)

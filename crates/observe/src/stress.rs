@@ -3,11 +3,12 @@
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume, positive
-/// in compression; row: axis of the force, column: axis of the branch.
+/// Love-Weber stress of the free grains (Pa), sum f (x) l over their contacts divided by a volume,
+/// positive in compression; row: axis of the force, column: axis of the branch.
 ///
-/// f is the mean force of the last step; l points from a grain's centre to the contact: to the face of a
-/// wall, or to the middle of the gap to another grain. At rest the stress equals that on the walls.
+/// f is the mean force of the last step; l points from a grain's centre to the contact: to the face
+/// of a wall, or to the middle of the gap to another grain. At rest the stress equals that on the
+/// walls.
 pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     let mut moment = [[0.0; 3]; 3];
     each_moment(s, |_, force, branch| {
@@ -20,8 +21,9 @@ pub fn love_weber<S: Space>(s: &Simulation<S>, volume: f64) -> [[f64; 3]; 3] {
     moment
 }
 
-/// Calls a function for each contact of each free grain, with the body, the mean force of the last step (N;
-/// N/m in 2D) and the branch (m), signed such that their product is positive in compression.
+/// Calls a function for each contact of each free grain, with the body, the mean force of the last
+/// step (N; N/m in 2D) and the branch (m), signed such that their product is positive in
+/// compression.
 pub fn each_moment<S: Space>(
     s: &Simulation<S>,
     mut take: impl FnMut(usize, &S::Vector, &S::Vector),
@@ -41,8 +43,8 @@ pub fn each_moment<S: Space>(
     }
 }
 
-/// Mean pressure, and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal stresses
-/// in the plane of the first two axes; the sine is zero without pressure.
+/// Mean pressure, and sine of the mobilised friction angle, (s1 - s2)/(s1 + s2) with the principal
+/// stresses in the plane of the first two axes; the sine is zero without pressure.
 pub fn plane_invariants(stress: &[[f64; 3]; 3]) -> (f64, f64) {
     let mean = 0.5 * (stress[0][0] + stress[1][1]);
     let half = 0.5 * (stress[0][0] - stress[1][1]);

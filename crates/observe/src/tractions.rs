@@ -1,5 +1,6 @@
-//! Tractions along the surface of a deformable body, and where it sticks and slips: forces of contacts shared out to the points of the
-//! surface by its shape functions, over the areas that these stand for. The sum of pressure times area is the normal force of all contacts.
+//! Tractions along the surface of a deformable body, and where it sticks and slips: forces of
+//! contacts shared out to the points of the surface by its shape functions, over the areas that
+//! these stand for. The sum of pressure times area is the normal force of all contacts.
 
 use fretwork_core::bodies::TouchingSurface;
 use fretwork_core::contact::Contact;
@@ -30,8 +31,9 @@ impl Zone {
     }
 }
 
-/// Share of one contact below which a point counts as open, of one that stands for less than the point that touches it in proportion: where points of
-/// two surfaces almost coincide, the next point of the one that is touched gets a trace of the force.
+/// Share of one contact below which a point counts as open, of one that stands for less than the
+/// point that touches it in proportion: where points of two surfaces almost coincide, the next
+/// point of the one that is touched gets a trace of the force.
 const TRACE: f64 = 0.1;
 
 /// The surface of a deformable body that touches, with what acts on it.
@@ -53,8 +55,8 @@ pub struct SurfaceState<S: Space> {
     pub zone: Vec<Zone>,
 }
 
-/// Tractions on a facet: means of its points, which sum up to the same force. Where points have more and fewer facets in turn, pressures of
-/// points alternate, and those of facets do not.
+/// Tractions on a facet: means of its points, which sum up to the same force. Where points have
+/// more and fewer facets in turn, pressures of points alternate, and those of facets do not.
 #[derive(Clone, Copy, Debug)]
 pub struct FacetTraction<S: Space> {
     /// Pressure (Pa).
@@ -138,7 +140,8 @@ impl<S: Space> SurfaceState<S> {
     }
 }
 
-/// The areas that points of systems stand for, by system and node (m^2; m in the plane), of those that were asked for.
+/// The areas that points of systems stand for, by system and node (m^2; m in the plane), of those
+/// that were asked for.
 #[derive(Default)]
 struct Areas(HashMap<u32, HashMap<u32, f64>>);
 

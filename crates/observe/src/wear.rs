@@ -1,5 +1,5 @@
-//! Wear of first and third bodies, and mean flows of matter, from the start of the friction test on: what came
-//! before it, placing grains and pressing them together, is no flow of the contact.
+//! Wear of first and third bodies, and mean flows of matter, from the start of the friction test
+//! on: what came before it, placing grains and pressing them together, is no flow of the contact.
 
 use super::chart::Axis;
 use super::figures::history;
@@ -26,13 +26,13 @@ crate::described! {
         pub unit: &'static str => WORD,
         /// Start of Qs (of the wear law) and Qi; flows of a circuit start with the circuit.
         pub start: f64 => SECOND,
-        /// Source: mass worn off first bodies by the wear law, or, with a circuit, mass of the grains that came
-        /// loose from them.
+        /// Source: mass worn off first bodies by the wear law, or, with a circuit, mass of the
+        /// grains that came loose from them.
         pub Qs: f64 => MASS_FLOW,
         /// Internal: mass of the third body that crosses a section, mean of |m v_x|/L.
         pub Qi: f64 => MASS_FLOW,
-        /// Ejected: with a circuit the mass that reached its zones; without one zero in a contact that is
-        /// periodic along the sliding, and null (not measured) in an open one.
+        /// Ejected: with a circuit the mass that reached its zones; without one zero in a contact
+        /// that is periodic along the sliding, and null (not measured) in an open one.
         pub Qe: Option<f64> => MASS_FLOW,
         /// Lost: ejected and not recirculated; as `Qe`.
         pub Qw: Option<f64> => MASS_FLOW,
@@ -220,8 +220,9 @@ struct Worn {
 }
 
 impl Wear {
-    /// Wear of first bodies of a density (kg/m^3), with flows along an axis from a time (s) on; masses of the bodies are larger
-    /// than they are by `scaling`; `wears` says whether an interface has a wear law.
+    /// Wear of first bodies of a density (kg/m^3), with flows along an axis from a time (s) on;
+    /// masses of the bodies are larger than they are by `scaling`; `wears` says whether an
+    /// interface has a wear law.
     pub fn new([start, scaling, density]: [f64; 3], along: usize, wears: bool) -> Self {
         Self {
             wears,
@@ -338,7 +339,8 @@ impl Flows {
         }
     }
 
-    /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off first bodies so far.
+    /// Takes in a step: the sliding axis, the inertia scaling of the case, and the volume worn off
+    /// first bodies so far.
     fn add<S: Space>(&mut self, s: &Simulation<S>, along: usize, scaling: f64, worn: f64) {
         let h = s.options.scheme.h;
         if s.state.time - 0.5 * h < self.start {
@@ -350,7 +352,8 @@ impl Flows {
         self.crossed += h * internal_flow(s, along) / scaling;
     }
 
-    /// Volume worn off first bodies a second, over a longer time by so much (m^3/s; m^3/(m s)); zero before the start.
+    /// Volume worn off first bodies a second, over a longer time by so much (m^3/s; m^3/(m s));
+    /// zero before the start.
     fn source(&self, over: f64) -> f64 {
         mean(self.worn, self.time + over)
     }

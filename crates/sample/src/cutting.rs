@@ -1,4 +1,5 @@
-//! Convex polyhedra cut by planes. Each corner carries the labels of the three planes that meet there.
+//! Convex polyhedra cut by planes. Each corner carries the labels of the three planes that meet
+//! there.
 //!
 //! Two corners that share two planes are the ends of an edge, so edges need not be stored.
 
@@ -30,8 +31,8 @@ impl<L: Copy + PartialEq> Corner<L> {
     }
 }
 
-/// Cuts off the part above a plane, where the dot product of a point and the normal exceeds `height` (m).
-/// Returns whether anything was cut off.
+/// Cuts off the part above a plane, where the dot product of a point and the normal exceeds
+/// `height` (m). Returns whether anything was cut off.
 pub fn cut<L: Copy + PartialEq>(
     corners: &mut Vec<Corner<L>>,
     side: L,

@@ -1,7 +1,9 @@
-//! Loose random deposits: grains are placed one after another at random without overlaps, the largest first.
+//! Loose random deposits: grains are placed one after another at random without overlaps, the
+//! largest first.
 //!
-//! Random sequential addition fills about 0.5 of a box in 2D and 0.35 in 3D before it fails (0.547, Feder
-//! 1980, and 0.384, Cooper 1988, in the limit for equal balls); gravity or walls compact the sample further.
+//! Random sequential addition fills about 0.5 of a box in 2D and 0.35 in 3D before it fails (0.547,
+//! Feder 1980, and 0.384, Cooper 1988, in the limit for equal balls); gravity or walls compact the
+//! sample further.
 
 use super::sizes::Sizes;
 use fretwork_core::geometry::periodic::Periodic;
@@ -38,7 +40,8 @@ pub struct Deposit<V> {
     pub asked: f64,
 }
 
-/// A dimension for which this crate compiles the deposit, so that dependent crates do not compile it again.
+/// A dimension for which this crate compiles the deposit, so that dependent crates do not compile
+/// it again.
 pub trait Deposits: Space {
     /// Places grains in a box, see [`deposit`].
     fn deposit(
@@ -74,8 +77,8 @@ impl Deposits for Dim3 {
     }
 }
 
-/// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it; fewer if one
-/// of them cannot be placed.
+/// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it;
+/// fewer if one of them cannot be placed.
 pub fn deposit<S: Deposits>(
     count: usize,
     sizes: &Sizes,
@@ -150,9 +153,9 @@ fn room<V: VectorLike>(
     None
 }
 
-/// Balls sorted by size: each level holds radii within a factor of two of its largest, in cells as wide as
-/// that ball. A ball not larger than all placed ones therefore meets the balls of a level in adjacent cells
-/// only.
+/// Balls sorted by size: each level holds radii within a factor of two of its largest, in cells as
+/// wide as that ball. A ball not larger than all placed ones therefore meets the balls of a level
+/// in adjacent cells only.
 struct Levels<V>(Vec<Level<V>>);
 
 struct Level<V> {

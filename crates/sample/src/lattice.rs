@@ -3,9 +3,9 @@
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Generates a lattice of balls without overlaps, hexagonal in 2D and cubic in 3D, spaced by the largest
-/// radius, with radii uniform between two values. It fills the box from the bottom row up with at most
-/// `count` balls. With a periodic width the columns fit it exactly.
+/// Generates a lattice of balls without overlaps, hexagonal in 2D and cubic in 3D, spaced by the
+/// largest radius, with radii uniform between two values. It fills the box from the bottom row up
+/// with at most `count` balls. With a periodic width the columns fit it exactly.
 pub fn lattice(
     dimension: usize,
     periodic: bool,

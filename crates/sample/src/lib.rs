@@ -1,7 +1,8 @@
-//! Generation of grain samples: lattices, random deposits, size distributions, Voronoi cells, rough surfaces.
+//! Generation of grain samples: lattices, random deposits, size distributions, Voronoi cells, rough
+//! surfaces.
 //!
-//! Numerical work only, from numbers to numbers: the layer above, `fretwork-scene`, reads what a case asks for, and is compiled
-//! without optimisation.
+//! Numerical work only, from numbers to numbers: the layer above, `fretwork-scene`, reads what a
+//! case asks for, and is compiled without optimisation.
 
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 

@@ -4,8 +4,9 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
 
-/// Generates a periodic self-affine profile: heights (m) at `points` equidistant positions, zero mean, the
-/// given root-mean-square, power spectrum |q|^(-1 - 2H) between the two wavelengths, random phases.
+/// Generates a periodic self-affine profile: heights (m) at `points` equidistant positions, zero
+/// mean, the given root-mean-square, power spectrum |q|^(-1 - 2H) between the two wavelengths,
+/// random phases.
 ///
 /// B. N. J. Persson et al., J. Phys.: Condens. Matter 17 (2005) R1.
 pub fn rough(

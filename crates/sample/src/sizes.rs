@@ -1,7 +1,7 @@
 //! Grain size distributions, piecewise power laws of the radius.
 //!
-//! A distribution by mass is one by number with another exponent: in dimension D the mass of a grain is
-//! proportional to r^D, so a density f(r) by mass is f(r) r^-D by number.
+//! A distribution by mass is one by number with another exponent: in dimension D the mass of a
+//! grain is proportional to r^D, so a density f(r) by mass is f(r) r^-D by number.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -32,7 +32,8 @@ fn integral(low: f64, high: f64, exponent: f64) -> f64 {
 }
 
 impl Sizes {
-    /// The distribution with a number density r^-exponent between two radii (m), positive and increasing.
+    /// The distribution with a number density r^-exponent between two radii (m), positive and
+    /// increasing.
     pub fn power(radius: (f64, f64), exponent: f64) -> Self {
         Self(vec![Piece {
             low: radius.0,
@@ -42,9 +43,9 @@ impl Sizes {
         }])
     }
 
-    /// The distribution of a grading curve: increasing radii (m), and the mass fraction of smaller grains,
-    /// from 0 to 1. Between two points the mass is uniform in the logarithm of the size, as grading curves
-    /// are drawn.
+    /// The distribution of a grading curve: increasing radii (m), and the mass fraction of smaller
+    /// grains, from 0 to 1. Between two points the mass is uniform in the logarithm of the size, as
+    /// grading curves are drawn.
     pub fn sieve(curve: &[(f64, f64)], dimension: usize) -> Self {
         let exponent = 1.0 + dimension as f64;
         let mut pieces = Vec::new();
@@ -98,9 +99,9 @@ impl Sizes {
         1.0
     }
 
-    /// Draws `count` radii (m), one from each of `count` equal quantile intervals, in random order. The
-    /// sample's cumulative curve differs from the distribution's by at most one grain, while independent
-    /// draws would differ by the square root of their number.
+    /// Draws `count` radii (m), one from each of `count` equal quantile intervals, in random order.
+    /// The sample's cumulative curve differs from the distribution's by at most one grain, while
+    /// independent draws would differ by the square root of their number.
     pub fn draw(&self, count: usize, rng: &mut Pcg64) -> Vec<f64> {
         let mut radii: Vec<f64> = (0..count)
             .map(|k| self.quantile((k as f64 + rng.random_range(0.0..1.0)) / count as f64))
@@ -146,8 +147,9 @@ mod tests {
         worst
     }
 
-    /// Each quantile interval has one grain, so the curve by number is off by 1/n at most, and the curve by
-    /// mass by the mass difference of the heaviest and lightest grain, twice, over the total mass.
+    /// Each quantile interval has one grain, so the curve by number is off by 1/n at most, and the
+    /// curve by mass by the mass difference of the heaviest and lightest grain, twice, over the
+    /// total mass.
     #[test]
     fn samples_follow_their_distribution_by_number_and_by_mass() {
         let n = 4_000;
@@ -174,8 +176,8 @@ mod tests {
         }
     }
 
-    /// Against independent draws from the same generator: the Kolmogorov-Smirnov bound of 1.95/sqrt(n) holds
-    /// for 999 of 1000 samples (Smirnov 1948).
+    /// Against independent draws from the same generator: the Kolmogorov-Smirnov bound of
+    /// 1.95/sqrt(n) holds for 999 of 1000 samples (Smirnov 1948).
     #[test]
     fn quantiles_invert_the_curve() {
         let curve = [(1e-3, 0.0), (2e-3, 0.2), (4e-3, 0.2), (8e-3, 1.0)];

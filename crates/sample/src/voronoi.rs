@@ -1,9 +1,9 @@
 //! Voronoi cells that fill a rectangle with grains that fit each other side by side.
 //!
-//! Random sites, at least half a cell size apart, are mirrored in the walls of the box, so that the cells end
-//! at the walls (Mollon, Tribol. Int. 90 (2015) 343 makes degradable bodies of such cells). Lloyd iterations
-//! (IEEE Trans. Inf. Theory 28 (1982) 129) move each site to the centroid of its cell, which makes the cells
-//! more uniform.
+//! Random sites, at least half a cell size apart, are mirrored in the walls of the box, so that the
+//! cells end at the walls (Mollon, Tribol. Int. 90 (2015) 343 makes degradable bodies of such
+//! cells). Lloyd iterations (IEEE Trans. Inf. Theory 28 (1982) 129) move each site to the centroid
+//! of its cell, which makes the cells more uniform.
 
 use super::deposit::{Corners, deposit};
 use super::sizes::Sizes;
@@ -15,23 +15,25 @@ use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 type V = Vector2<f64>;
 
-/// Sides shorter than this fraction of the cell size are removed: their ends are merged into one corner.
+/// Sides shorter than this fraction of the cell size are removed: their ends are merged into one
+/// corner.
 pub const SHORTEST: f64 = 1e-3;
-/// Tolerance, as a fraction of the cell size, within which corners coincide, or a corner is on a wall.
+/// Tolerance, as a fraction of the cell size, within which corners coincide, or a corner is on a
+/// wall.
 const SAME: f64 = 1e-7;
 
 /// A Voronoi tiling of a rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiling {
-    /// Corners of each cell (m), counter-clockwise; neighbours share both ends of their common side. Across a
-    /// period, cells extend beyond the box.
+    /// Corners of each cell (m), counter-clockwise; neighbours share both ends of their common
+    /// side. Across a period, cells extend beyond the box.
     pub cells: Vec<Vec<V>>,
     /// Number of short sides that were removed.
     pub merged: usize,
 }
 
-/// Fills a box with about area/size² cells, periodic along x if the box is as wide as the period. `None` if
-/// the box is thinner than half a cell.
+/// Fills a box with about area/size² cells, periodic along x if the box is as wide as the period.
+/// `None` if the box is thinner than half a cell.
 pub fn tiling(
     corners: &Corners<V>,
     periodic: &Periodic,
@@ -71,8 +73,8 @@ pub fn tiling(
     region.cells(&sites)
 }
 
-/// Offsets the sides of a convex polygon inwards by `distance` (m), and removes sides shorter than `shortest`
-/// (m). `None` if nothing is left.
+/// Offsets the sides of a convex polygon inwards by `distance` (m), and removes sides shorter than
+/// `shortest` (m). `None` if nothing is left.
 pub fn inset(points: &[V], distance: f64, shortest: f64) -> Option<Vec<V>> {
     let n = points.len();
     let mut left = points.to_vec();
@@ -345,8 +347,8 @@ mod tests {
         assert!(tiling(&thin, &Periodic::default(), 0.05, 0, 1).is_none());
     }
 
-    /// Offsetting the sides of a polygon inwards by d reduces its area by d times the perimeter, less d² (sum
-    /// of cot of half angles).
+    /// Offsetting the sides of a polygon inwards by d reduces its area by d times the perimeter,
+    /// less d² (sum of cot of half angles).
     #[test]
     fn an_inset_takes_a_band_off() {
         let cells = made(0.1, 0, None, 5).cells;

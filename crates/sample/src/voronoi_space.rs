@@ -1,10 +1,11 @@
 //! Voronoi cells that fill a box: polyhedra that fit each other face to face.
 //!
-//! A cell is the box cut by the bisecting planes of the other sites, the nearest first, until the next site
-//! is farther away than twice the farthest corner and cannot cut the cell (as in Rycroft, Chaos 19 (2009)
-//! 041111). Three planes meet in a corner; they and the cell's site name it, and its position is computed
-//! from that name, so all cells around a corner have identical coordinates. Removing short edges would bend
-//! faces, so the sites of cells with short edges are moved a little instead.
+//! A cell is the box cut by the bisecting planes of the other sites, the nearest first, until the
+//! next site is farther away than twice the farthest corner and cannot cut the cell (as in Rycroft,
+//! Chaos 19 (2009) 041111). Three planes meet in a corner; they and the cell's site name it, and
+//! its position is computed from that name, so all cells around a corner have identical
+//! coordinates. Removing short edges would bend faces, so the sites of cells with short edges are
+//! moved a little instead.
 
 use super::cutting::{Corner, centre, cut, ordered, sides_of};
 use super::deposit::{Corners, deposit};
@@ -38,8 +39,8 @@ pub struct Cell {
 /// A Voronoi tiling of a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiling {
-    /// The cells, sorted so that neighbours in space are near in memory. Across a period, cells extend beyond
-    /// the box.
+    /// The cells, sorted so that neighbours in space are near in memory. Across a period, cells
+    /// extend beyond the box.
     pub cells: Vec<Cell>,
     /// Number of times a site was moved.
     pub moved: usize,
@@ -54,7 +55,8 @@ pub enum Failure {
     Short,
 }
 
-/// Fills a box with about volume/size³ cells, periodic along each axis where the box spans the period.
+/// Fills a box with about volume/size³ cells, periodic along each axis where the box spans the
+/// period.
 ///
 /// # Errors
 /// The sites do not fit, or their cells keep edges shorter than [`SHORTEST`] times the size.
@@ -150,8 +152,8 @@ enum Side {
 /// A site's image: the site, and its offset in periods.
 type Image = (u32, [i8; 3]);
 
-/// Sites and images sorted into cubes, from a low corner on. If most cubes would be empty, 2^`merged` of them
-/// along each axis are combined.
+/// Sites and images sorted into cubes, from a low corner on. If most cubes would be empty,
+/// 2^`merged` of them along each axis are combined.
 struct Cubes {
     merged: u32,
     low: [i64; 3],
@@ -246,7 +248,8 @@ struct Region {
 }
 
 impl Region {
-    /// Wraps a position into the box across periods, and keeps it at least a twentieth of a cell from walls.
+    /// Wraps a position into the box across periods, and keeps it at least a twentieth of a cell
+    /// from walls.
     fn wrapped(&self, mut at: V) -> V {
         for k in 0..3 {
             let (low, high) = (self.corners.low[k], self.corners.high[k]);
@@ -297,8 +300,9 @@ impl Region {
             .collect()
     }
 
-    /// Updates the corners after some sites moved: only cells near enough to be affected. A site farther from
-    /// a cell than twice its farthest corner neither cut it before nor cuts it now. Returns the cells.
+    /// Updates the corners after some sites moved: only cells near enough to be affected. A site
+    /// farther from a cell than twice its farthest corner neither cut it before nor cuts it now.
+    /// Returns the cells.
     fn cut_again(
         &self,
         sites: &[V],

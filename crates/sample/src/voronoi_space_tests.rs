@@ -77,8 +77,8 @@ fn cells_are_convex_and_fill_the_box() {
     assert!(moved > 0, "no edge was short enough to test with");
 }
 
-/// The face shared with another cell is a face of that cell too: identical corners bit by bit without
-/// periods, equal area, opposite normal.
+/// The face shared with another cell is a face of that cell too: identical corners bit by bit
+/// without periods, equal area, opposite normal.
 #[test]
 fn neighbours_share_their_faces() {
     let tiling = made(0.06, 0, [false; 3], 7);
@@ -131,8 +131,8 @@ fn neighbours_share_their_faces_across_periods() {
     }
 }
 
-/// The volumes of Poisson-Voronoi cells have a relative standard deviation of 0.42; sites kept apart give
-/// less, and Lloyd iterations less again.
+/// The volumes of Poisson-Voronoi cells have a relative standard deviation of 0.42; sites kept
+/// apart give less, and Lloyd iterations less again.
 #[test]
 fn lloyds_rounds_make_cells_alike_and_seeds_make_them_differ() {
     let of = |rounds: usize| {
@@ -172,7 +172,8 @@ fn few_cells() {
     assert_eq!(of(&thin, 0.05), Err(Failure::Thin));
 }
 
-/// Offsetting the faces of a tetrahedron of inradius r inwards by d leaves (1 - d/r)³ of its volume.
+/// Offsetting the faces of a tetrahedron of inradius r inwards by d leaves (1 - d/r)³ of its
+/// volume.
 #[test]
 fn an_inset_keeps_its_distance() {
     let third = 1.0 / 3f64.sqrt();
@@ -206,7 +207,8 @@ fn an_inset_keeps_its_distance() {
         let (points, faces) = inset(cell, 5e-3).unwrap();
         let inner = Polyhedron::from_faces(points, faces).unwrap();
         let outer = polyhedron(cell);
-        // Every point is at least that deep, and every remaining face has a point exactly that deep.
+        // Every point is at least that deep, and every remaining face has a point exactly that
+        // deep.
         let depth = |p: &V| -outer.distance(p).0;
         assert!(
             inner

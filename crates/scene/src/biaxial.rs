@@ -1,4 +1,5 @@
-//! Validation of a case's biaxial test: it needs four flat walls that face each other along two axes.
+//! Validation of a case's biaxial test: it needs four flat walls that face each other along two
+//! axes.
 
 use super::case::{BiaxialSpec, BodySpec, Case, ShapeSpec};
 use super::source::{ValidationError, nearest};

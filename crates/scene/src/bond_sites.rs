@@ -18,13 +18,14 @@ pub struct BondPair {
 /// Statistics of the contacts on which bonds form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BondSites {
-    /// Number of contacts of the interface at the start; 0 if there are none yet and the estimate is made
-    /// from the grains.
+    /// Number of contacts of the interface at the start; 0 if there are none yet and the estimate
+    /// is made from the grains.
     pub contacts: usize,
     /// Median of their reduced radii (m).
     pub radius: f64,
-    /// Largest ratio of contact area to effective mass along the normal (m^2/kg; in 2D per metre of depth). A
-    /// bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular frequency.
+    /// Largest ratio of contact area to effective mass along the normal (m^2/kg; in 2D per metre of
+    /// depth). A bond stiffness of k (Pa/m) times this ratio is the square of the bond's angular
+    /// frequency.
     pub normal: f64,
     /// The same ratio along the tangents.
     pub shear: f64,
@@ -39,8 +40,9 @@ pub struct BondSites {
 }
 
 impl BondSites {
-    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain. While there are fewer contacts than
-    /// grains, the lightest pairs that grains may form count for the largest ratios.
+    /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
+    /// While there are fewer contacts than grains, the lightest pairs that grains may form count
+    /// for the largest ratios.
     pub fn of<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
         let area = |radius: f64| s.laws[law].area.area(S::D, radius);
         let pairs = of_contacts(s, law);
@@ -83,7 +85,8 @@ impl BondSites {
         Some(Self { pairs, ..out })
     }
 
-    /// The pair below which a share of all pairs lie by inverse mass along the normal: 0.5 the median, 1 the lightest.
+    /// The pair below which a share of all pairs lie by inverse mass along the normal: 0.5 the
+    /// median, 1 the lightest.
     pub fn pair(&self, share: f64) -> BondPair {
         if share >= 1.0 {
             return self.lightest;
@@ -115,7 +118,8 @@ fn of_contacts<S: Space>(s: &Simulation<S>, law: usize) -> Vec<BondPair> {
         .collect()
 }
 
-/// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and the tangents (1/kg), material.
+/// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and
+/// the tangents (1/kg), material.
 #[derive(Clone, Copy)]
 struct Side {
     body: u32,
@@ -144,8 +148,8 @@ struct Candidates {
     extreme: Vec<BondPair>,
 }
 
-/// Pairs before there are contacts: each grain with the next one in the scene, or with each surface where the interface has no pairs
-/// of grains.
+/// Pairs before there are contacts: each grain with the next one in the scene, or with each surface
+/// where the interface has no pairs of grains.
 fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
     let governed = |a: &Side, b: &Side| {
         let found = s.table.get(a.material, b.material);
@@ -239,7 +243,8 @@ fn surfaces<S: Space>(s: &Simulation<S>) -> Vec<Side> {
     out
 }
 
-/// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its mass; none of other bodies.
+/// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its
+/// mass; none of other bodies.
 fn of_deforming<S: Space>(s: &Simulation<S>, body: u32) -> Option<[f64; 2]> {
     let (bodies, b) = (&s.state.bodies, body as usize);
     bodies.carrier(b).filter(|carrier| carrier.grain)?;

@@ -3,7 +3,8 @@
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// A body by its name in the case, or a grain by where it is, which has none: of rigid bodies and of those that deform.
+/// A body by its name in the case, or a grain by where it is, which has none: of rigid bodies and
+/// of those that deform.
 pub(super) fn body<S: Space>(s: &Simulation<S>, body: u32) -> String {
     let bodies = &s.state.bodies;
     let carrier = bodies.carrier(body as usize);

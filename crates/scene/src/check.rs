@@ -421,8 +421,8 @@ fn friction(case: &Case, dimension: usize) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Checks for grains that overlap at the start. More than 1 % of the smallest radius is an error; less is taken for the
-/// rounding of a sample that was settled elsewhere.
+/// Checks for grains that overlap at the start. More than 1 % of the smallest radius is an error;
+/// less is taken for the rounding of a sample that was settled elsewhere.
 ///
 /// # Errors
 /// The pair with the largest overlap.
@@ -448,7 +448,8 @@ pub(super) fn overlaps<S: Space>(
         called::body(s, worst.bodies[1]),
         -worst.gap
     );
-    // The error is reported at the last grain of the pair in the case, or at the body if neither is a grain.
+    // The error is reported at the last grain of the pair in the case, or at the body if neither is
+    // a grain.
     let at = worst.bodies.iter().max_by_key(|b| {
         let driven = s.state.bodies.driven.iter().any(|d| d.body == **b);
         let place = match origins.get(**b as usize) {

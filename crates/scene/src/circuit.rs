@@ -1,5 +1,5 @@
-//! The tribological circuit in a case: the bonds that attach grains to first bodies, and the zones where
-//! grains leave.
+//! The tribological circuit in a case: the bonds that attach grains to first bodies, and the zones
+//! where grains leave.
 
 use super::case::Case;
 use super::source::{ValidationError, nearest};
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CircuitSpec {
-    /// Names of the first bodies that grains can belong to. A grain belongs to one while a path of unbroken
-    /// bonds connects them.
+    /// Names of the first bodies that grains can belong to. A grain belongs to one while a path of
+    /// unbroken bonds connects them.
     pub bases: Vec<String>,
     /// Interfaces whose bonds tie; by default all that make bonds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,8 +47,8 @@ pub struct ZoneSpec {
     /// The body with which it moves; its corners are then relative to that body's position.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carried_by: Option<String>,
-    /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once; without it grains stay
-    /// ejected and may come back.
+    /// A grain that stays for so long (s) is lost and taken out of the scene, 0 for at once;
+    /// without it grains stay ejected and may come back.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lost_after: Option<f64>,
 }

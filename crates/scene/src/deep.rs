@@ -1,5 +1,6 @@
-//! Check for bodies that stand in each other deeper than the distance within which contacts are looked for: their points would never meet the
-//! surface that they are behind, or, within a grain, would be pushed out from there.
+//! Check for bodies that stand in each other deeper than the distance within which contacts are
+//! looked for: their points would never meet the surface that they are behind, or, within a grain,
+//! would be pushed out from there.
 
 use super::build::Origin;
 use super::called;
@@ -8,7 +9,8 @@ use fretwork_core::contact::detect;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
-/// How far behind a surface points are looked for in space, in their sizes: searches cost the square of it there.
+/// How far behind a surface points are looked for in space, in their sizes: searches cost the
+/// square of it there.
 const SIZES: f64 = 20.0;
 
 /// Checks the points of deformable bodies.

@@ -1,4 +1,5 @@
-//! Reader of meshes in Gmsh's text format, versions 2.2 and 4.1: points, simplices, and named physical groups.
+//! Reader of meshes in Gmsh's text format, versions 2.2 and 4.1: points, simplices, and named
+//! physical groups.
 //!
 //! Source: "Gmsh reference manual", file formats.
 

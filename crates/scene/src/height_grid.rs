@@ -1,14 +1,17 @@
-//! Heights over a grid: the reader of files of heights, and what tells that their lines are not the rows of the grid.
+//! Heights over a grid: the reader of files of heights, and what tells that their lines are not the
+//! rows of the grid.
 //!
-//! A file has numbers with a decimal point, a line for each row of the grid along x, separated by blanks, tabs, commas or semicolons. Empty
-//! lines, and lines that begin with `#`, are no rows. Heights of a line alone may be one below the other.
+//! A file has numbers with a decimal point, a line for each row of the grid along x, separated by
+//! blanks, tabs, commas or semicolons. Empty lines, and lines that begin with `#`, are no rows.
+//! Heights of a line alone may be one below the other.
 
 use super::sample::table::decimal_comma;
 use super::source::{InputError, read_text};
 use std::ops::Range;
 use std::path::Path;
 
-/// Fewest lines of three numbers that are taken for places and heights although a grid of three columns would fit.
+/// Fewest lines of three numbers that are taken for places and heights although a grid of three
+/// columns would fit.
 const FEWEST_PLACES: usize = 6;
 /// Departure from equal distances of places, over the distance.
 const UNEVEN: f64 = 1e-3;
@@ -16,8 +19,8 @@ const UNEVEN: f64 = 1e-3;
 /// Reads the heights of a grid of `nx` by `ny`, row by row along x, in the unit of the file.
 ///
 /// # Errors
-/// At the line that is wrong: a value that is not a finite number, decimal commas, lines of unlike length, and rows and columns that
-/// are not those of the grid.
+/// At the line that is wrong: a value that is not a finite number, decimal commas, lines of unlike
+/// length, and rows and columns that are not those of the grid.
 pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
     let (text, name) = (read_text(path)?, path.display().to_string());
     let body = text.strip_prefix('\u{feff}').unwrap_or(&text);
@@ -79,8 +82,8 @@ pub fn read(path: &Path, [nx, ny]: [usize; 2]) -> Result<Vec<f64>, InputError> {
     Err(fail("write one line for each row of the grid along x"))
 }
 
-/// Why rows of numbers are not those of a grid of `nx` by `ny`, although there may be as many: they are its columns, or places with
-/// heights. `None` for other numbers of rows and columns too.
+/// Why rows of numbers are not those of a grid of `nx` by `ny`, although there may be as many: they
+/// are its columns, or places with heights. `None` for other numbers of rows and columns too.
 pub fn misfit(rows: &[Vec<f64>], [nx, ny]: [usize; 2]) -> Option<&'static str> {
     let (columns, lines) = (rows.first().map_or(0, Vec::len), rows.len());
     let fits = (columns, lines) == (nx, ny);
@@ -94,7 +97,8 @@ pub fn misfit(rows: &[Vec<f64>], [nx, ny]: [usize; 2]) -> Option<&'static str> {
     )
 }
 
-/// Whether the first two of three columns are the places of a full grid at equal distances, each once.
+/// Whether the first two of three columns are the places of a full grid at equal distances, each
+/// once.
 fn places(rows: &[Vec<f64>]) -> bool {
     let along = |k: usize| {
         let mut all: Vec<f64> = rows.iter().map(|row| row[k]).collect();
@@ -147,7 +151,8 @@ fn numbers(line: &str) -> Result<Vec<f64>, String> {
     words.filter(|w| !w.is_empty()).map(number).collect()
 }
 
-/// The values of a list as it stands in a text: a row for each line of equal numbers of values; none where lines are unlike.
+/// The values of a list as it stands in a text: a row for each line of equal numbers of values;
+/// none where lines are unlike.
 pub fn rows_of_list(text: &str, values: &[Range<usize>], heights: &[f64]) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let mut end = 0;

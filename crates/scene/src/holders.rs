@@ -8,7 +8,8 @@ use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_elastic::half_space::HOLDER;
 
-/// The names of the holders in `drives`: a half-space by its name, a part of a body of finite elements as `body.part`.
+/// The names of the holders in `drives`: a half-space by its name, a part of a body of finite
+/// elements as `body.part`.
 pub(crate) fn names(case: &Case) -> impl Iterator<Item = String> {
     own(case).map(|(_, name, _)| name)
 }
@@ -49,7 +50,8 @@ pub(super) fn check(case: &Case, holder: &str, redriven: &Redriven) -> Result<()
     Ok(())
 }
 
-/// The drives that phases give a holder, in the order of the phases: index of the phase, axis, drive.
+/// The drives that phases give a holder, in the order of the phases: index of the phase, axis,
+/// drive.
 pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
     let given = case.phases.iter().enumerate().filter_map(|(k, phase)| {
         let redriven = phase.drives.get(holder)?;
@@ -63,7 +65,8 @@ pub(crate) fn later(case: &Case, holder: &str) -> Vec<(usize, usize, Dof)> {
         .collect()
 }
 
-/// What holds a deformable body in a scene, of a name in `drives`; none if there is no holder of this name.
+/// What holds a deformable body in a scene, of a name in `drives`; none if there is no holder of
+/// this name.
 pub(crate) fn find<S: Space>(
     case: &Case,
     s: &Simulation<S>,

@@ -12,7 +12,8 @@ pub enum From {
     Given,
     /// The default of the schema.
     Default,
-    /// The case does not give it, and without it there is nothing of the kind, or the program chooses.
+    /// The case does not give it, and without it there is nothing of the kind, or the program
+    /// chooses.
     NotSet,
 }
 
@@ -69,7 +70,8 @@ pub fn of(text: &str) -> Result<Vec<Input>, String> {
     Ok(walk.out)
 }
 
-/// Where the walk is: the components of the path, these with the names of variants between them, and the variants at its end.
+/// Where the walk is: the components of the path, these with the names of variants between them,
+/// and the variants at its end.
 #[derive(Default)]
 struct Place {
     path: Vec<String>,

@@ -32,7 +32,8 @@ pub struct Laws {
 /// Builds the interfaces.
 ///
 /// # Errors
-/// Unknown names, values out of range and laws that do not fit their slot, each at its place in the case.
+/// Unknown names, values out of range and laws that do not fit their slot, each at its place in the
+/// case.
 pub fn build(
     case: &Case,
     source: &Source,
@@ -205,7 +206,8 @@ struct FromFile {
 }
 
 impl FromFile {
-    /// Reads `parameters_from` of an interface: a material of the case whose file has laws, or a file of parameters.
+    /// Reads `parameters_from` of an interface: a material of the case whose file has laws, or a
+    /// file of parameters.
     fn read(
         spec: &InterfaceSpec,
         case: &Case,

@@ -1,4 +1,5 @@
-//! Values of the parameters of laws: from the case, its parameter file, and the materials of the interface.
+//! Values of the parameters of laws: from the case, its parameter file, and the materials of the
+//! interface.
 
 use super::case::InterfaceSpec;
 use super::material::{self, Given, Sourced};
@@ -26,8 +27,8 @@ impl From<ValidationError> for InterfaceError {
 /// Properties of the two materials of an interface, in its order.
 pub(super) type Sides<'a> = [&'a BTreeMap<String, Sourced>; 2];
 
-/// Parameters that are properties of materials, where neither the case nor the parameter file gives them: `young_1` is `young` of the
-/// first material of the interface, `young_2` that of the second.
+/// Parameters that are properties of materials, where neither the case nor the parameter file gives
+/// them: `young_1` is `young` of the first material of the interface, `young_2` that of the second.
 pub(super) fn properties_of_sides<'a>(
     plugin: &'a Plugin,
     given: &BTreeMap<&str, f64>,
@@ -87,8 +88,9 @@ pub(super) fn friction_of(laws: &[Loaded]) -> Option<f64> {
     contact.parameters.get(place).copied()
 }
 
-/// The coefficient of a wear law that is given `K`, which is taken out of `numbers`. Of `K` and the coefficient itself, that in the case
-/// wins over that in the file; both in one place contradict each other.
+/// The coefficient of a wear law that is given `K`, which is taken out of `numbers`. Of `K` and the
+/// coefficient itself, that in the case wins over that in the file; both in one place contradict
+/// each other.
 pub(super) fn wear_from_hardness(
     plugin: &Plugin,
     numbers: &mut BTreeMap<&str, GivenNumber<'_>>,

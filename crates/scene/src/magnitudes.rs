@@ -1,13 +1,13 @@
-//! Checks for numbers that are valid each but exceed double precision together: masses that underflow,
-//! energies that overflow, and displacements per step lost to rounding.
+//! Checks for numbers that are valid each but exceed double precision together: masses that
+//! underflow, energies that overflow, and displacements per step lost to rounding.
 
 use super::build::Origin;
 use super::source::ValidationError;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
-/// Displacement lost to rounding over the run, as a fraction of the alert distance, above which a case is
-/// rejected.
+/// Displacement lost to rounding over the run, as a fraction of the alert distance, above which a
+/// case is rejected.
 const LOST: f64 = 2e-5;
 
 /// Checks the masses, energies and velocities of all bodies.

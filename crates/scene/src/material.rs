@@ -108,12 +108,12 @@ pub struct Material {
     pub doc: String,
     /// Density (kg/m^3).
     pub density: Sourced,
-    /// Further properties: laws with parameters of their names followed by `_1` or `_2` take them, the others are for the
-    /// record.
+    /// Further properties: laws with parameters of their names followed by `_1` or `_2` take them,
+    /// the others are for the record.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub properties: BTreeMap<String, Sourced>,
-    /// Parameters of laws between its grains, and between them and other bodies: an interface takes them by
-    /// `parameters_from: "NAME"`, with the name that the case gives the material.
+    /// Parameters of laws between its grains, and between them and other bodies: an interface takes
+    /// them by `parameters_from: "NAME"`, with the name that the case gives the material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub laws: Option<InterfaceParameters>,
 }
@@ -169,8 +169,8 @@ impl Material {
     }
 }
 
-/// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a field with the word of its
-/// kind.
+/// Parameters of laws for a kind of interface: slot, law, parameter. In the text each slot is a
+/// field with the word of its kind.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InterfaceParameters {
     /// Description.
@@ -245,8 +245,8 @@ impl InterfaceParameters {
     }
 }
 
-/// The folders searched for material files: `materials/` beside the case and in each folder above it, then in
-/// the working folder, then the files built into the program.
+/// The folders searched for material files: `materials/` beside the case and in each folder above
+/// it, then in the working folder, then the files built into the program.
 #[derive(Clone, Debug)]
 pub struct MaterialLibrary {
     folders: Vec<PathBuf>,

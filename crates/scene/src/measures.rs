@@ -51,9 +51,9 @@ pub enum MeasureSpec {
         #[serde(default)]
         start: f64,
     },
-    /// Shear band in a box: angle to the x axis (rad, 0 to pi), width across it (m) and number of the grains
-    /// whose local shear exceeds a threshold. Shear is counted from the start of the second phase (from the
-    /// start of the run without phases).
+    /// Shear band in a box: angle to the x axis (rad, 0 to pi), width across it (m) and number of
+    /// the grains whose local shear exceeds a threshold. Shear is counted from the start of the
+    /// second phase (from the start of the run without phases).
     Band {
         /// Prefix of the columns.
         name: String,
@@ -64,9 +64,9 @@ pub enum MeasureSpec {
         /// Shear above which a grain belongs to the band.
         above: f64,
     },
-    /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction and
-    /// inertial number of the grains away from the walls, with the stress of contacts and motion. x (and y in 3D) must be
-    /// periodic.
+    /// Plane shear along x between two heights: shear rate, pressure, stress ratio, solid fraction
+    /// and inertial number of the grains away from the walls, with the stress of contacts and
+    /// motion. x (and y in 3D) must be periodic.
     Shear {
         /// Prefix of the columns.
         name: String,
@@ -78,8 +78,8 @@ pub enum MeasureSpec {
         #[serde(default)]
         start: f64,
     },
-    /// Profiles across the third body between two first bodies, its clusters, force chains and flow regime,
-    /// and the distribution of dissipation.
+    /// Profiles across the third body between two first bodies, its clusters, force chains and flow
+    /// regime, and the distribution of dissipation.
     ThirdBody(ThirdBodySpec),
 }
 

@@ -71,7 +71,8 @@ pub fn read(path: &Path) -> Result<(Vec<V>, Vec<[u32; 3]>), String> {
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
-/// Splits an STL file into its solids, each as a file: one for a binary file, any number for a text file.
+/// Splits an STL file into its solids, each as a file: one for a binary file, any number for a text
+/// file.
 fn solids(bytes: &[u8]) -> Result<Vec<Vec<u8>>, String> {
     let announced = bytes.get(HEADER - 4..HEADER).map(|count| {
         let count: [u8; 4] = [count[0], count[1], count[2], count[3]];

@@ -17,8 +17,8 @@ pub enum Service {
     Refuses(String),
 }
 
-/// Requirements of the interfaces of a scene, with `None` for a law that failed in its trial call; the run
-/// reports that failure.
+/// Requirements of the interfaces of a scene, with `None` for a law that failed in its trial call;
+/// the run reports that failure.
 pub struct Demands(Vec<(String, Option<LawRequirements>)>);
 
 impl Demands {

@@ -4,7 +4,8 @@ use super::case::Case;
 use super::phases::groups;
 use fretwork_core::step::control::Until;
 
-/// Largest number of steps of a run: to the end of its phases where all of them have one, at most to `time.end`.
+/// Largest number of steps of a run: to the end of its phases where all of them have one, at most
+/// to `time.end`.
 pub fn most_steps(case: &Case) -> u64 {
     let whole = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
     steps_of_phases(case).map_or(whole, |steps| steps.min(whole))
@@ -18,7 +19,8 @@ pub fn may_end_earlier(case: &Case) -> bool {
         .any(|p| p.until.as_ref().is_some_and(at_rest))
 }
 
-/// Steps to the latest end of the last phase; `None` if a phase may last to the end of the run. A phase has whole steps, at least one.
+/// Steps to the latest end of the last phase; `None` if a phase may last to the end of the run. A
+/// phase has whole steps, at least one.
 fn steps_of_phases(case: &Case) -> Option<u64> {
     if case.phases.is_empty() {
         return None;

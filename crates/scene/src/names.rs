@@ -9,8 +9,8 @@ const LONGEST: usize = 100;
 /// Names that are devices on some systems, with any extension.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
-/// Checks names that stand in columns and files: of bodies, materials, interfaces and phases. Those of measures and of deformable
-/// bodies are [words](word_fault).
+/// Checks names that stand in columns and files: of bodies, materials, interfaces and phases. Those
+/// of measures and of deformable bodies are [words](word_fault).
 ///
 /// # Errors
 /// The first name that cannot be one, with its path.
@@ -36,7 +36,8 @@ pub(super) fn check(case: &Case) -> Result<(), ValidationError> {
     Ok(())
 }
 
-/// Why a text cannot be a name that is shown: it has characters that are not seen, or that turn or end lines.
+/// Why a text cannot be a name that is shown: it has characters that are not seen, or that turn or
+/// end lines.
 pub fn unseen_fault(name: &str) -> Option<String> {
     let unseen = name.chars().find(|c| is_unseen(*c))?;
     let code = u32::from(unseen);
@@ -45,8 +46,8 @@ pub fn unseen_fault(name: &str) -> Option<String> {
     ))
 }
 
-/// Whether a character is a control character, a separator other than the space, or a format character (the categories Cc, Z and Cf of
-/// Unicode).
+/// Whether a character is a control character, a separator other than the space, or a format
+/// character (the categories Cc, Z and Cf of Unicode).
 fn is_unseen(c: char) -> bool {
     let separates = c.is_whitespace() && c != ' ';
     let formats = matches!(c,

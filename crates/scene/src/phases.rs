@@ -1,4 +1,5 @@
-//! Phases of a case: what each changes and when it ends; checks them and converts them for the simulation.
+//! Phases of a case: what each changes and when it ends; checks them and converts them for the
+//! simulation.
 
 pub use super::holders::name as holder_name;
 
@@ -22,8 +23,9 @@ pub struct PhaseSpec {
     /// When it ends; only the last may have none, and lasts to the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<Until>,
-    /// Drives of bodies, by their names, and of what holds deformable ones: half-spaces by their names, parts of bodies of finite
-    /// elements as `body.part`. Functions run on the time since the phase began.
+    /// Drives of bodies, by their names, and of what holds deformable ones: half-spaces by their
+    /// names, parts of bodies of finite elements as `body.part`. Functions run on the time since
+    /// the phase began.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub drives: BTreeMap<String, Redriven>,
     /// Gravity (m/s^2), one number an axis; ends any drive of gravity before.
@@ -103,7 +105,8 @@ impl Redriven {
     }
 }
 
-/// All drives that the holder of a deformable body has during the run, along an axis: its own, then those of the phases.
+/// All drives that the holder of a deformable body has during the run, along an axis: its own, then
+/// those of the phases.
 pub fn drives_of_holder<'a>(
     case: &'a Case,
     holder: &'a str,

@@ -1,4 +1,5 @@
-//! What a case asks for that acts on its simulation at the moments of a step, and the friction test that cycle jumps follow.
+//! What a case asks for that acts on its simulation at the moments of a step, and the friction test
+//! that cycle jumps follow.
 
 use super::case::Case;
 use super::circuit;
@@ -17,7 +18,8 @@ pub struct FrictionTest {
     pub body: RubbedBody,
     /// Its cycles.
     pub clock: CycleClock,
-    /// When the motion starts to count (s); where it has no period its friction counts from later on.
+    /// When the motion starts to count (s); where it has no period its friction counts from later
+    /// on.
     pub start: f64,
 }
 
@@ -63,7 +65,8 @@ fn rubbed<'a, S: Space>(case: &'a Case, s: &'a Simulation<S>) -> Option<(Rubbed,
     Some((Rubbed::System { system, holder }, dof))
 }
 
-/// The part of a deformable body that is held along an axis, and its drive: the first that moves or is pushed, or else the first.
+/// The part of a deformable body that is held along an axis, and its drive: the first that moves or
+/// is pushed, or else the first.
 pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a str, &'a Dof)> {
     if let Some(half_space) = case.half_spaces.iter().find(|b| b.name == body) {
         let dofs = &half_space.dofs;
@@ -84,8 +87,8 @@ pub(crate) fn held<'a>(case: &'a Case, body: &str, along: usize) -> Option<(&'a 
     driven.or(held.first()).copied()
 }
 
-/// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the tribological circuit. Wear
-/// recession came with the surfaces that wear.
+/// Has the processes of a case act in its simulation, which has not stepped: cycle jumps and the
+/// tribological circuit. Wear recession came with the surfaces that wear.
 pub fn install<S: Space>(case: &Case, s: &mut Simulation<S>) {
     if let Some(jumps) = jumps(case, s) {
         s.add_process(jumps);

@@ -1,4 +1,5 @@
-//! Reader of profile tables with the columns `x` and `z`, also those that a run writes with such columns.
+//! Reader of profile tables with the columns `x` and `z`, also those that a run writes with such
+//! columns.
 
 use super::sample::table::Table;
 use super::source::InputError;

@@ -1,10 +1,10 @@
-//! Grains of a recorded state of another run. The reader of the record belongs to a higher layer and is
-//! passed in, see [`crate::Loaded::reading_records`].
+//! Grains of a recorded state of another run. The reader of the record belongs to a higher layer
+//! and is passed in, see [`crate::Loaded::reading_records`].
 
 use std::path::{Path, PathBuf};
 
-/// Reader of a state from a results file (the last state if no number is given), for a case of dimension 2 or
-/// 3.
+/// Reader of a state from a results file (the last state if no number is given), for a case of
+/// dimension 2 or 3.
 pub type RecordReader = fn(&Path, Option<usize>, usize) -> Result<State, StateError>;
 
 /// A grain other than a single ball.
@@ -18,7 +18,8 @@ pub struct ShapedBody {
     pub density: f64,
     /// Characteristic length (m) that converts its spin to a velocity.
     pub length: f64,
-    /// Moments of inertia in the body frame (kg m^2; 2D kg m), row by row; in 2D the first entry only.
+    /// Moments of inertia in the body frame (kg m^2; 2D kg m), row by row; in 2D the first entry
+    /// only.
     pub inertia: [f64; 9],
 }
 
@@ -50,14 +51,15 @@ pub struct ShapedPiece {
     pub faces: Vec<Vec<u32>>,
 }
 
-/// Position and velocity of a grain, in SI units. Unused components are zero; in 2D the spin is the first
-/// component.
+/// Position and velocity of a grain, in SI units. Unused components are zero; in 2D the spin is the
+/// first component.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Position of its centre of mass, or of its first part (m), wrapped into the period if there is one.
+    /// Position of its centre of mass, or of its first part (m), wrapped into the period if there
+    /// is one.
     pub at: [f64; 3],
-    /// Orientation: the angle (rad) in 2D, a quaternion (w, x, y, z) in 3D; `None` if the file has no
-    /// orientations, since all its grains are single balls.
+    /// Orientation: the angle (rad) in 2D, a quaternion (w, x, y, z) in 3D; `None` if the file has
+    /// no orientations, since all its grains are single balls.
     pub rotation: Option<[f64; 4]>,
     /// Velocity (m/s).
     pub velocity: [f64; 3],

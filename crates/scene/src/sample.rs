@@ -1,4 +1,5 @@
-//! Samples of grains: what a case says of them, tables of grains, and the generators of the layer below, `fretwork-sample`.
+//! Samples of grains: what a case says of them, tables of grains, and the generators of the layer
+//! below, `fretwork-sample`.
 
 pub mod spec;
 pub mod table;

@@ -1,7 +1,7 @@
 //! Check for functions of time that change faster than the time step resolves.
 //!
-//! Imposed motion is on its path at the end of every step, but between two ends it is linear, and forces are
-//! evaluated once per step.
+//! Imposed motion is on its path at the end of every step, but between two ends it is linear, and
+//! forces are evaluated once per step.
 
 use super::case::{BodySpec, Case};
 use super::phases::{drives_of, drives_of_holder, holder_name};
@@ -22,7 +22,8 @@ pub struct UnresolvedDrive {
     pub aliased: bool,
 }
 
-/// The functions that the time step does not resolve: bodies, rigid and deformable, then phases, then gravity.
+/// The functions that the time step does not resolve: bodies, rigid and deformable, then phases,
+/// then gravity.
 pub fn unresolved(case: &Case) -> Vec<UnresolvedDrive> {
     let dimension = case.dimension as usize;
     let h = case.time.step;
@@ -106,7 +107,8 @@ fn aliased(function: &TimeFunction, h: f64) -> bool {
     }
 }
 
-/// What is wrong with a function sampled with step `h` (s), if anything; `moves` if it is a displacement.
+/// What is wrong with a function sampled with step `h` (s), if anything; `moves` if it is a
+/// displacement.
 fn fault(function: &TimeFunction, h: f64, moves: bool) -> Option<String> {
     match function {
         TimeFunction::Constant(_) => None,
@@ -154,8 +156,9 @@ fn table(points: &[(f64, f64)], h: f64, moves: bool) -> Option<String> {
     let changes = |w: &&[(f64, f64)]| w[0].1 != w[1].1;
     let short = |w: &[(f64, f64)]| w[1].0 - w[0].0 < h * (1.0 - 1e-9);
     let pieces: Vec<&[(f64, f64)]> = points.windows(2).collect();
-    // A short piece followed by another short piece is lost detail; a single one is a deliberate jump in a
-    // table. A displacement that jumps is always an error: its velocity would depend on the time step.
+    // A short piece followed by another short piece is lost detail; a single one is a deliberate
+    // jump in a table. A displacement that jumps is always an error: its velocity would depend on
+    // the time step.
     let lost = |k: usize| {
         let beside = k > 0 && short(pieces[k - 1]) && changes(&pieces[k - 1]);
         short(pieces[k]) && changes(&pieces[k]) && (moves || beside)

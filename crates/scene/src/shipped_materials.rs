@@ -1,4 +1,5 @@
-//! The shipped material files, compiled into the program for use when they are not found beside a case.
+//! The shipped material files, compiled into the program for use when they are not found beside a
+//! case.
 
 /// Names and texts of `materials/*.ron`.
 pub const FILES: [(&str, &str); 17] = [

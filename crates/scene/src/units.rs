@@ -1,7 +1,8 @@
 //! Units of numbers: parses them, checks them against the unit of the schema, and converts values.
 //!
-//! Names, prefixes and products are those of the crate `runits`. This module adds angles (which `runits`
-//! takes for pure numbers, so that a friction coefficient in degrees would pass) and hardness scales.
+//! Names, prefixes and products are those of the crate `runits`. This module adds angles (which
+//! `runits` takes for pure numbers, so that a friction coefficient in degrees would pass) and
+//! hardness scales.
 
 use super::source::{ValidationError, nearest};
 use runits::{Dimension, ParseError, UnknownUnit};
@@ -215,7 +216,8 @@ fn powers(text: &str) -> String {
     out
 }
 
-/// A metre with a prefix of mega or above: `Mm` is a common typing error for `mm`, and 1e9 times larger.
+/// A metre with a prefix of mega or above: `Mm` is a common typing error for `mm`, and 1e9 times
+/// larger.
 fn far(text: &str) -> Option<&str> {
     let mut words = text.split(|c: char| !c.is_alphabetic() && c != '_');
     words.find(|word| {

@@ -1,8 +1,10 @@
-//! Wear coefficients from Archard's K and the hardness of the materials, so that another steel wears differently.
+//! Wear coefficients from Archard's K and the hardness of the materials, so that another steel
+//! wears differently.
 //!
-//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K` in its place. V = K F s/H (J. F. Archard
-//! 1953), H the hardness of the softer material, so k = K/H; in sliding with friction E_d = mu F s, so alpha = K/(mu H) (S. Fouvry,
-//! P. Kapsa, L. Vincent 1996: alpha = k/mu).
+//! A wear law with a parameter `k` (1/Pa) or `alpha` (m^3/J) may be given the pure number `K` in
+//! its place. V = K F s/H (J. F. Archard 1953), H the hardness of the softer material, so k = K/H;
+//! in sliding with friction E_d = mu F s, so alpha = K/(mu H) (S. Fouvry, P. Kapsa, L. Vincent
+//! 1996: alpha = k/mu).
 
 use super::material::Sourced;
 use super::quantity;
@@ -39,7 +41,8 @@ pub struct WearCoefficient {
     pub derivation: String,
 }
 
-/// The parameter that follows from `K`, if the law with these parameters (name, unit) has one and none that is named `K` itself.
+/// The parameter that follows from `K`, if the law with these parameters (name, unit) has one and
+/// none that is named `K` itself.
 pub fn parameter<'a>(
     mut fields: impl Iterator<Item = (&'a str, &'a str)> + Clone,
 ) -> Option<(&'static str, &'static str)> {
@@ -63,10 +66,12 @@ pub struct Place<'a> {
     pub parameter: (&'a str, &'a str),
 }
 
-/// Derives the coefficient from K (a pure number) and the two materials; `friction` is `mu` of the contact law.
+/// Derives the coefficient from K (a pure number) and the two materials; `friction` is `mu` of the
+/// contact law.
 ///
 /// # Errors
-/// A sentence: no material has a hardness, its scale is no pressure, or there is no friction coefficient where it is needed.
+/// A sentence: no material has a hardness, its scale is no pressure, or there is no friction
+/// coefficient where it is needed.
 pub fn derive(
     place: Place<'_>,
     dimensionless: f64,

@@ -1,4 +1,5 @@
-//! The same contact has the same name over a restart, without another grain, and in another listing of the grains.
+//! The same contact has the same name over a restart, without another grain, and in another listing
+//! of the grains.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -142,7 +143,8 @@ fn without_another_grain() {
     let mut whole = plane(scene("whole", 2, "Polygons", &all));
     steps(&mut whole, 1);
     let (a, ids) = (named(&whole), whole.state.bodies.id.clone());
-    // Of a stack without its top, or without its lowest block, the others keep their identities, and so does the ground.
+    // Of a stack without its top, or without its lowest block, the others keep their identities,
+    // and so does the ground.
     for (name, gone) in [("top", 3), ("lowest", 0)] {
         let mut left = all.clone();
         left.remove(gone);

@@ -1,5 +1,6 @@
-//! A further kind of interface law, made here: one entry of the registry, and no other place knows of it. It watches contacts
-//! and keeps the work of friction; scenes that have it give the bits of those that do not.
+//! A further kind of interface law, made here: one entry of the registry, and no other place knows
+//! of it. It watches contacts and keeps the work of friction; scenes that have it give the bits of
+//! those that do not.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
@@ -107,8 +108,8 @@ fn path() -> SearchPath {
     SearchPath::new(&[]).with_built_in(laws)
 }
 
-/// All bits of the state after so many steps, and the largest difference between the record and the host's own account, as
-/// a share of the largest work.
+/// All bits of the state after so many steps, and the largest difference between the record and the
+/// host's own account, as a share of the largest work.
 fn run<S: Space>(s: &mut Simulation<S>, steps: u32) -> (Vec<u64>, f64) {
     for _ in 0..steps {
         s.step().unwrap();

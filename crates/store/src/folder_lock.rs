@@ -39,12 +39,14 @@ pub enum LockError {
     },
 }
 
-/// A lock on a folder, until it and its clones are dropped; the system releases it when the process ends, however it ends.
+/// A lock on a folder, until it and its clones are dropped; the system releases it when the process
+/// ends, however it ends.
 #[derive(Clone, Debug)]
 pub struct FolderLock {
     /// None on file systems without locks, where there is no protection.
     _file: Option<Arc<File>>,
-    /// The file by which it is owned, and where it lay; none of a reader, and of systems that number no files.
+    /// The file by which it is owned, and where it lay; none of a reader, and of systems that
+    /// number no files.
     owned: Option<(PathBuf, Place)>,
 }
 
@@ -85,7 +87,8 @@ impl FolderLock {
         })
     }
 
-    /// Whether the folder is still the one that was owned: asked before something is written there by its name.
+    /// Whether the folder is still the one that was owned: asked before something is written there
+    /// by its name.
     ///
     /// # Errors
     /// It, or the file by which it is owned, was removed, moved or replaced.
@@ -126,7 +129,8 @@ impl FolderLock {
     }
 }
 
-/// Whether somebody else holds a lock. File systems that have none refuse differently, and let everybody in.
+/// Whether somebody else holds a lock. File systems that have none refuse differently, and let
+/// everybody in.
 fn held(folder: &Path, locked: Result<(), TryLockError>) -> Result<(), LockError> {
     match locked {
         Err(TryLockError::WouldBlock) => Err(LockError::Held {

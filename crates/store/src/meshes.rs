@@ -1,5 +1,6 @@
-//! Converts deformable bodies to the views of `results.h5`: the mesh of each body of finite elements, the surface of each body that
-//! touches, and the grains of each material that deform as one mesh. Bodies are those that the case lists as `elastic` and `half_spaces`.
+//! Converts deformable bodies to the views of `results.h5`: the mesh of each body of finite
+//! elements, the surface of each body that touches, and the grains of each material that deform as
+//! one mesh. Bodies are those that the case lists as `elastic` and `half_spaces`.
 
 use super::results::{Field, Mesh};
 use fretwork_core::bodies::DynamicalSystem;

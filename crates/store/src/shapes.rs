@@ -8,8 +8,8 @@ use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_scene::recorded::ShapedGrain;
 
-/// The grains other than single balls, with the densities of the materials (kg/m^3), and those that deform as they are without load, in
-/// the order of their systems.
+/// The grains other than single balls, with the densities of the materials (kg/m^3), and those that
+/// deform as they are without load, in the order of their systems.
 pub fn of<S: Space>(s: &Simulation<S>, densities: &[f64], deforming: &[ShapedGrain]) -> Shaped {
     let grains = shaped(s);
     let (bodies, shapes) = (&s.state.bodies, &s.shapes);

@@ -64,8 +64,8 @@ pub fn header<S: Space>(
     }
 }
 
-/// The fields of a simulation's views: those it registers, orientations where there are grains that are no lone balls, and
-/// whether grains were taken out where a circuit does so.
+/// The fields of a simulation's views: those it registers, orientations where there are grains that
+/// are no lone balls, and whether grains were taken out where a circuit does so.
 fn fields<S: Space>(s: &Simulation<S>, circuit: bool) -> Fields<S> {
     let mut fields = s.fields.clone();
     let turns = shapes::needed(s).then(orientation).into_iter().flatten();
@@ -133,7 +133,8 @@ pub fn bytes<S: Space>(s: &Simulation<S>, circuit: bool) -> [usize; 2] {
     [8 * (3 + 2 + grain), 8 * (6 + 3 + contact)]
 }
 
-/// Appends the current state of a case, with the values of the observers' columns of the grains, in the order of the header.
+/// Appends the current state of a case, with the values of the observers' columns of the grains, in
+/// the order of the header.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -146,7 +147,8 @@ pub fn append<S: Space>(
     append_known(results, InDimension::of(s), loaded, values)
 }
 
-// Without a type parameter it is compiled in this crate, and not in the program, which is not optimised (`Cargo.toml`).
+// Without a type parameter it is compiled in this crate, and not in the program, which is not
+// optimised (`Cargo.toml`).
 fn append_known(
     results: &mut Results,
     s: InDimension<'_>,

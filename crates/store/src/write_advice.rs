@@ -2,7 +2,8 @@
 
 use std::io::{Error, ErrorKind};
 
-/// The end of a sentence with an error of the system in it: what to do about its cause; nothing where that is not known.
+/// The end of a sentence with an error of the system in it: what to do about its cause; nothing
+/// where that is not known.
 pub fn write_advice(reason: &str) -> &'static str {
     // Layers between put the system's error into text of their own; its number remains.
     let number = reason.rsplit_once("(os error ").map(|(_, rest)| rest);

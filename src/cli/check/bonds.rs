@@ -1,5 +1,5 @@
-//! Bonds compared with the load and the time step, for any law, by driving the law on a test bench: the
-//! strength of a bond, its slide per step, and how well its oscillation is resolved.
+//! Bonds compared with the load and the time step, for any law, by driving the law on a test bench:
+//! the strength of a bond, its slide per step, and how well its oscillation is resolved.
 
 use super::load::Load;
 use crate::geometry::space::Space;
@@ -13,14 +13,17 @@ use crate::step::Coupling;
 /// Range of bond strength over pressure in which load and bonds are comparable.
 const STRENGTH: [f64; 2] = [0.01, 100.0];
 
-/// Slide per step over the opening at break. Up to the first value the fracture energy of a bond that takes
-/// all of the slide has an error of about 3 %; beyond the second the bond breaks in fewer than ten steps.
+/// Slide per step over the opening at break. Up to the first value the fracture energy of a bond
+/// that takes all of the slide has an error of about 3 %; beyond the second the bond breaks in
+/// fewer than ten steps.
 const SLIDE: [f64; 2] = [0.01, 0.1];
-/// The first value where damage is coupled at the midpoint: its error falls with the square of the step.
+/// The first value where damage is coupled at the midpoint: its error falls with the square of the
+/// step.
 const RESOLVED_AT_MIDPOINT: f64 = 0.07;
 
-/// Time step times angular frequency. Up to the first value a period has at least twenty steps, and the
-/// scheme lengthens it by less than 1 %, (h omega)^2/12; beyond the second it has at most three steps.
+/// Time step times angular frequency. Up to the first value a period has at least twenty steps, and
+/// the scheme lengthens it by less than 1 %, (h omega)^2/12; beyond the second it has at most three
+/// steps.
 const FREQUENCY: [f64; 2] = [0.3, 2.0];
 
 /// A bond that breaks below this multiple of its opening at peak traction is brittle.
@@ -113,7 +116,8 @@ fn slide(scale: &BondScale, load: &Load, h: f64, coupling: Coupling) -> Option<S
     let ratio = speed * h / critical;
     // A bond that breaks at its peak has no softening branch that a step could skip.
     let brittle = critical <= BRITTLE * peak;
-    // Error of the energy of a MAC bond in steps of this ratio, in per cent; the ratio at which it is 3 %.
+    // Error of the energy of a MAC bond in steps of this ratio, in per cent; the ratio at which it
+    // is 3 %.
     let (error, resolved) = match coupling {
         Coupling::Midpoint => (540.0 * ratio * ratio, RESOLVED_AT_MIDPOINT),
         Coupling::Explicit | Coupling::Implicit { .. } => (300.0 * ratio, SLIDE[0]),

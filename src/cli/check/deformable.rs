@@ -1,4 +1,5 @@
-//! Deformable bodies: their size, what their solutions take in memory, and what these cost in a step.
+//! Deformable bodies: their size, what their solutions take in memory, and what these cost in a
+//! step.
 
 use crate::bodies::{DynamicalSystem, SystemSize};
 use crate::geometry::space::{Space, VectorLike};
@@ -6,7 +7,8 @@ use crate::step::Simulation;
 use cpu_time::ThreadTime;
 use fretwork_core::bodies::SystemStep;
 
-/// Operations of a factorisation above which it is not timed: it would take more than some tenths of a second.
+/// Operations of a factorisation above which it is not timed: it would take more than some tenths
+/// of a second.
 const MOST_TIMED: f64 = 5e8;
 
 /// The lines of all deformable bodies: label and text.
@@ -70,7 +72,8 @@ fn bytes(count: usize) -> String {
     scaled(count as f64, [" B", " kB", " MB", " GB"])
 }
 
-/// A number with two digits or more, and the first of these units, each a thousand times the last, in which it is below a thousand.
+/// A number with two digits or more, and the first of these units, each a thousand times the last,
+/// in which it is below a thousand.
 fn scaled(mut value: f64, units: [&str; 4]) -> String {
     let mut units = units.into_iter();
     let mut unit = units.next().unwrap_or_default();

@@ -12,12 +12,13 @@ use crate::scene::case::Case;
 use crate::step::Simulation;
 use fretwork_observe::heat::without_heat;
 
-/// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D. P. DeWitt, Fundamentals of Heat and Mass
-/// Transfer, chapter 5).
+/// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D.
+/// P. DeWitt, Fundamentals of Heat and Mass Transfer, chapter 5).
 const UNIFORM: f64 = 0.1;
 
-/// D h/w^2 from which on the steps along the depth and along the surface, one after another, are not those of all at once: a band source is then
-/// off by more than 1 % (crates/math/tests/diffusion_columns.rs).
+/// D h/w^2 from which on the steps along the depth and along the surface, one after another, are
+/// not those of all at once: a band source is then off by more than 1 %
+/// (crates/math/tests/diffusion_columns.rs).
 const SPLIT: f64 = 0.5;
 
 /// The lines.
@@ -182,8 +183,8 @@ fn mechanical_time<S: Space>(s: &Simulation<S>, heat: &Heat) -> Vec<CheckLine> {
     out
 }
 
-/// Conductance of the median contact of an interface under the load, its Biot number, and the time in which a grain takes the temperature of its
-/// neighbours.
+/// Conductance of the median contact of an interface under the load, its Biot number, and the time
+/// in which a grain takes the temperature of its neighbours.
 fn conduction<S: Space>(
     case: &Case,
     built: &Built<S>,

@@ -1,4 +1,5 @@
-//! Compliant contacts compared with the load, for any law: stiffness, overlap under the pressure, stiffness number.
+//! Compliant contacts compared with the load, for any law: stiffness, overlap under the pressure,
+//! stiffness number.
 
 use super::load::Load;
 use crate::geometry::space::Space;
@@ -9,12 +10,14 @@ use crate::scene::bond_sites::BondSites;
 use crate::scene::build::Built;
 use crate::scene::case::Case;
 
-/// Overlap over the radius of a grain from which grains are too soft: contacts no longer act one by one.
+/// Overlap over the radius of a grain from which grains are too soft: contacts no longer act one by
+/// one.
 const SOFT: f64 = 0.05;
 /// Overlap over the radius at which stiffnesses are told where no pressure is known.
 const SHOWN: f64 = 0.01;
 
-/// Shares of the pairs of bodies, by mass, on which the stiffness is compared with the step: the median first, the lightest last.
+/// Shares of the pairs of bodies, by mass, on which the stiffness is compared with the step: the
+/// median first, the lightest last.
 const QUANTILES: [f64; 4] = [0.5, 0.75, 0.95, 1.0];
 
 /// Report lines on every interface whose contacts are springs.

@@ -16,7 +16,8 @@ pub const EXAMPLES: &str = "Examples:
 
 #[derive(Args, Debug)]
 pub struct CertifyArgs {
-    /// A library, or the name of a law on the search path (kind/name if laws of several kinds have it)
+    /// A library, or the name of a law on the search path (kind/name if laws of several kinds have
+    /// it)
     #[arg(required_unless_present = "all")]
     law: Option<String>,
     /// Every law on the search path

@@ -26,11 +26,12 @@ pub const EXAMPLES: &str = "Examples:
 #[derive(Args, Debug)]
 #[command(allow_negative_numbers = true)]
 pub struct DriveArgs {
-    /// Laws to compose: a name fills every slot that has a law of this name; kind/name fills one slot
+    /// Laws to compose: a name fills every slot that has a law of this name; kind/name fills one
+    /// slot
     #[arg(required_unless_present_any = ["case", "interface"], conflicts_with = "case")]
     laws: Vec<String>,
-    /// Drive the laws of an interface of this case, with its parameters, on contacts of their size in the
-    /// case
+    /// Drive the laws of an interface of this case, with its parameters, on contacts of their size
+    /// in the case
     #[arg(long, value_name = "FILE")]
     case: Option<PathBuf>,
     /// Name of the interface in the case; may be omitted if there is only one
@@ -39,20 +40,22 @@ pub struct DriveArgs {
     /// A parameter: NAME=VALUE or KIND.NAME=VALUE; with --case a value of the case: KEY.PATH=VALUE
     #[arg(long = "set", value_name = "NAME=VALUE")]
     sets: Vec<String>,
-    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0), force (raised in 1 s), slide, press
-    /// (pressure raised in 1 s), heat (temperature raised in 1 s); press by default where a transport law is driven, otherwise I
+    /// I, II, mixed (at --angle), cyclic (about zero in mode II; from 0 in mode I with --angle 0),
+    /// force (raised in 1 s), slide, press (pressure raised in 1 s), heat (temperature raised in 1
+    /// s); press by default where a transport law is driven, otherwise I
     #[arg(long)]
     mode: Option<String>,
     /// Angle of the opening to the normal, degrees (mixed, cyclic, force)
     #[arg(long)]
     angle: Option<f64>,
-    /// Largest opening (m), traction (force, Pa), sliding distance at each velocity (slide, m), pressure (press, Pa) or temperature
-    /// (heat, K); by default 20 % beyond the opening at which the bond breaks or the attraction ends (cyclic: beyond its peak;
-    /// force: 10 % beyond its strength; slide: 1e-5; press: 1e9; heat: 2000)
+    /// Largest opening (m), traction (force, Pa), sliding distance at each velocity (slide, m),
+    /// pressure (press, Pa) or temperature (heat, K); by default 20 % beyond the opening at which
+    /// the bond breaks or the attraction ends (cyclic: beyond its peak; force: 10 % beyond its
+    /// strength; slide: 1e-5; press: 1e9; heat: 2000)
     #[arg(long)]
     to: Option<f64>,
-    /// Reduced radius of the contact r1 r2/(r1 + r2) (m); by default 1e-5, with --case the median of the
-    /// interface's contacts
+    /// Reduced radius of the contact r1 r2/(r1 + r2) (m); by default 1e-5, with --case the median
+    /// of the interface's contacts
     #[arg(long, value_parser = positive)]
     radius: Option<f64>,
     /// Speed of the opening (m/s)

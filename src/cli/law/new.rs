@@ -127,7 +127,8 @@ impl NewLaw {
             .replace("@VERSION@", env!("CARGO_PKG_VERSION"))
     }
 
-    /// Writes its files; returns the command that builds it, and the folder in which the library is then.
+    /// Writes its files; returns the command that builds it, and the folder in which the library is
+    /// then.
     fn write(&self, language: Language, template: &str) -> Result<(String, PathBuf), Failure> {
         let (folder, here) = (&self.folder, self.folder.display());
         let (source, library) = (self.fill(template), self.library());

@@ -17,8 +17,8 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// State of the run loop, beyond what follows from the case. Rows are in the results file; the number of rows
-/// that belong to this state is stored here.
+/// State of the run loop, beyond what follows from the case. Rows are in the results file; the
+/// number of rows that belong to this state is stored here.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 struct RunLoopState<'a, S: Space> {
@@ -63,10 +63,12 @@ impl<S: Observed> Recorder<'_, S> {
         Ok(self.results.checkpoint(number, &bytes)?)
     }
 
-    /// Moves the results file to its final name, with a first checkpoint in it, and opens the table.
+    /// Moves the results file to its final name, with a first checkpoint in it, and opens the
+    /// table.
     pub(super) fn publish(&mut self, kind: Kind, state: Vec<u8>) -> Result<(), RunError> {
         self.write_frame(kind, state)?;
-        // Remove the marker of a finished earlier run, and its page: from now on this folder holds an unfinished one.
+        // Remove the marker of a finished earlier run, and its page: from now on this folder holds
+        // an unfinished one.
         for path in [LAST, fretwork_view::FILE].map(|name| self.out.join(name)) {
             match std::fs::remove_file(&path) {
                 Err(e) if e.kind() != std::io::ErrorKind::NotFound && !path.is_dir() => {
@@ -106,8 +108,8 @@ impl<S: Observed> Recorder<'_, S> {
         })?)
     }
 
-    /// Restores the state of a stopped run, and its rows up to there, in a new file that then replaces the
-    /// old one.
+    /// Restores the state of a stopped run, and its rows up to there, in a new file that then
+    /// replaces the old one.
     pub(super) fn restore(&mut self, stop: ResumePoint) -> Result<(), RunError> {
         let path = stop.results.path().to_owned();
         let refused = |source: CodeError| ResumeError::State {
@@ -143,7 +145,8 @@ impl<S: Observed> Recorder<'_, S> {
         Ok(())
     }
 
-    /// Goes on with the spacing of states and pictures that the run was begun with, also beyond its end.
+    /// Goes on with the spacing of states and pictures that the run was begun with, also beyond its
+    /// end.
     fn set_end(&mut self, spread: u64, path: &Path) -> Result<(), ResumeError> {
         self.spread = spread;
         let end = self.loaded.case.time.end;

@@ -1,5 +1,6 @@
-//! Removal of an older run's files that the new run would not overwrite: pictures, problems and figures of the program, and the
-//! pictures and files that observers name (`picture_names`, `file_names`). No other files are removed.
+//! Removal of an older run's files that the new run would not overwrite: pictures, problems and
+//! figures of the program, and the pictures and files that observers name (`picture_names`,
+//! `file_names`). No other files are removed.
 
 use super::frame::PICTURES;
 use super::{RunError, unwritable};
@@ -23,7 +24,8 @@ pub(super) const FIGURES: [&str; 11] = [
     "biaxial.png",
 ];
 
-/// Files of the program in the folder of a run: they are in place when older files are removed, and no observer's.
+/// Files of the program in the folder of a run: they are in place when older files are removed, and
+/// no observer's.
 pub(super) const OWN: [&str; 7] = [
     "results.h5",
     "grains.vtkhdf",
@@ -34,8 +36,8 @@ pub(super) const OWN: [&str; 7] = [
     "summary.json",
 ];
 
-/// Removes pictures, problems and figures of an older run from its folder, and the pictures and files that the observers of the
-/// new run name as theirs.
+/// Removes pictures, problems and figures of an older run from its folder, and the pictures and
+/// files that the observers of the new run name as theirs.
 pub(super) fn clear<S: Space>(folder: &Path, observers: &Observers<S>) -> Result<(), RunError> {
     let (mut pictures, files) = (observers.picture_names(), observers.file_names());
     pictures.extend(PICTURES);

@@ -1,4 +1,5 @@
-//! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go on.
+//! Drawing beside the steps: a thread of its own draws the pictures of one time while the steps go
+//! on.
 
 use crate::view::{Chart, DrawError, Frame, draw_panels, noted};
 use std::path::PathBuf;

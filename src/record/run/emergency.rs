@@ -1,8 +1,9 @@
 //! What is left for the watch over plugins to write when a law does not come back from a step.
 //!
-//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The files and observers of the run
-//! it does not use during a step. So before a step they are laid where the watch finds them, with what was known then, and taken
-//! back after it. What happens then to the program is decided by whoever started the watch.
+//! The thread that is stuck owns the simulation, half of a step done: nobody else may read it. The
+//! files and observers of the run it does not use during a step. So before a step they are laid
+//! where the watch finds them, with what was known then, and taken back after it. What happens then
+//! to the program is decided by whoever started the watch.
 
 use super::end::{self, LAST};
 use super::{Recorder, RunError};

@@ -132,7 +132,8 @@ impl<S: Observed> Recorder<'_, S> {
         Ok(self.results.finish(&self.out)?)
     }
 
-    /// Writes the figures as data, as far as they are known now: for the report, and for other programs.
+    /// Writes the figures as data, as far as they are known now: for the report, and for other
+    /// programs.
     pub(super) fn describe_figures(&self, wall: Duration) -> Result<(), RunError> {
         let outputs = self.observers.figures(&self.end(wall)).into_iter();
         let figure = |output| match output {

@@ -63,8 +63,9 @@ pub enum RunError {
         /// Number of columns.
         columns: usize,
     },
-    /// A law did not come back in time from a call, and the watch over laws has written what there was. The handler that was given
-    /// to [`crate::laws::watch::watch`] decides what becomes of the program.
+    /// A law did not come back in time from a call, and the watch over laws has written what there
+    /// was. The handler that was given to [`crate::laws::watch::watch`] decides what becomes of the
+    /// program.
     #[error("a law did not come back in time; what was recorded until then is on disk")]
     TakenOver,
     /// The results file.
@@ -82,7 +83,8 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Whether nothing more is written after it: somebody else did, or the folder is not the run's any more.
+    /// Whether nothing more is written after it: somebody else did, or the folder is not the run's
+    /// any more.
     pub(super) fn is_last(&self) -> bool {
         let lost = |e: &LockError| matches!(e, LockError::Lost { .. });
         match self {

@@ -77,12 +77,12 @@ pub struct RunOptions {
     pub threads: usize,
 }
 
-/// What is done with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the step, with a checkpoint from
-/// which it may be resumed and all files written.
+/// What is done with the progress of a run: [`ControlFlow::Break`] with a reason stops it after the
+/// step, with a checkpoint from which it may be resumed and all files written.
 pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 
-/// A run of a case that is about to begin, with what a user of the library adds to it. Processes are added to the simulation
-/// itself ([`Simulation::add_process`]) before.
+/// A run of a case that is about to begin, with what a user of the library adds to it. Processes
+/// are added to the simulation itself ([`Simulation::add_process`]) before.
 ///
 /// ```no_run
 /// use fretwork::geometry::space::Dim2;
@@ -131,8 +131,8 @@ impl<'a, S: Observed> Run<'a, S> {
         }
     }
 
-    /// Has it end without figures where the flag is set by then: for who stops a run and waits for its end. They are drawn when the
-    /// run is resumed and ends.
+    /// Has it end without figures where the flag is set by then: for who stops a run and waits for
+    /// its end. They are drawn when the run is resumed and ends.
     #[must_use]
     pub fn hurry(mut self, flag: &'a AtomicBool) -> Self {
         self.hurry = Some(flag);
@@ -146,8 +146,8 @@ impl<'a, S: Observed> Run<'a, S> {
         self
     }
 
-    /// Has it go on from where a run of the same case, with the same observers and processes, was [`stopped`]: the bits are those
-    /// of a run that was not.
+    /// Has it go on from where a run of the same case, with the same observers and processes, was
+    /// [`stopped`]: the bits are those of a run that was not.
     #[must_use]
     pub fn resume(mut self, stop: ResumePoint) -> Self {
         self.stop = Some(stop);
@@ -157,8 +157,8 @@ impl<'a, S: Observed> Run<'a, S> {
     /// Runs to the end, or until `progress`, which is called after every step, asks for one.
     ///
     /// # Errors
-    /// A failed step, an unwritable file, or a state that the case cannot take up; the summary is written even then, but where
-    /// nothing had begun.
+    /// A failed step, an unwritable file, or a state that the case cannot take up; the summary is
+    /// written even then, but where nothing had begun.
     pub fn execute(self, progress: &mut OnProgress<'_>) -> Result<Summary, RunError> {
         let mut recorder = Recorder::new(self)?;
         let outcome = recorder.run_steps(progress).map(|stopped| {
@@ -194,7 +194,8 @@ pub fn run<S: Dimensional>(
     run_scene(loaded, S::scene(built), options, progress)
 }
 
-/// Not generic: compiled here, once for each dimension, and not again in every program that calls [`run`].
+/// Not generic: compiled here, once for each dimension, and not again in every program that calls
+/// [`run`].
 fn run_scene(
     loaded: &Loaded,
     scene: Scene,
@@ -223,7 +224,8 @@ pub fn stopped<S: Space>(
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
-/// The observers that a run of a case has, for who steps without one. Its processes are [installed](processes::install) before.
+/// The observers that a run of a case has, for who steps without one. Its processes are
+/// [installed](processes::install) before.
 pub fn run_observers<S: Observed>(loaded: &Loaded, s: &Simulation<S>) -> Observers<S> {
     let any = !(s.shapes.surfaces.is_empty() && s.state.bodies.driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))
@@ -250,15 +252,16 @@ struct Recorder<'a, S: Space> {
     unconverged: u64,
     /// The estimate of the error of the run.
     estimate: ErrorEstimate,
-    /// Choice of step and tolerance, where the case asks for an accuracy; and the parts of a step that are made.
+    /// Choice of step and tolerance, where the case asks for an accuracy; and the parts of a step
+    /// that are made.
     accuracy: Option<AccuracyControl>,
     parts: Option<StepParts>,
     /// Steps of the case that are done; each may have several parts, which the simulation counts.
     done: u64,
     /// Steps that were done when the run was resumed.
     resumed_at: u64,
-    /// Total steps of the run, and the steps over which states and pictures are distributed, as set when it
-    /// was started.
+    /// Total steps of the run, and the steps over which states and pictures are distributed, as set
+    /// when it was started.
     total: u64,
     spread: u64,
     checkpoint_writer: CheckpointWriter,
@@ -273,7 +276,8 @@ struct Recorder<'a, S: Space> {
     uncertainty: Uncertainty,
     /// See [`Run::hurry`].
     hurry: Option<&'a AtomicBool>,
-    /// Why rows of `statistics.csv` are missing, which is made of the results again when the run goes on.
+    /// Why rows of `statistics.csv` are missing, which is made of the results again when the run
+    /// goes on.
     unwritten: Option<RunError>,
     /// The folder is this run's alone until it is over.
     lock: FolderLock,
@@ -437,8 +441,9 @@ impl<'a, S: Observed> Recorder<'a, S> {
         }
     }
 
-    /// Records a step: its events, and its problem, row, state and pictures where they are due. `last` is the last step of the run,
-    /// `finished` the one that ended it, `turned` one after which another phase begins.
+    /// Records a step: its events, and its problem, row, state and pictures where they are due.
+    /// `last` is the last step of the run, `finished` the one that ended it, `turned` one after
+    /// which another phase begins.
     fn record(
         &mut self,
         report: &StepReport,

@@ -1,4 +1,5 @@
-//! That no two things of a run have the same name: columns of the statistics, and files of its folder.
+//! That no two things of a run have the same name: columns of the statistics, and files of its
+//! folder.
 
 use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};
@@ -49,7 +50,8 @@ pub fn check_names(loaded: &Loaded, scene: &Scene) -> Result<(), InputError> {
     error.map_or(Ok(()), Err)
 }
 
-/// Two columns or two files of one name. Names of files that differ in capitals are the same file on some systems.
+/// Two columns or two files of one name. Names of files that differ in capitals are the same file
+/// on some systems.
 fn twice<S: Space>(observers: &Observers<S>) -> Option<Twice> {
     let mut columns = BTreeSet::new();
     for column in observers.columns() {
@@ -67,15 +69,16 @@ fn twice<S: Space>(observers: &Observers<S>) -> Option<Twice> {
     None
 }
 
-/// The error at the line of the case that makes a name; none if it is of an observer of the library's user.
+/// The error at the line of the case that makes a name; none if it is of an observer of the
+/// library's user.
 fn at_line(loaded: &Loaded, what: &str, name: &str) -> Option<InputError> {
     let message = format!("another {what} is named `{name}`; take another name here");
     let path = path(&loaded.case, name)?;
     Some(loaded.source.locate(ValidationError::new(path, message)))
 }
 
-/// The path of the name in a case from which the name of a column or a file is made: the longest that is in it, of a measure before
-/// that of a body.
+/// The path of the name in a case from which the name of a column or a file is made: the longest
+/// that is in it, of a measure before that of a body.
 fn path(case: &Case, made: &str) -> Option<String> {
     let measures = case.measures.iter().map(|m| m.name());
     let elastic = case.elastic.iter().map(|b| b.name.as_str());

@@ -5,8 +5,9 @@ use crate::geometry::space::Space;
 use crate::scene::case::Checkpoint;
 
 impl<S: Space> Recorder<'_, S> {
-    /// Steps of the case until the next record, which no step passes. With `every: 1`, the default, there is a row after each step, however
-    /// many of the case it spans, unless measures and tests average over rows.
+    /// Steps of the case until the next record, which no step passes. With `every: 1`, the default,
+    /// there is a row after each step, however many of the case it spans, unless measures and tests
+    /// average over rows.
     pub(super) fn until_record(&self) -> u64 {
         let case = &self.loaded.case;
         let output = &case.output;
@@ -38,7 +39,8 @@ fn events(step: u64, total: u64, count: u32) -> u128 {
     u128::from(step) * u128::from(count) / u128::from(total.max(1))
 }
 
-/// Steps after this one until the next of `count` events over the run; `None` where none is to come.
+/// Steps after this one until the next of `count` events over the run; `None` where none is to
+/// come.
 fn until_next(step: u64, total: u64, count: u32) -> Option<u64> {
     let next = events(step, total, count) + 1;
     let at = (next * u128::from(total.max(1))).div_ceil(u128::from(count.max(1)));

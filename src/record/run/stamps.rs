@@ -6,9 +6,9 @@ use crate::record::summary::PluginStamp;
 use crate::scene::build::Loaded;
 use crate::shipped::search_path;
 
-/// The laws of a run, each listed once, and whether each passes certification with its parameters. A damage
-/// law is tested with the cohesion law beside it if that passes itself, other laws with plain shipped
-/// partners, so that a failure is attributed to the law that causes it.
+/// The laws of a run, each listed once, and whether each passes certification with its parameters.
+/// A damage law is tested with the cohesion law beside it if that passes itself, other laws with
+/// plain shipped partners, so that a failure is attributed to the law that causes it.
 pub(super) fn stamps(laws: &[Interface]) -> Vec<PluginStamp> {
     let mut known = Known {
         path: search_path(),
@@ -90,8 +90,8 @@ impl Known {
         if let Some((_, certified)) = self.found.iter().find(|(k, _)| *k == key) {
             return *certified;
         }
-        // A foreign law may end the process in which it is tested, or corrupt its memory. The shipped laws
-        // are certified by the project's tests.
+        // A foreign law may end the process in which it is tested, or corrupt its memory. The
+        // shipped laws are certified by the project's tests.
         let own = |p: &Plugin| self.path.is_own(p);
         let trusted = own(&law.plugin) && partner.is_none_or(|p| own(&p.plugin));
         type Test = fn(&Plugin, &[f64], Option<&Law>, &SearchPath) -> Result<Certificate, LawError>;

@@ -7,7 +7,7 @@ use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
 use fretwork::scene::build::Scene;
 use fretwork::scene::load;
-use fretwork::shipped::search_path;
+use fretwork::shipped::{built_in, search_path};
 use fretwork::step::Simulation;
 use fretwork_abi::FLAG_OPENING;
 use std::path::Path;
@@ -207,7 +207,7 @@ fn a_wrong_energy_shows_in_the_residual() {
         .map(str::to_owned);
         let mut s: Simulation<Dim2> = fretwork::scene::load(&case, &sets)
             .unwrap_or_else(|e| panic!("{e}"))
-            .build_in(&SearchPath::new(&[place]))
+            .build_in(&SearchPath::new(&[place]).with_built_in(built_in()))
             .unwrap_or_else(|e| panic!("{e}"))
             .simulation;
         while s.state.time < 5e-6 {

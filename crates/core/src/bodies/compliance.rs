@@ -1,14 +1,16 @@
-//! The compliance of the nodes of a system, kept between steps of the same length and read in place by the solver.
+//! The compliance of the nodes of a system, kept between steps of the same length and read in place
+//! by the solver.
 
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::marker::PhantomData;
 use std::sync::OnceLock;
 
-/// Blocks P_a A^-1 P_b^T (1/kg) of nodes of a system, column by column: the column of a node b has the change of the velocities of all nodes
-/// a by an impulse on b. Columns are found once they are asked for.
+/// Blocks P_a A^-1 P_b^T (1/kg) of nodes of a system, column by column: the column of a node b has
+/// the change of the velocities of all nodes a by an impulse on b. Columns are found once they are
+/// asked for.
 ///
-/// A column is D rows of numbers, one for each axis of the impulse, with the velocities of all nodes one after the other (see
-/// [`column_of`]).
+/// A column is D rows of numbers, one for each axis of the impulse, with the velocities of all
+/// nodes one after the other (see [`column_of`]).
 #[derive(Clone, Debug)]
 pub struct Compliance<S: Space> {
     nodes: Vec<u32>,
@@ -39,8 +41,8 @@ impl<S: Space> Compliance<S> {
         self.nodes.binary_search(&node).ok()
     }
 
-    /// The column of the node at a place, found now where it was not before: `find` gives the velocity of a place for an impulse of one
-    /// along an axis (1/kg).
+    /// The column of the node at a place, found now where it was not before: `find` gives the
+    /// velocity of a place for an impulse of one along an axis (1/kg).
     pub fn column_or<F: Fn(usize) -> S::Vector>(
         &self,
         at: usize,
@@ -56,7 +58,8 @@ impl<S: Space> Compliance<S> {
     }
 }
 
-/// A column of a number of nodes: `find` gives for each axis of the impulse the velocity of a node by its place (1/kg).
+/// A column of a number of nodes: `find` gives for each axis of the impulse the velocity of a node
+/// by its place (1/kg).
 pub fn column_of<S: Space, F: Fn(usize) -> S::Vector>(
     count: usize,
     mut find: impl FnMut(usize) -> F,

@@ -1,6 +1,7 @@
 //! How heat flows in the mesh of a dynamical system.
 
-/// Linear elements for heat, with the capacity of each lumped at its points: with conductivity k (W/(m K)) and heat capacity of volume rho c (J/(m^3 K))
+/// Linear elements for heat, with the capacity of each lumped at its points: with conductivity k
+/// (W/(m K)) and heat capacity of volume rho c (J/(m^3 K))
 ///
 /// ```text
 /// C_a = rho c V_a,    G_ab = -k sum_e V_e grad N_a . grad N_b
@@ -13,6 +14,7 @@ pub struct Conduction {
     pub volumes: Vec<f64>,
     /// Pairs of points and G_ab/k (m; a number in 2D); negative across an obtuse angle.
     pub edges: Vec<([u32; 2], f64)>,
-    /// Named parts of the boundary, with their points and the area (m^2; m in 2D) that each stands for.
+    /// Named parts of the boundary, with their points and the area (m^2; m in 2D) that each stands
+    /// for.
     pub parts: Vec<(String, Vec<(u32, f64)>)>,
 }

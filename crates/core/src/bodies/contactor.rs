@@ -4,14 +4,16 @@ use super::nodes::Nodes;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A part of a system that can touch: it stands as a body of its own among [`super::Bodies`], which follows the system and has
-/// no inertia of its own. Detection, laws, bonds and files treat it as any other body.
+/// A part of a system that can touch: it stands as a body of its own among [`super::Bodies`], which
+/// follows the system and has no inertia of its own. Detection, laws, bonds and files treat it as
+/// any other body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contactor {
     /// The nodes that carry its origin.
     pub nodes: Nodes,
-    /// Radius of a ball about the origin (m); of a point half the length that it stands for, in space the radius of the disk of its area,
-    /// from which contacts have their area; of other shapes a length of their size.
+    /// Radius of a ball about the origin (m); of a point half the length that it stands for, in
+    /// space the radius of the disk of its area, from which contacts have their area; of other
+    /// shapes a length of their size.
     pub radius: f64,
     /// What touches.
     pub shape: ContactorShape,
@@ -24,11 +26,13 @@ pub struct Contactor {
 pub enum ContactorShape {
     /// A ball about the origin.
     Ball,
-    /// The origin itself: a point of a surface, which touches balls, pieces and surfaces but no other point.
+    /// The origin itself: a point of a surface, which touches balls, pieces and surfaces but no
+    /// other point.
     Point,
     /// A surface that deforms with the system, see [`super::DynamicalSystem::surface`].
     Surface,
-    /// A grain: a closed surface that deforms, and the vertices of it as points, see [`super::DynamicalSystem::point_areas`].
+    /// A grain: a closed surface that deforms, and the vertices of it as points, see
+    /// [`super::DynamicalSystem::point_areas`].
     Grain,
     /// Shapes that the caller gives to the body.
     Given,
@@ -56,7 +60,7 @@ pub struct Carrier {
     pub contactor: u32,
     /// Whether contactors of the system can touch each other.
     pub touches_itself: bool,
-    /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a contact of two of them is found
-    /// from both sides.
+    /// Whether it is a grain that deforms: it touches by its surface and by its points, so that a
+    /// contact of two of them is found from both sides.
     pub grain: bool,
 }

@@ -1,5 +1,5 @@
-//! Driven degrees of freedom, and sequences of drives on one of them, for example first pressing, then
-//! sliding.
+//! Driven degrees of freedom, and sequences of drives on one of them, for example first pressing,
+//! then sliding.
 
 use super::time_function::TimeFunction;
 use serde::{Deserialize, Serialize};
@@ -14,12 +14,13 @@ pub enum Dof {
     Fixed,
     /// Imposed velocity (m/s or rad/s); the body follows its integral.
     Velocity(TimeFunction),
-    /// Imposed displacement (m or rad): the body follows the change of the function since this drive took
-    /// effect.
+    /// Imposed displacement (m or rad): the body follows the change of the function since this
+    /// drive took effect.
     Displacement(TimeFunction),
     /// Imposed force (N; N/m of depth in 2D) or moment.
     Force(TimeFunction),
-    /// Servo: a force that is a pressure times the current area between walls, see [`super::pressure`].
+    /// Servo: a force that is a pressure times the current area between walls, see
+    /// [`super::pressure`].
     Pressure {
         /// The pressure (Pa), with the sign of the force along the axis.
         value: TimeFunction,
@@ -54,8 +55,8 @@ impl Dof {
         }
     }
 
-    /// Returns the active drive over a step of `h` from `time` on: a step belongs to the stage that contains
-    /// its midpoint, so that the rounding of times does not matter.
+    /// Returns the active drive over a step of `h` from `time` on: a step belongs to the stage that
+    /// contains its midpoint, so that the rounding of times does not matter.
     pub fn over(&self, time: f64, h: f64) -> &Self {
         self.at(time + 0.5 * h)
     }
@@ -121,8 +122,8 @@ impl Dof {
         }
     }
 
-    /// Returns the error of this drive, if any, and the path of its key relative to the drive (empty for the
-    /// drive itself).
+    /// Returns the error of this drive, if any, and the path of its key relative to the drive
+    /// (empty for the drive itself).
     pub fn fault(&self) -> Option<(String, String)> {
         match self {
             Self::Stages(stages) => fault_of_stages(stages),

@@ -1,14 +1,16 @@
-//! What lies ahead in functions of time and drives: the next kink, and the longest step that resolves them.
+//! What lies ahead in functions of time and drives: the next kink, and the longest step that
+//! resolves them.
 
 use super::drive::Dof;
 use super::time_function::TimeFunction;
 
-/// Steps in a period of a sine or in a ramp that resolve it: linear interpolation between 20 points has an error of (pi/20)^2/2, 1.2 %
-/// of the amplitude.
+/// Steps in a period of a sine or in a ramp that resolve it: linear interpolation between 20 points
+/// has an error of (pi/20)^2/2, 1.2 % of the amplitude.
 pub const STEPS_A_PERIOD: f64 = 20.0;
 
 impl TimeFunction {
-    /// Returns the first time after `t` (s) at which it or its derivative jumps; infinite if there is none.
+    /// Returns the first time after `t` (s) at which it or its derivative jumps; infinite if there
+    /// is none.
     pub fn next_kink(&self, t: f64) -> f64 {
         let after = |times: &[f64]| {
             let later = times.iter().filter(|x| **x > t);
@@ -25,8 +27,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the longest step from `t` on (s) that resolves it; infinite where it is constant, and in tables, which are linear up to
-    /// the next kink.
+    /// Returns the longest step from `t` on (s) that resolves it; infinite where it is constant,
+    /// and in tables, which are linear up to the next kink.
     pub fn resolved_step(&self, t: f64) -> f64 {
         match self {
             Self::Sine {
@@ -53,7 +55,8 @@ impl TimeFunction {
 }
 
 impl Dof {
-    /// Returns the first time after `t` (s) at which a stage ends or a function of any stage has a kink; infinite if there is none.
+    /// Returns the first time after `t` (s) at which a stage ends or a function of any stage has a
+    /// kink; infinite if there is none.
     pub fn next_kink(&self, t: f64) -> f64 {
         let ends = match self {
             Self::Stages(stages) => stages.iter().filter_map(|s| s.until).find(|end| *end > t),
@@ -64,7 +67,8 @@ impl Dof {
         kinks.fold(ends.unwrap_or(f64::INFINITY), f64::min)
     }
 
-    /// Returns the longest step from `t` on (s) that resolves its active drive; infinite where that is constant.
+    /// Returns the longest step from `t` on (s) that resolves its active drive; infinite where that
+    /// is constant.
     pub fn resolved_step(&self, t: f64) -> f64 {
         let function = self.at(t).function();
         function.map_or(f64::INFINITY, |f| f.resolved_step(t))

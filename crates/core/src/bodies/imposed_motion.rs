@@ -50,10 +50,11 @@ impl<S: Space> Bodies<S> {
         }
     }
 
-    /// Sets imposed coordinates to their paths at the end of the step of `h` from `from` to `to` (s).
+    /// Sets imposed coordinates to their paths at the end of the step of `h` from `from` to `to`
+    /// (s).
     ///
-    /// A rotation about one axis follows its path; where rotations about several axes are imposed, which do
-    /// not commute, the orientation is that of the integrated velocities.
+    /// A rotation about one axis follows its path; where rotations about several axes are imposed,
+    /// which do not commute, the orientation is that of the integrated velocities.
     pub fn end_imposed_motion(&mut self, from: f64, to: f64, h: f64) {
         for (driven, paths) in self.driven.iter().zip(&mut self.paths) {
             let b = driven.body as usize;

@@ -51,7 +51,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns (f(t + h) - f(t))/h, without the cancellation error of the difference of two large values.
+    /// Returns (f(t + h) - f(t))/h, without the cancellation error of the difference of two large
+    /// values.
     pub fn mean_rate(&self, t: f64, h: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -74,17 +75,20 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the derivative at a time from the right; times that differ by rounding count as equal.
+    /// Returns the derivative at a time from the right; times that differ by rounding count as
+    /// equal.
     pub fn rate_after(&self, t: f64) -> f64 {
         self.rate_beside(t, t + rounding(t), false)
     }
 
-    /// Returns the derivative at a time from the left; times that differ by rounding count as equal.
+    /// Returns the derivative at a time from the left; times that differ by rounding count as
+    /// equal.
     pub fn rate_before(&self, t: f64) -> f64 {
         self.rate_beside(t, t - rounding(t), true)
     }
 
-    /// The derivative at a time, by a time that is that or differs from it by rounding, from the left or from the right.
+    /// The derivative at a time, by a time that is that or differs from it by rounding, from the
+    /// left or from the right.
     fn rate_beside(&self, t: f64, beside: f64, from_left: bool) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -104,8 +108,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the smallest and largest derivative next to the kinks within (t, t + h); `None` without
-    /// kinks.
+    /// Returns the smallest and largest derivative next to the kinks within (t, t + h); `None`
+    /// without kinks.
     pub fn rates_at_corners(&self, t: f64, h: f64) -> Option<(f64, f64)> {
         match self {
             Self::Constant(_) => None,
@@ -135,7 +139,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the last point of a table in (from, to]: the part before it need not be integrated again.
+    /// Returns the last point of a table in (from, to]: the part before it need not be integrated
+    /// again.
     pub fn last_point(&self, from: f64, to: f64) -> Option<f64> {
         let Self::Table(points) = self else {
             return None;

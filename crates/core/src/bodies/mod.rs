@@ -1,5 +1,5 @@
-//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical systems that are more than
-//! rigid.
+//! Rigid bodies: their state, inertia, and the degrees of freedom that are driven; and dynamical
+//! systems that are more than rigid.
 pub mod compliance;
 pub mod conduction;
 pub mod contactor;

@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-/// A point of a system as a weighted sum of nodes: u = sum w_a u_a, and an impulse p there is w_a p on each of them. The
-/// weights are shape functions, the affine coordinates of a point in a frame, or those of a mean place.
+/// A point of a system as a weighted sum of nodes: u = sum w_a u_a, and an impulse p there is w_a p
+/// on each of them. The weights are shape functions, the affine coordinates of a point in a frame,
+/// or those of a mean place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nodes(Terms);
 
@@ -58,8 +59,9 @@ impl Nodes {
         }))
     }
 
-    /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to rounding, that node itself, and on an edge two
-    /// nodes, which cost the solver less. None of no vertex.
+    /// A place on a facet as the sum of its vertices with its shape functions: at a vertex, to
+    /// rounding, that node itself, and on an edge two nodes, which cost the solver less. None of no
+    /// vertex.
     pub fn on_facet(terms: &[(u32, f64)]) -> Option<Self> {
         let there = terms.iter().filter(|(_, weight)| weight.abs() > ROUNDING);
         let there: Vec<_> = there.copied().collect();

@@ -1,11 +1,12 @@
 //! Imposed motion: degrees of freedom follow their functions of time to rounding.
 //!
-//! Over a step from t to t + h an imposed degree of freedom has an initial velocity v_s and a final velocity
-//! v_e, whose mean in the theta-scheme is exactly that of its path x(t):
-//! (1 - theta) v_s + theta v_e = (x(t + h) - x(t))/h, v_e - v_s = x'(t + h -) - x'(t +). Where x is smooth
-//! both equal its derivative to O(h^2) (O(h) with theta > 1/2). Between two steps the velocity jumps from
-//! v_e to the next v_s: by O(h^3) where x is smooth (O(h^2) with theta > 1/2), and by the full jump of x' at
-//! a kink. If a kink lies within a step, v_s and v_e stay between the slopes on its two sides.
+//! Over a step from t to t + h an imposed degree of freedom has an initial velocity v_s and a final
+//! velocity v_e, whose mean in the theta-scheme is exactly that of its path x(t): (1 - theta) v_s +
+//! theta v_e = (x(t + h) - x(t))/h, v_e - v_s = x'(t + h -) - x'(t +). Where x is smooth both equal
+//! its derivative to O(h^2) (O(h) with theta > 1/2). Between two steps the velocity jumps from v_e
+//! to the next v_s: by O(h^3) where x is smooth (O(h^2) with theta > 1/2), and by the full jump of
+//! x' at a kink. If a kink lies within a step, v_s and v_e stay between the slopes on its two
+//! sides.
 //!
 //! At the end of a step the position is set from the function, so that errors do not accumulate.
 
@@ -24,7 +25,8 @@ pub struct Speeds {
 }
 
 impl Dof {
-    /// Returns the velocities of a step of `h` from `t` on, if this drive (other than stages) imposes them.
+    /// Returns the velocities of a step of `h` from `t` on, if this drive (other than stages)
+    /// imposes them.
     pub fn speeds(&self, t: f64, h: f64, theta: f64) -> Option<Speeds> {
         let (mean, first, last, corners) = match self {
             Self::Fixed => return Some(Speeds::default()),
@@ -152,8 +154,8 @@ impl<S: Space> Paths<S> {
 mod tests {
     use super::*;
 
-    /// The mean over a step is that of the path, and both ends equal the derivative within h^2 times the
-    /// third derivative.
+    /// The mean over a step is that of the path, and both ends equal the derivative within h^2
+    /// times the third derivative.
     #[test]
     fn a_smooth_path_has_its_derivative_at_both_ends() {
         let f = TimeFunction::Sine {
@@ -178,7 +180,8 @@ mod tests {
         }
     }
 
-    /// Linear between points that are the ends of steps: each step has the slope of its segment at both ends, the first one too.
+    /// Linear between points that are the ends of steps: each step has the slope of its segment at
+    /// both ends, the first one too.
     #[test]
     fn a_table_has_the_slopes_of_its_segments() {
         let h = 0.125;
@@ -197,7 +200,8 @@ mod tests {
         }
     }
 
-    /// Wherever a kink lies in a step, velocities stay between the slopes, and the mean is that of the path.
+    /// Wherever a kink lies in a step, velocities stay between the slopes, and the mean is that of
+    /// the path.
     #[test]
     fn corners_do_not_overshoot() {
         for part in [1e-9, 0.1, 0.4, 0.5, 0.6, 0.99] {

@@ -7,7 +7,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use serde::{Deserialize, Serialize};
 
-/// A plane wall perpendicular to an axis: its body, and the coordinate of its face in the body's frame (m).
+/// A plane wall perpendicular to an axis: its body, and the coordinate of its face in the body's
+/// frame (m).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Face {
     body: usize,
@@ -160,7 +161,8 @@ mod tests {
     use crate::geometry::space::Dim3;
     use nalgebra::Vector3;
 
-    /// In 3D with a periodic y the force on a lid is p (right - left) period, for any motion of the walls.
+    /// In 3D with a periodic y the force on a lid is p (right - left) period, for any motion of the
+    /// walls.
     #[test]
     fn the_force_follows_the_area() {
         let mut bodies = Bodies::<Dim3>::default();

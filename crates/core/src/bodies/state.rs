@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 /// About what it takes to find the energy of a body (ns).
 const ENERGY: f64 = 5.0;
 
-/// All bodies of a scene, grains and first bodies, as a structure of arrays. In 2D masses are per metre of
-/// depth.
+/// All bodies of a scene, grains and first bodies, as a structure of arrays. In 2D masses are per
+/// metre of depth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Bodies<S: Space> {
@@ -46,8 +46,8 @@ pub struct Bodies<S: Space> {
     pub removed: Vec<bool>,
     /// Displacement of each body lost to rounding (m); empty while there is none.
     pub lost: Vec<S::Vector>,
-    /// Which bodies stand for contactors of dynamical systems: they follow these and have no inertia of their own. Empty where
-    /// there are no systems.
+    /// Which bodies stand for contactors of dynamical systems: they follow these and have no
+    /// inertia of their own. Empty where there are no systems.
     pub carriers: Vec<Option<Carrier>>,
 }
 
@@ -107,7 +107,8 @@ impl<S: Space> Bodies<S> {
         self.id.len()
     }
 
-    /// Returns whether these are later states of the same bodies: all arrays have their length, and numbers of motion are finite.
+    /// Returns whether these are later states of the same bodies: all arrays have their length, and
+    /// numbers of motion are finite.
     pub(crate) fn fits(&self, first: &Self) -> bool {
         let n = first.len();
         let columns = [
@@ -170,7 +171,8 @@ impl<S: Space> Bodies<S> {
         index as u32
     }
 
-    /// Adds a body for a contactor of a dynamical system: without inertia, where the system has it. `length` is its size (m).
+    /// Adds a body for a contactor of a dynamical system: without inertia, where the system has it.
+    /// `length` is its size (m).
     pub(super) fn add_carried(&mut self, at: S::Vector, length: f64, carrier: Carrier) -> u32 {
         let body = self.add(at, 0.0, 0.0, length);
         let b = body as usize;
@@ -217,7 +219,8 @@ impl<S: Space> Bodies<S> {
         (self.inverse_inertia[body] > 0.0).then_some(tensor)
     }
 
-    /// Returns the inverse inertia tensor in world axes; zero where the rotation is imposed (1/(kg m^2)).
+    /// Returns the inverse inertia tensor in world axes; zero where the rotation is imposed (1/(kg
+    /// m^2)).
     pub fn inverse_tensor(&self, body: usize) -> S::Tensor {
         match self.tensor(body) {
             Some(tensor) => tensor.inverse(&self.rotation[body]),
@@ -274,7 +277,8 @@ impl<S: Space> Bodies<S> {
         self.update_constraints(place, time);
     }
 
-    /// Leaves out bodies of which the flag is false, before anything else refers to bodies by index; gives the new index of each.
+    /// Leaves out bodies of which the flag is false, before anything else refers to bodies by
+    /// index; gives the new index of each.
     ///
     /// # Panics
     /// Not with a flag for each body.
@@ -327,7 +331,8 @@ impl<S: Space> Bodies<S> {
         self.inverse_inertia[body] = 0.0;
     }
 
-    /// Which bodies are grains: those that are not driven or carried by a system, unless that is a grain that deforms, and are still there.
+    /// Which bodies are grains: those that are not driven or carried by a system, unless that is a
+    /// grain that deforms, and are still there.
     pub fn grain_flags(&self) -> Vec<bool> {
         let mut grain: Vec<bool> = self.removed.iter().map(|g| !g).collect();
         for (grain, carrier) in grain.iter_mut().zip(&self.carriers) {

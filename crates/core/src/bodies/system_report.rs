@@ -1,4 +1,5 @@
-//! What a dynamical system tells of itself for results, pictures and checks: the surface that touches, and its size in memory.
+//! What a dynamical system tells of itself for results, pictures and checks: the surface that
+//! touches, and its size in memory.
 
 use crate::geometry::space::Space;
 
@@ -11,11 +12,13 @@ pub struct TouchingSurface<S: Space> {
     pub points: Vec<S::Vector>,
     /// The D points of each facet, one after the other, by their place among the points.
     pub facets: Vec<u32>,
-    /// Area (m^2; length in the plane, m) that each point stands for now. They sum up to that of the surface.
+    /// Area (m^2; length in the plane, m) that each point stands for now. They sum up to that of
+    /// the surface.
     pub areas: Vec<f64>,
 }
 
-/// What a system keeps in memory for its solutions (bytes), and what they cost, as far as it is known before the first step.
+/// What a system keeps in memory for its solutions (bytes), and what they cost, as far as it is
+/// known before the first step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SystemSize {
     /// Unknowns of a solution.
@@ -24,11 +27,13 @@ pub struct SystemSize {
     pub matrix: usize,
     /// The factor of A, with its pattern; zero of systems without a factor.
     pub factor: usize,
-    /// What is kept of the compliance of the surface once all of it was touched, and what of that a single point needs.
+    /// What is kept of the compliance of the surface once all of it was touched, and what of that a
+    /// single point needs.
     pub surface: usize,
     /// Compliance of a single point of the surface.
     pub point: usize,
-    /// Floating-point operations of a factorisation, and of a solution with the factor or the table of influences.
+    /// Floating-point operations of a factorisation, and of a solution with the factor or the table
+    /// of influences.
     pub operations: [f64; 2],
     /// Whether A is factorised again in every iteration of a step.
     pub refactorised: bool,

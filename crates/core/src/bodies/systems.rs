@@ -54,8 +54,8 @@ type SystemState = (String, Vec<u8>);
 
 /// All systems of a scene that are not rigid bodies.
 ///
-/// They are serialised as their names and states. Read back there are the states alone, until [`Systems::take_up`] puts them
-/// into systems that were built again.
+/// They are serialised as their names and states. Read back there are the states alone, until
+/// [`Systems::take_up`] puts them into systems that were built again.
 #[derive(Clone, Debug)]
 pub struct Systems<S: Space> {
     entries: Vec<Entry<S>>,
@@ -166,7 +166,8 @@ impl<S: Space> Systems<S> {
                 bodies.rotation[b] = motion.rotation;
                 bodies.velocity[b] = motion.velocity;
                 bodies.spin[b] = motion.spin;
-                // The coordinates of the system are what moves: nothing is lost where its place rounds.
+                // The coordinates of the system are what moves: nothing is lost where its place
+                // rounds.
                 if let Some(lost) = bodies.lost.get_mut(b) {
                     *lost = S::Vector::zero();
                 }
@@ -179,7 +180,8 @@ impl<S: Space> Systems<S> {
         self.entries[system].points = balls;
     }
 
-    /// Gives the surfaces of contactors their vertices as they are now, and the points of grains their places.
+    /// Gives the surfaces of contactors their vertices as they are now, and the points of grains
+    /// their places.
     pub fn deform(&self, bodies: &Bodies<S>, shapes: &mut Shapes<S>) {
         for surface in &mut shapes.surfaces {
             let Some(carrier) = bodies.carrier(surface.body as usize) else {
@@ -223,8 +225,8 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Has all systems linearise, and finds their velocities without contacts, and those of the contactors' bodies in `free`,
-    /// which is by body.
+    /// Has all systems linearise, and finds their velocities without contacts, and those of the
+    /// contactors' bodies in `free`, which is by body.
     pub fn free_velocities(&mut self, step: &SystemStep<S>, free: &mut [(S::Vector, S::Spin)]) {
         for entry in &mut self.entries {
             // Rotation without contacts may have turned spins since the start.
@@ -238,8 +240,8 @@ impl<S: Space> Systems<S> {
         }
     }
 
-    /// Has systems linearise anew where their forces are not those of the velocities that they have, and finds their velocities without
-    /// contacts again; gives the systems that did.
+    /// Has systems linearise anew where their forces are not those of the velocities that they
+    /// have, and finds their velocities without contacts again; gives the systems that did.
     ///
     /// # Errors
     /// The index of a system that finds no balance, and why.
@@ -265,7 +267,8 @@ impl<S: Space> Systems<S> {
         self.entries[system].system.compliance(nodes)
     }
 
-    /// The compliance that a system keeps, where at least a third of its nodes are touched: an impulse changes the velocities of all.
+    /// The compliance that a system keeps, where at least a third of its nodes are touched: an
+    /// impulse changes the velocities of all.
     pub fn kept_compliance(&self, system: usize, touched: &[u32]) -> Option<Arc<Compliance<S>>> {
         let system = &self.entries[system].system;
         let nodes = system.kept_nodes()?;
@@ -295,7 +298,8 @@ impl<S: Space> Systems<S> {
         entry.system.contact_nodes(contactor, arm)
     }
 
-    /// The node that turns with a contactor's body at an arm from its centre (m); see [`DynamicalSystem::turning_node`].
+    /// The node that turns with a contactor's body at an arm from its centre (m); see
+    /// [`DynamicalSystem::turning_node`].
     pub fn turning_node(&self, carrier: Carrier, arm: &S::Vector) -> Option<TurningNode> {
         let entry = &self.entries[carrier.system as usize];
         let contactor = &entry.contactors[carrier.contactor as usize];
@@ -391,8 +395,8 @@ impl<S: Space> Systems<S> {
         })
     }
 
-    /// Kinetic energy (J) and mass times twice the length (kg m) of the systems of which nothing is imposed (per metre of depth in
-    /// 2D).
+    /// Kinetic energy (J) and mass times twice the length (kg m) of the systems of which nothing is
+    /// imposed (per metre of depth in 2D).
     pub fn motion_of_free(&self) -> (f64, f64) {
         let free = self.entries.iter().map(|e| &e.system);
         free.filter(|s| !s.is_driven()).fold((0.0, 0.0), |sum, s| {
@@ -430,8 +434,8 @@ impl<S: Space> Systems<S> {
         self.entries.iter().map(one).collect()
     }
 
-    /// Becomes the systems of a scene that was built again, in the states that these have. False, and nothing changed, where
-    /// the states are not theirs.
+    /// Becomes the systems of a scene that was built again, in the states that these have. False,
+    /// and nothing changed, where the states are not theirs.
     #[must_use]
     pub fn take_up(&mut self, built: &Self) -> bool {
         let states = self.states();

@@ -26,8 +26,8 @@ impl<S: Space> Tensor<S> {
             })
         });
         let inverse = (!alike).then(|| own.inverse())??;
-        // The fixed-point iteration for the midpoint contracts by half the rotation times the root of the
-        // ratio of inertias, which is at most that of the product of the traces.
+        // The fixed-point iteration for the midpoint contracts by half the rotation times the root
+        // of the ratio of inertias, which is at most that of the product of the traces.
         let ratio = mean * self::mean::<S>(&inverse) * (n * n) as f64;
         let turn = f64::min(0.05, 0.5 / ratio.sqrt());
         Some(Self { own, inverse, turn })
@@ -49,20 +49,21 @@ impl<S: Space> Tensor<S> {
         S::rotate_spin(rotation, &own)
     }
 
-    /// Returns orientation and spin after free rotation for `time` (s); angular momentum is conserved to
-    /// rounding, energy to the tolerance of the iteration.
+    /// Returns orientation and spin after free rotation for `time` (s); angular momentum is
+    /// conserved to rounding, energy to the tolerance of the iteration.
     ///
-    /// The midpoint rule for the momentum in body axes, P' = P x (I^-1 P), with the corresponding rotation:
-    /// Austin, Krishnaprasad and Wang, "Almost Poisson integration of rigid body systems", J. Comput. Phys.
-    /// 107 (1993). Second order; the length of the substeps follows from the spin.
+    /// The midpoint rule for the momentum in body axes, P' = P x (I^-1 P), with the corresponding
+    /// rotation: Austin, Krishnaprasad and Wang, "Almost Poisson integration of rigid body
+    /// systems", J. Comput. Phys. 107 (1993). Second order; the length of the substeps follows from
+    /// the spin.
     pub fn free_rotation(
         &self,
         rotation: &S::Rotation,
         spin: &S::Spin,
         time: f64,
     ) -> (S::Rotation, S::Spin) {
-        /// Upper limit of the rotation in half a step (rad) that is resolved; it bounds the number of
-        /// substeps.
+        /// Upper limit of the rotation in half a step (rad) that is resolved; it bounds the number
+        /// of substeps.
         const MAX_TURN: f64 = 100.0;
         const MAX_PARTS: f64 = 1e5;
         let parts = (spin.norm() * time.abs()).min(MAX_TURN) / self.turn;
@@ -129,8 +130,8 @@ mod tests {
 
     #[test]
     fn a_symmetric_top_precesses_as_the_books_say() {
-        // Landau and Lifshitz, Mechanics, section 33: the axis precesses about the momentum at the rate
-        // L/I_1.
+        // Landau and Lifshitz, Mechanics, section 33: the axis precesses about the momentum at the
+        // rate L/I_1.
         let (i1, i3) = (2.0, 3.0);
         let top = diagonal(i1, i1, i3);
         let start = Vector3::new(0.4, 0.0, 1.1);

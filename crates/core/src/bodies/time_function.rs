@@ -4,7 +4,8 @@ use super::table;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom over a step.
+/// A function of time (s). [`super::path`] describes the motion of an imposed degree of freedom
+/// over a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum TimeFunction {
@@ -21,8 +22,8 @@ pub enum TimeFunction {
         /// End of the ramp (s).
         end: f64,
     },
-    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on; constant before, at the
-    /// value for `start`.
+    /// offset + amplitude sin(2 pi frequency (t - start) + phase) from `start` on; constant before,
+    /// at the value for `start`.
     Sine {
         /// Amplitude.
         amplitude: f64,
@@ -64,7 +65,8 @@ impl TimeFunction {
         }
     }
 
-    /// Returns the derivative at a time, from the left at a kink of a ramp or a table, from the right at the start of a sine.
+    /// Returns the derivative at a time, from the left at a kink of a ramp or a table, from the
+    /// right at the start of a sine.
     pub fn rate(&self, t: f64) -> f64 {
         match self {
             Self::Constant(_) => 0.0,
@@ -205,7 +207,8 @@ mod tests {
         }
     }
 
-    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on with.
+    /// A ramp is a table of two points, also at these; a sine begins with the slope that it goes on
+    /// with.
     #[test]
     fn rates_at_kinks_are_those_of_the_documented_side() {
         let ramp = TimeFunction::Ramp {

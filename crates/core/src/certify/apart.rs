@@ -1,5 +1,5 @@
-//! Certification of a law in a child process, so that a law that crashes, ends the program or hangs only
-//! fails a line of its certificate.
+//! Certification of a law in a child process, so that a law that crashes, ends the program or hangs
+//! only fails a line of its certificate.
 
 use super::{Certificate, Event, Line, border, certify, certify_with_events};
 use crate::laws::child::{self, End};
@@ -54,8 +54,8 @@ impl Named {
     }
 }
 
-/// Certifies a law as [`certify`] does, in a child process where the program can start one. A crash of that
-/// process becomes a line of the certificate.
+/// Certifies a law as [`certify`] does, in a child process where the program can start one. A crash
+/// of that process becomes a line of the certificate.
 ///
 /// # Errors
 /// The law cannot be prepared with its partners, or the process cannot be started.

@@ -64,8 +64,8 @@ fn stored_energy(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Checks that the declared fracture energy is the area under one slow pull to failure, in modes I, mixed
-/// and II.
+/// Checks that the declared fracture energy is the area under one slow pull to failure, in modes I,
+/// mixed and II.
 fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "fracture energy";
     let tested = rig.tested();
@@ -94,8 +94,8 @@ fn fracture_energy(rig: &mut Rig) -> Result<Line, LawError> {
             angle.to_degrees()
         );
     }
-    // A law may cut its tail at a thousandth of the energy; the error of the trapezoidal rule is 2e-4 for an
-    // abrupt failure, 1e-6 otherwise.
+    // A law may cut its tail at a thousandth of the energy; the error of the trapezoidal rule is
+    // 2e-4 for an abrupt failure, 1e-6 otherwise.
     Ok(Line::below(
         NAME,
         worst,
@@ -135,8 +135,8 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
         }
         worst = worst.max(fall / scale.max(f64::MIN_POSITIVE));
     }
-    // The error of the trapezoidal rule is quadratic in the step of the walk: 2e-3 where damage starts
-    // within a step.
+    // The error of the trapezoidal rule is quadratic in the step of the walk: 2e-3 where damage
+    // starts within a step.
     Ok(Line::below(
         "dissipation",
         worst,
@@ -145,7 +145,8 @@ fn dissipation(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Loading, unloading, reloading and unloading to several levels beyond the onset, in three directions.
+/// Loading, unloading, reloading and unloading to several levels beyond the onset, in three
+/// directions.
 fn loops(rig: &Rig) -> Vec<Vec<Motion>> {
     let mut out = Vec::new();
     for level in [1.2, 1.5, 2.0, 3.0] {
@@ -281,17 +282,19 @@ fn objectivity(rig: &mut Rig) -> Result<Line, LawError> {
 
 /// Measures the order at which the energy of a pull of fixed duration converges with the step.
 fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
-    /// Steps of the coarsest pull, number of times that they are halved, and number of pulls of slightly different reach.
+    /// Steps of the coarsest pull, number of times that they are halved, and number of pulls of
+    /// slightly different reach.
     const COARSEST: u32 = 50;
     const HALVINGS: u32 = 4;
     const REACHES: u32 = 16;
-    /// Fraction of the golden ratio, whose multiples spread evenly over the places of the onset within a step.
+    /// Fraction of the golden ratio, whose multiples spread evenly over the places of the onset
+    /// within a step.
     const SPREAD: f64 = 0.618_033_988_749_894_9;
     let reach = rig.end.map_or(2.0 * rig.onset, |end| {
         (2.0 * rig.onset).min(0.5 * (rig.onset + end))
     });
-    // The error of a pull depends on where within a step the onset falls, so that the order of one pull is a matter of chance: that of the
-    // root mean square over several reaches is not.
+    // The error of a pull depends on where within a step the onset falls, so that the order of one
+    // pull is a matter of chance: that of the root mean square over several reaches is not.
     let mut squares = [0.0f64; HALVINGS as usize];
     let mut scale = f64::MIN_POSITIVE;
     for pull_number in 0..REACHES {
@@ -329,7 +332,8 @@ fn convergence(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged("convergence", order >= 0.7, order, text))
 }
 
-/// Checks that the stiffness is the tangent or the secant of the traction, at frozen damage and variables.
+/// Checks that the stiffness is the tangent or the secant of the traction, at frozen damage and
+/// variables.
 fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "tangent";
     if rig.kind != Kind::COHESION {
@@ -372,7 +376,8 @@ fn tangent(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Unloads half way and completely, and reloads: the path must end in the origin, as the undamaged bond does, and return to its start.
+/// Unloads half way and completely, and reloads: the path must end in the origin, as the undamaged
+/// bond does, and return to its start.
 fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     const NAME: &str = "secant";
     let mut worst = 0.0f64;
@@ -419,7 +424,8 @@ fn secant(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// The traction of the undamaged bond at an opening, up to a factor: of other laws than cohesion the bond is linear.
+/// The traction of the undamaged bond at an opening, up to a factor: of other laws than cohesion
+/// the bond is linear.
 fn undamaged(rig: &mut Rig, angle: f64, u: f64) -> Result<f64, LawError> {
     let m = rig.tested().plugin.degradation;
     if rig.kind != Kind::COHESION || m <= 0.0 {

@@ -24,8 +24,8 @@ pub const CHECKS: [(&str, Check); 8] = [
 /// The checks that depend on parameters; the others depend on the code only.
 pub const OF_PARAMETERS: [(&str, Check); 2] = [CHECKS[0], CHECKS[6]];
 
-/// Moves a batch along walks, one per contact, some of them used repeatedly; returns the bits of all
-/// outputs.
+/// Moves a batch along walks, one per contact, some of them used repeatedly; returns the bits of
+/// all outputs.
 pub fn together(
     bench: &mut Bench,
     walks: &[Vec<Motion>],
@@ -60,7 +60,8 @@ fn columns(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged("columns", true, 0.0, KEPT))
 }
 
-/// Checks that the law leaves rounding and subnormal numbers of its caller as they are, in all calls before.
+/// Checks that the law leaves rounding and subnormal numbers of its caller as they are, in all
+/// calls before.
 fn floating_point(rig: &mut Rig) -> Result<Line, LawError> {
     const CHECK: &str = "floating point";
     let kept = "leaves rounding and subnormal numbers of its caller as they are";
@@ -166,8 +167,8 @@ fn threads(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// Returns the number of threads with different results when each has its own contacts. Each thread repeats
-/// every call, so that calls overlap even if threads share one processor.
+/// Returns the number of threads with different results when each has its own contacts. Each thread
+/// repeats every call, so that calls overlap even if threads share one processor.
 fn other_contacts(rig: &mut Rig) -> Result<u32, LawError> {
     const THREADS: usize = 4;
     const N: usize = 1024;

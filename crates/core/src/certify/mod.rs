@@ -1,8 +1,8 @@
 //! Certification: tests of the declared properties of a law on the one-contact bench.
 //!
-//! A law is combined with plain partners (frictionless contact, a linear bond) and driven along paths around
-//! its characteristic opening. Each property gives a line: pass, fail or not applicable, with the number
-//! that decided.
+//! A law is combined with plain partners (frictionless contact, a linear bond) and driven along
+//! paths around its characteristic opening. Each property gives a line: pass, fail or not
+//! applicable, with the number that decided.
 
 mod apart;
 mod bond;
@@ -141,13 +141,13 @@ impl Certificate {
     }
 }
 
-/// Tests a law with these parameters. Partner laws are taken from the search path, with their default
-/// parameters. A damage law is tested with `cohesion` if given, since its properties depend on the bond's
-/// stiffness.
+/// Tests a law with these parameters. Partner laws are taken from the search path, with their
+/// default parameters. A damage law is tested with `cohesion` if given, since its properties depend
+/// on the bond's stiffness.
 ///
 /// # Errors
-/// A partner is missing, or the law rejects the parameters. Errors of the law itself become lines of the
-/// certificate.
+/// A partner is missing, or the law rejects the parameters. Errors of the law itself become lines
+/// of the certificate.
 pub fn certify(
     plugin: &Plugin,
     parameters: &[f64],
@@ -164,8 +164,8 @@ pub fn certify(
     )
 }
 
-/// Certifies as [`certify`], without the checks that do not depend on parameters: for laws whose code is
-/// known, such as the shipped ones.
+/// Certifies as [`certify`], without the checks that do not depend on parameters: for laws whose
+/// code is known, such as the shipped ones.
 ///
 /// # Errors
 /// The law cannot be prepared with its partners.

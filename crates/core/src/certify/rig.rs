@@ -28,8 +28,8 @@ fn by_default(path: &SearchPath, kind: Kind, name: &str) -> Result<Loaded, LawEr
 }
 
 impl Rig {
-    /// The law in its slot, beside each set of partners of its kind: a damage law with this cohesion, or once with a linear
-    /// bond (m = 1), once with MAC's (m = 2).
+    /// The law in its slot, beside each set of partners of its kind: a damage law with this
+    /// cohesion, or once with a linear bond (m = 1), once with MAC's (m = 2).
     pub fn all(
         plugin: &Plugin,
         parameters: &[f64],
@@ -125,8 +125,8 @@ impl Rig {
         Bench::new(law, self.dimension, RADIUS).lenient()
     }
 
-    /// Finds the openings at which damage begins and at which the bond is broken, by single pulls in mode I
-    /// and, if that has no effect, mode II.
+    /// Finds the openings at which damage begins and at which the bond is broken, by single pulls
+    /// in mode I and, if that has no effect, mode II.
     pub fn find_scale(&mut self) -> Result<(), LawError> {
         if !self.opens() {
             return Ok(());
@@ -156,8 +156,8 @@ impl Rig {
         Ok(())
     }
 
-    /// Returns a random walk around the scale of the law, normal and tangential, with steps of the fraction
-    /// `share` of it; for a law without opening, of gaps and slips.
+    /// Returns a random walk around the scale of the law, normal and tangential, with steps of the
+    /// fraction `share` of it; for a law without opening, of gaps and slips.
     pub fn walk(&self, seed: u64, steps: usize, share: f64) -> Vec<Motion> {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let reach = 3.0 * self.onset;

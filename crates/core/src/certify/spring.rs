@@ -13,8 +13,8 @@ const OVERLAPS: [f64; 5] = [1e-7, 1e-5, 1e-4, 1e-3, 1e-2];
 /// Relative change of the overlap for the slope.
 const CHANGE: f64 = 1e-4;
 
-/// Checks that the stiffness is the slope of the force, and that there is no force without overlap: with a wrong slope a step
-/// converges to a wrong force.
+/// Checks that the stiffness is the slope of the force, and that there is no force without overlap:
+/// with a wrong slope a step converges to a wrong force.
 fn slope(rig: &mut Rig) -> Result<Line, LawError> {
     let mut bench = rig.strict();
     let mut at = |overlap: f64| -> Result<SpringAnswer, LawError> {

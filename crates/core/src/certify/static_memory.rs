@@ -1,5 +1,5 @@
-//! Checks that a law keeps no data in the static memory of its library, where concurrent calls would
-//! overwrite it.
+//! Checks that a law keeps no data in the static memory of its library, where concurrent calls
+//! would overwrite it.
 
 use super::Line;
 use super::border::together;
@@ -9,13 +9,13 @@ use crate::laws::static_memory::{StaticMemory, Unseen};
 
 const CHECK: &str = "static memory";
 
-/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a buffer that
-/// grows on demand and is kept changes its address.
+/// Contacts per batch, for each round. Each round has a larger batch than all before, so that a
+/// buffer that grows on demand and is kept changes its address.
 const ROUNDS: [&[usize]; 3] = [&[1, 5, 17], &[3, 64], &[2, 300]];
 
-/// Compares the static memory before and after calls with other numbers, parameters and batch sizes. Data
-/// that change in the first round only are initialised at first use; data that change in each round are kept
-/// between calls.
+/// Compares the static memory before and after calls with other numbers, parameters and batch
+/// sizes. Data that change in the first round only are initialised at first use; data that change
+/// in each round are kept between calls.
 pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     let plugin = rig.tested().plugin.clone();
     let memory = match StaticMemory::of(&plugin) {
@@ -65,8 +65,8 @@ pub fn static_memory(rig: &mut Rig) -> Result<Line, LawError> {
     Ok(Line::judged(CHECK, still, number as f64, text))
 }
 
-/// Makes every call of the law with the numbers, parameters and batch sizes of this round. Errors are found
-/// by other checks.
+/// Makes every call of the law with the numbers, parameters and batch sizes of this round. Errors
+/// are found by other checks.
 fn calls(rig: &Rig, round: usize, sizes: &[usize]) {
     let seed = 1000 * (round as u64 + 1);
     let plugin = &rig.tested().plugin;

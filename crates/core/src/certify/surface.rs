@@ -20,8 +20,8 @@ pub fn checks(set: CheckSet) -> &'static [(&'static str, Check)] {
     }
 }
 
-/// Checks that friction, strengths and wear are not negative and restitution does not exceed one, so that no
-/// step creates energy or mass.
+/// Checks that friction, strengths and wear are not negative and restitution does not exceed one,
+/// so that no step creates energy or mass.
 fn signs(rig: &mut Rig) -> Result<Line, LawError> {
     let mut worst = 0.0f64;
     for seed in 0..24 {

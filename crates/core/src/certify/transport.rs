@@ -1,4 +1,5 @@
-//! Checks of transport laws: conductances are not negative, the same from either side, and continuous.
+//! Checks of transport laws: conductances are not negative, the same from either side, and
+//! continuous.
 
 use super::rig::{PRESSURE, RADIUS, Rig};
 use super::{Check, Line, surface};
@@ -68,7 +69,8 @@ fn symmetry(rig: &mut Rig) -> Result<Line, LawError> {
     ))
 }
 
-/// A contact that is closed by a share of the largest load, opened by a share of the largest gap, and so on.
+/// A contact that is closed by a share of the largest load, opened by a share of the largest gap,
+/// and so on.
 type Path = (&'static str, fn(f64) -> (Motion, f64));
 
 /// Largest pressure (Pa) and temperature (K).
@@ -117,7 +119,8 @@ const PATHS: [Path; 5] = [
     }),
 ];
 
-/// Checks that conductances have no jumps: a solver that follows a contact as it closes would not settle.
+/// Checks that conductances have no jumps: a solver that follows a contact as it closes would not
+/// settle.
 fn continuity(rig: &mut Rig) -> Result<Line, LawError> {
     const POINTS: u32 = 200;
     const HALVINGS: u32 = 40;

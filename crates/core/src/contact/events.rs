@@ -22,8 +22,8 @@ pub struct Break<S: Space> {
     pub rotation: [f64; 2],
     /// Area (m^2; m in 2D).
     pub area: f64,
-    /// Energy still stored if it broke because its contact moved out of range, 0 where damage broke it (J;
-    /// J/m in 2D).
+    /// Energy still stored if it broke because its contact moved out of range, 0 where damage broke
+    /// it (J; J/m in 2D).
     pub torn: f64,
     /// Whether damage broke it; otherwise its contact moved out of range, or a body was removed.
     pub damaged: bool,
@@ -33,8 +33,8 @@ pub struct Break<S: Space> {
     pub life: Life,
 }
 
-/// Energy history of a bond since its formation (J; J/m in 2D): the work done on it equals stored energy
-/// plus fracture energy plus viscous dissipation.
+/// Energy history of a bond since its formation (J; J/m in 2D): the work done on it equals stored
+/// energy plus fracture energy plus viscous dissipation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Life {
     /// Work done on the bond by normal opening, by sliding, and by rotation.
@@ -45,21 +45,22 @@ pub struct Life {
     pub given: f64,
     /// Dissipated by damping.
     pub viscous: f64,
-    /// Friction work at the contact while the bond was intact: a sum of p . u_th, which may decrease in a
-    /// step in which the velocity reverses.
+    /// Friction work at the contact while the bond was intact: a sum of p . u_th, which may
+    /// decrease in a step in which the velocity reverses.
     pub friction: f64,
 }
 
 impl Life {
-    /// Returns the fraction of rotation in the work of opening, sliding and rotation; recovered work does not count.
+    /// Returns the fraction of rotation in the work of opening, sliding and rotation; recovered
+    /// work does not count.
     pub fn turning(&self) -> f64 {
         let [open, slide, turn] = self.work.map(|w| w.max(0.0));
         let all = open + slide + turn;
         if all > 0.0 { turn / all } else { 0.0 }
     }
 
-    /// Returns the fraction of sliding in the work of opening and sliding, 0 (mode I) to 1 (mode II);
-    /// recovered work does not count.
+    /// Returns the fraction of sliding in the work of opening and sliding, 0 (mode I) to 1 (mode
+    /// II); recovered work does not count.
     pub fn mode_mix(&self) -> f64 {
         let [open, slide, _] = self.work.map(|w| w.max(0.0));
         if open + slide > 0.0 {

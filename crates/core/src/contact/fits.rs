@@ -1,5 +1,5 @@
-//! Whether contacts that were read are those of a scene: every index in range, every length right, every number finite. Detection
-//! and laws take this for granted.
+//! Whether contacts that were read are those of a scene: every index in range, every length right,
+//! every number finite. Detection and laws take this for granted.
 
 use super::memory::Memory;
 use super::network::{Contact, Key, Network};

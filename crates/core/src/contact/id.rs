@@ -1,9 +1,10 @@
-//! Names of contacts that do not depend on where bodies stand in memory: the identities of the bodies, which contactor of each
-//! body touches, and with which feature.
+//! Names of contacts that do not depend on where bodies stand in memory: the identities of the
+//! bodies, which contactor of each body touches, and with which feature.
 //!
-//! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a step, and is compared often. A
-//! [`ContactId`] names the same contact in another listing of the same bodies, such as a run that is resumed, a scene from
-//! which other bodies were taken, or another machine's part of it. [`ContactNames`] translates.
+//! A [`Key`] numbers the contactors of one scene as they are listed; it sorts the contacts of a
+//! step, and is compared often. A [`ContactId`] names the same contact in another listing of the
+//! same bodies, such as a run that is resumed, a scene from which other bodies were taken, or
+//! another machine's part of it. [`ContactNames`] translates.
 
 use super::network::{Contact, Key, Network};
 use crate::bodies::Bodies;
@@ -35,7 +36,8 @@ pub struct ContactorId {
     pub number: u32,
 }
 
-/// The name of a contact: both contactors, in their own order, and the feature that is touched, 0 between balls.
+/// The name of a contact: both contactors, in their own order, and the feature that is touched, 0
+/// between balls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct ContactId {
     /// The contactors, the smaller first: what detection takes for the candidate may be either.
@@ -130,8 +132,8 @@ impl ContactNames {
             .collect()
     }
 
-    /// Pairs of contacts of two networks that have one name, in the order of the names. `other` are the names of the second
-    /// scene.
+    /// Pairs of contacts of two networks that have one name, in the order of the names. `other` are
+    /// the names of the second scene.
     pub fn matched<'a, S: Space>(
         &self,
         network: &'a Network<S>,
@@ -157,7 +159,8 @@ mod tests {
     use crate::step::Simulation;
     use nalgebra::Vector2;
 
-    /// Disks of the bodies 0, 1 and 0 again, and a surface of the body 2; listed the other way round contacts have the same names.
+    /// Disks of the bodies 0, 1 and 0 again, and a surface of the body 2; listed the other way
+    /// round contacts have the same names.
     #[test]
     fn names_do_not_depend_on_the_order_of_the_shapes() {
         let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
@@ -194,8 +197,8 @@ mod tests {
         }
     }
 
-    /// Three disks in a row in the order 0, 1, 2, and in another scene in the order 2, 1, 0 of the same bodies: both contacts have partners; in
-    /// a scene without the last disk one has.
+    /// Three disks in a row in the order 0, 1, 2, and in another scene in the order 2, 1, 0 of the
+    /// same bodies: both contacts have partners; in a scene without the last disk one has.
     #[test]
     fn contacts_of_one_name_are_matched() {
         let scene = |order: &[u32]| {

@@ -4,7 +4,8 @@ use super::events::Life;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// A bond: a contact with an opening and a damage. What laws see of it is in one line of the cache in two dimensions.
+/// A bond: a contact with an opening and a damage. What laws see of it is in one line of the cache
+/// in two dimensions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 #[repr(C, align(64))]
@@ -142,7 +143,8 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// Allocates a slot for a contact with the given initial variables; with an intact bond if `bonded`.
+    /// Allocates a slot for a contact with the given initial variables; with an intact bond if
+    /// `bonded`.
     pub fn allocate(&mut self, bonded: bool, gap: f64, area: f64, initial: &[f64]) -> u32 {
         let slot = self.free.pop().unwrap_or_else(|| {
             self.bonds.push(Bond::none(area));
@@ -169,7 +171,8 @@ impl<S: Space> Memory<S> {
         }
     }
 
-    /// Forms an intact bond in a slot without a bond or with a broken one; its internal variables are kept.
+    /// Forms an intact bond in a slot without a bond or with a broken one; its internal variables
+    /// are kept.
     pub fn bond(&mut self, slot: usize, gap: f64, area: f64) {
         self.bonds[slot] = Bond {
             gap,

@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize, Serializer};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// Key of a contact, stable in time: candidate (a ball, or a convex piece with [`Key::PIECE`] set),
-/// antagonist (the same, or a surface with [`Key::SURFACE`] set), and the face, edge or vertex in contact.
+/// antagonist (the same, or a surface with [`Key::SURFACE`] set), and the face, edge or vertex in
+/// contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Key {
     /// Index of the candidate.
@@ -52,12 +53,12 @@ impl Key {
     }
 }
 
-/// Where the impulse of a contact acts. One place for both bodies, so that it gives them no angular momentum: where there is a gap, or an
-/// overlap, their surfaces are not at one place.
+/// Where the impulse of a contact acts. One place for both bodies, so that it gives them no angular
+/// momentum: where there is a gap, or an overlap, their surfaces are not at one place.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Acts {
-    /// On either surface: of rigid bodies that touch within the step, and of two surfaces that deform, which take up forces at their
-    /// nodes only.
+    /// On either surface: of rigid bodies that touch within the step, and of two surfaces that
+    /// deform, which take up forces at their nodes only.
     #[default]
     Surfaces,
     /// In the middle between the surfaces.
@@ -98,20 +99,22 @@ pub struct Contact<S: Space> {
     pub radius: f64,
     /// Impulse of the last solve in world axes (N s).
     pub impulse: S::Vector,
-    /// Moment of the last solve on the candidate (N m s); zero where the contact does not resist rotation.
+    /// Moment of the last solve on the candidate (N m s); zero where the contact does not resist
+    /// rotation.
     pub moment: S::Spin,
     /// Time of formation of the contact (s).
     pub formed_at: f64,
     /// Uninterrupted time under a compressive impulse (s).
     pub compression_time: f64,
-    /// Whether it closes within this step, too fast for detection at the start of the step: its gap and
-    /// normal are those at the time of closing, and its impact belongs to this step.
+    /// Whether it closes within this step, too fast for detection at the start of the step: its gap
+    /// and normal are those at the time of closing, and its impact belongs to this step.
     pub closing: bool,
-    /// For a closing contact: whether an earlier impact of the same step changes the motion from which it
-    /// was predicted. It is then only kept from closing, without restitution, and rebounds in the next step.
+    /// For a closing contact: whether an earlier impact of the same step changes the motion from
+    /// which it was predicted. It is then only kept from closing, without restitution, and rebounds
+    /// in the next step.
     pub later: bool,
-    /// Whether it was beyond the alert distance at the start of the step: only the unilateral constraint
-    /// acts on it, no bond, no cohesion, no wear.
+    /// Whether it was beyond the alert distance at the start of the step: only the unilateral
+    /// constraint acts on it, no bond, no cohesion, no wear.
     pub beyond: bool,
     /// Whether friction was at its bound in the last solve (slip).
     pub slides: bool,
@@ -138,7 +141,8 @@ impl<S: Space> Contact<S> {
     /// Marks a frictional contact without memory.
     pub const NO_MEMORY: u32 = u32::MAX;
 
-    /// Returns a contact of two faces that forms at a time (s): not central, without memory or impulse.
+    /// Returns a contact of two faces that forms at a time (s): not central, without memory or
+    /// impulse.
     #[inline]
     pub fn new(
         key: Key,
@@ -191,7 +195,8 @@ impl<S: Space> Contact<S> {
         !self.beyond || self.impulse != S::Vector::zero()
     }
 
-    /// Velocity of the candidate relative to the antagonist, at the current velocities of rigid bodies (m/s).
+    /// Velocity of the candidate relative to the antagonist, at the current velocities of rigid
+    /// bodies (m/s).
     #[inline]
     pub fn relative_velocity(&self, bodies: &Bodies<S>) -> S::Vector {
         let [i, j] = self.bodies.map(|b| b as usize);
@@ -219,8 +224,8 @@ impl<S: Space> Contact<S> {
     }
 }
 
-/// All contacts, sorted by key, and their neighbour list. What contacts dissipated and wore in the last step is not part of
-/// checkpoints.
+/// All contacts, sorted by key, and their neighbour list. What contacts dissipated and wore in the
+/// last step is not part of checkpoints.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Network<S: Space> {
@@ -235,24 +240,26 @@ pub struct Network<S: Space> {
     pub alert: f64,
     /// Range of the neighbour list beyond the alert distance (m).
     pub skin: f64,
-    /// Energy of bonds broken because their contact moved out of range (J); collected by the energy ledger.
+    /// Energy of bonds broken because their contact moved out of range (J); collected by the energy
+    /// ledger.
     pub torn_energy: f64,
     /// Bonds broken in the last step, in order.
     pub bond_breaks: Vec<Break<S>>,
     /// Bodies (candidate, antagonist) and interface law of the bonds formed in the last step.
     pub bonds_formed: Vec<([u32; 2], u16)>,
-    /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output requests
-    /// it.
+    /// Energy dissipated at the contacts in the last step, in their order; `None` unless an output
+    /// requests it.
     #[serde(skip)]
     pub dissipation: Option<Vec<ContactDissipation>>,
     /// Wear of surfaces in the last step; `None` unless requested.
     #[serde(skip)]
     pub losses: Option<Vec<Loss>>,
-    /// Temperatures and conductances of the contacts in the last step; `None` where no heat is computed.
+    /// Temperatures and conductances of the contacts in the last step; `None` where no heat is
+    /// computed.
     #[serde(skip)]
     pub thermal: Option<ContactHeat>,
-    /// Factor on wear and damage in a step: the number of cycles that the current cycle represents, see
-    /// [`crate::wear::jump`]; 1 without jumps.
+    /// Factor on wear and damage in a step: the number of cycles that the current cycle represents,
+    /// see [`crate::wear::jump`]; 1 without jumps.
     pub cycle_multiplier: f64,
     /// Worn volume of each surface so far, by index (m^3; m^3/m in 2D).
     pub worn: BTreeMap<usize, f64>,
@@ -260,7 +267,8 @@ pub struct Network<S: Space> {
     pub of_grains: BTreeSet<usize>,
     /// Diagnostics of the step size.
     pub step_size: StepSizeDiagnostics,
-    /// By how much the largest growth of a body (m) has changed distances since the neighbour list was built.
+    /// By how much the largest growth of a body (m) has changed distances since the neighbour list
+    /// was built.
     pub grown: f64,
     /// Number of rebuilds of the neighbour list.
     pub rebuilds: u64,
@@ -270,8 +278,8 @@ pub struct Network<S: Space> {
     pub(super) seen_at: Vec<S::Vector>,
     /// Additional range of the neighbour list around each fast body (m); empty where there is none.
     pub(super) widened: Vec<f64>,
-    /// Spin of each surface for which the list was built (rad/s); zero where rotation leaves the surface in
-    /// place.
+    /// Spin of each surface for which the list was built (rad/s); zero where rotation leaves the
+    /// surface in place.
     pub(super) turning: Vec<f64>,
     /// Half thicknesses and extents of the collision shapes.
     #[serde(skip)]
@@ -313,8 +321,8 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs has
-    /// changed.
+    /// Forces a rebuild of the neighbour list in the next step, because the set of possible pairs
+    /// has changed.
     pub fn forget_neighbours(&mut self) {
         self.seen_at.clear();
     }
@@ -349,8 +357,8 @@ impl<S: Space> Network<S> {
         }
     }
 
-    /// Returns the number of contacts: those within the alert distance or bonded, and of the predicted ones
-    /// those with an impulse.
+    /// Returns the number of contacts: those within the alert distance or bonded, and of the
+    /// predicted ones those with an impulse.
     pub fn contact_count(&self, parallel: bool) -> usize {
         let contacts = &self.contacts;
         count(parallel, contacts.len(), COUNT, |k| contacts[k].counts())
@@ -385,7 +393,8 @@ impl<S: Space> Network<S> {
         contact.gap - bond.map_or(0.0, |b| b.gap)
     }
 
-    /// Records that the bond of a contact broke, with its energy history and its damage at the start of the step.
+    /// Records that the bond of a contact broke, with its energy history and its damage at the
+    /// start of the step.
     pub(crate) fn record_break(&mut self, contact: &Contact<S>, damage_before: f64) {
         let Some(bond) = self.bond(contact) else {
             return;
@@ -438,8 +447,8 @@ impl<S: Space> Network<S> {
         (self.bonds_broken() as f64 + intact) / made as f64
     }
 
-    /// The gap of the spring of a compliant contact (m): without what cement fills. An overlap at which a bond was made
-    /// stays in the spring.
+    /// The gap of the spring of a compliant contact (m): without what cement fills. An overlap at
+    /// which a bond was made stays in the spring.
     pub fn spring_gap(&self, contact: &Contact<S>) -> f64 {
         let bond = self.bond(contact).filter(|b| b.intact());
         contact.gap - bond.map_or(0.0, |b| b.gap.max(0.0))

@@ -3,7 +3,8 @@
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// The spring of a compliant contact at the end of a step; all zero for a rigid contact and one that does not touch.
+/// The spring of a compliant contact at the end of a step; all zero for a rigid contact and one
+/// that does not touch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Spring<S: Space> {

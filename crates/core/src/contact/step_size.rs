@@ -1,16 +1,19 @@
-//! Diagnostics of a time step that is too large for the motion: contacts found late, bodies that may have
-//! passed through others.
+//! Diagnostics of a time step that is too large for the motion: contacts found late, bodies that
+//! may have passed through others.
 
 use super::network::Contact;
 use crate::bodies::Bodies;
 use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 
-/// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as found late.
+/// Penetration, as a fraction of the reduced radius of two bodies, from which a contact counts as
+/// found late.
 const LATE: f64 = 0.01;
-/// The same for springs, which overlap by that much under load; more is too soft for a contact (`fretwork check`).
+/// The same for springs, which overlap by that much under load; more is too soft for a contact
+/// (`fretwork check`).
 const LATE_SPRING: f64 = 0.05;
-/// Overlap over what the bodies move relative to each other in a step, above which it did not come about by their speed.
+/// Overlap over what the bodies move relative to each other in a step, above which it did not come
+/// about by their speed.
 const NOT_BY_SPEED: f64 = 2.0;
 /// Time and bodies of the first occurrence of an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,7 +41,8 @@ impl Occurrence {
     }
 }
 
-/// Relative speed of a contact (m/s), or a bound on it where a surface deforms: its body has the velocity of its origin alone.
+/// Relative speed of a contact (m/s), or a bound on it where a surface deforms: its body has the
+/// velocity of its origin alone.
 fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
     /// Speed of any point of a surface over that of its origin, at most.
     const ELSEWHERE: f64 = 100.0;
@@ -46,7 +50,8 @@ fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
         let b = contact.bodies[side] as usize;
         bodies.velocity[b] + S::spin_velocity(&bodies.spin[b], &contact.arms[side])
     };
-    // Points of a system are bodies of their own, and grains nearly rigid; what is alone in its system is a surface.
+    // Points of a system are bodies of their own, and grains nearly rigid; what is alone in its
+    // system is a surface.
     let deforms = |side: usize| {
         let carrier = bodies.carrier(contact.bodies[side] as usize);
         let carrier = carrier.filter(|c| !c.grain);
@@ -66,8 +71,8 @@ fn speed_of<S: Space>(contact: &Contact<S>, bodies: &Bodies<S>) -> f64 {
 
 /// Indicators, over a run, of whether the time step was small enough to find every contact in time.
 ///
-/// Pairs whose motion in a step exceeds the range of detection are followed through the step and get their
-/// contact before they meet. The cases that this cannot resolve are reported here.
+/// Pairs whose motion in a step exceeds the range of detection are followed through the step and
+/// get their contact before they meet. The cases that this cannot resolve are reported here.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepSizeDiagnostics {
     /// Number of contacts first found with a penetration above a hundredth of their radius.
@@ -76,21 +81,21 @@ pub struct StepSizeDiagnostics {
     pub deepest: f64,
     /// First occurrence.
     pub first_late: Option<Occurrence>,
-    /// Number of contacts first found as deep, of bodies that do not move that far in a step: they sank into each other, or
-    /// met from behind a surface.
+    /// Number of contacts first found as deep, of bodies that do not move that far in a step: they
+    /// sank into each other, or met from behind a surface.
     pub sunk: u64,
     /// Deepest of these penetrations, as a fraction of the radius.
     pub deepest_sunk: f64,
     /// First occurrence.
     pub first_sunk: Option<Occurrence>,
-    /// Number of times that two bodies penetrated within a step by more than a quarter of the thinner one's
-    /// half thickness.
+    /// Number of times that two bodies penetrated within a step by more than a quarter of the
+    /// thinner one's half thickness.
     pub passed: u64,
     /// First occurrence.
     pub first_passed: Option<Occurrence>,
-    /// Number of impacts with restitution that followed another impact of the same body within a step: they
-    /// were only kept from closing in that step and rebounded in the next, which dissipates more energy than
-    /// two successive impacts.
+    /// Number of impacts with restitution that followed another impact of the same body within a
+    /// step: they were only kept from closing in that step and rebounded in the next, which
+    /// dissipates more energy than two successive impacts.
     pub held_back: u64,
     /// First occurrence.
     pub first_held_back: Option<Occurrence>,
@@ -101,7 +106,8 @@ pub struct StepSizeDiagnostics {
     /// Start of the last such step (s).
     #[serde(skip)]
     last_unwatched: Option<f64>,
-    /// Number of times that a body slid into the edge of a neighbour of what it lay on, no higher than the overlaps in the scene.
+    /// Number of times that a body slid into the edge of a neighbour of what it lay on, no higher
+    /// than the overlaps in the scene.
     pub edges: u64,
     /// The highest of them (m).
     pub highest_edge: f64,
@@ -118,11 +124,12 @@ pub struct StepSizeDiagnostics {
 }
 
 impl StepSizeDiagnostics {
-    /// Records a contact that is found for the first time, of a pair that already penetrates by `known` (m)
-    /// elsewhere: a body that rests slightly too deep in a surface meets the next facet at the same depth,
-    /// which is not due to its speed. `size` is the reduced radius of the bodies (m): that of the contact is the part of a face
-    /// that a point stands for, which may be much smaller. Bodies that move less than the overlap in the time `h` (s) between two
-    /// detections did not get there by their speed.
+    /// Records a contact that is found for the first time, of a pair that already penetrates by
+    /// `known` (m) elsewhere: a body that rests slightly too deep in a surface meets the next facet
+    /// at the same depth, which is not due to its speed. `size` is the reduced radius of the bodies
+    /// (m): that of the contact is the part of a face that a point stands for, which may be much
+    /// smaller. Bodies that move less than the overlap in the time `h` (s) between two detections
+    /// did not get there by their speed.
     pub(super) fn record_late<S: Space>(
         &mut self,
         contact: &Contact<S>,
@@ -185,7 +192,8 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &pair));
     }
 
-    /// Records a body that slides into an edge of this height (m), in a scene of some convex pieces.
+    /// Records a body that slides into an edge of this height (m), in a scene of some convex
+    /// pieces.
     pub(super) fn record_edge<S: Space>(
         &mut self,
         time: f64,
@@ -213,7 +221,8 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }
 
-    /// Records a body whose displacement in a step is below the floating-point spacing of its position.
+    /// Records a body whose displacement in a step is below the floating-point spacing of its
+    /// position.
     pub(crate) fn record_lost_motion<S: Space>(
         &mut self,
         time: f64,
@@ -224,7 +233,8 @@ impl StepSizeDiagnostics {
             .get_or_insert_with(|| Occurrence::new(time, bodies, &[body]));
     }
 
-    /// Returns the warning about bodies that slid into low edges, and whether these are more than one to a thousand pieces.
+    /// Returns the warning about bodies that slid into low edges, and whether these are more than
+    /// one to a thousand pieces.
     pub fn edges_warning(&self) -> Option<(bool, String)> {
         let first = self.first_edge.as_ref()?;
         let text = format!(
@@ -306,7 +316,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is no sign of speed, one of 2 % of the grain is.
+    /// Two sides that share 1e-9 m of grains of 1e-6 m: an overlap of twice that length is no sign
+    /// of speed, one of 2 % of the grain is.
     #[test]
     fn late_contacts_are_measured_by_their_bodies() {
         let mut bodies = Bodies::<Dim2>::default();
@@ -362,8 +373,8 @@ mod tests {
         }
     }
 
-    /// A point of a system that is as slow as the bodies above sank as they do; of a surface the speed is known at its origin, of which that
-    /// elsewhere may be a hundred times.
+    /// A point of a system that is as slow as the bodies above sank as they do; of a surface the
+    /// speed is known at its origin, of which that elsewhere may be a hundred times.
     #[test]
     fn what_systems_carry_sinks_too() {
         let geometry = ContactGeometry {

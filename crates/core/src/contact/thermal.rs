@@ -15,10 +15,12 @@ pub enum HeatSide {
     Between(u32),
 }
 
-/// What two materials in contact have together, of the first on the candidate and the second on the antagonist.
+/// What two materials in contact have together, of the first on the candidate and the second on the
+/// antagonist.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialPair {
-    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2 (ohm m).
+    /// Thermal conductivity 2 k1 k2/(k1 + k2) (W/(m K)) and electrical resistivity (rho1 + rho2)/2
+    /// (ohm m).
     pub material: [f64; 2],
     /// Share of the first by effusivities, e1/(e1 + e2).
     pub share: f64,
@@ -42,7 +44,8 @@ pub struct ContactHeat {
     pub pairs: Arc<[MaterialPair]>,
     /// What they see.
     pub seen: Vec<ContactTemperature>,
-    /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws give them; zero without one.
+    /// Thermal (W/K; W/(m K) in 2D) and electrical (S; S/m in 2D) conductance, as transport laws
+    /// give them; zero without one.
     pub conductance: Vec<[f64; 2]>,
     /// Points of meshes that sides refer to, by nodes of the heat.
     pub between: Vec<Nodes>,

@@ -5,7 +5,8 @@ use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// Returns the greater of two numbers; `b` if they are equal or `a` is NaN, as vector instructions do.
+/// Returns the greater of two numbers; `b` if they are equal or `a` is NaN, as vector instructions
+/// do.
 #[inline(always)]
 pub fn greatest(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

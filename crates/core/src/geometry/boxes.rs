@@ -1,5 +1,6 @@
-//! Bounding boxes of the segments of a chain, of groups of successive ones, of groups of these, and so on: what is near a place
-//! is found without a look at the rest. Successive segments of a chain are near each other, so that nothing has to be sorted.
+//! Bounding boxes of the segments of a chain, of groups of successive ones, of groups of these, and
+//! so on: what is near a place is found without a look at the rest. Successive segments of a chain
+//! are near each other, so that nothing has to be sorted.
 
 use nalgebra::Vector2;
 
@@ -78,7 +79,8 @@ impl Boxes {
         self.levels.truncate(level + 1);
     }
 
-    /// Calls `each` with the segments whose box meets a window, in order, until it returns false; returns whether it did not.
+    /// Calls `each` with the segments whose box meets a window, in order, until it returns false;
+    /// returns whether it did not.
     pub fn visit(&self, window: &Window, each: &mut impl FnMut(usize) -> bool) -> bool {
         let top = self.levels.len();
         top == 0 || self.descend(top - 1, 0, window, each)

@@ -118,7 +118,8 @@ impl Grid {
         &self.sorted
     }
 
-    /// Finds the cells around a position, each once even if a periodic axis has only one or two cells, as ranges in
+    /// Finds the cells around a position, each once even if a periodic axis has only one or two
+    /// cells, as ranges in
     /// [`Self::sorted`]: cells beside each other along x follow each other there.
     pub(super) fn around<V: VectorLike>(
         &self,

@@ -6,8 +6,8 @@ use rstar::{AABB, RTree};
 
 type V = Vector2<f64>;
 
-/// Returns the first two segments of a chain that intersect other than at a shared point, as the indices of
-/// their start points, and the position (m). A chain monotonic in x has none.
+/// Returns the first two segments of a chain that intersect other than at a shared point, as the
+/// indices of their start points, and the position (m). A chain monotonic in x has none.
 pub fn first(points: &[V]) -> Option<(usize, usize, V)> {
     let steady = |sign: f64| points.windows(2).all(|w| sign * (w[1].x - w[0].x) > 0.0);
     if steady(1.0) || steady(-1.0) {

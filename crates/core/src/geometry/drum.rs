@@ -1,4 +1,5 @@
-//! The inside of a cylinder (a drum): a circle in 2D, in 3D an infinite cylinder along an axis of its body.
+//! The inside of a cylinder (a drum): a circle in 2D, in 3D an infinite cylinder along an axis of
+//! its body.
 
 use super::shape::{ClosestPoint, Surface, about};
 use super::space::{Space, VectorLike};

@@ -1,4 +1,5 @@
-//! Triangles of a surface in 3D, and contact points of a ball on them without ghost contacts at their seams.
+//! Triangles of a surface in 3D, and contact points of a ball on them without ghost contacts at
+//! their seams.
 
 use super::shape::{ClosestPoint, Fan};
 use nalgebra::Vector3;
@@ -55,7 +56,8 @@ impl Facet<V> {
     }
 }
 
-/// A nearest part: the number of facets that found it, the vector from it, and the first such facet.
+/// A nearest part: the number of facets that found it, the vector from it, and the first such
+/// facet.
 struct Found {
     part: [u64; 3],
     corners: usize,
@@ -64,14 +66,15 @@ struct Found {
     first: usize,
 }
 
-/// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach` (m),
-/// in the order of their features. `facets` are all that intersect the box of that size about it.
+/// Finds all points where the surface is locally nearest to a ball centred at `centre` within
+/// `reach` (m), in the order of their features. `facets` are all that intersect the box of that
+/// size about it.
 pub fn touches(facets: &[Facet<V>], centre: &V, reach: f64, out: &mut Vec<ClosestPoint<V>>) {
     touches_within(facets, centre, reach, 0.0, out);
 }
 
-/// Finds the points where the surface is locally nearest to a ball, as [`touches`] does. A point that is nearer to a
-/// corner than the share `at_corner` of an edge is moved to the corner.
+/// Finds the points where the surface is locally nearest to a ball, as [`touches`] does. A point
+/// that is nearer to a corner than the share `at_corner` of an edge is moved to the corner.
 pub fn touches_within(
     facets: &[Facet<V>],
     centre: &V,
@@ -84,7 +87,8 @@ pub fn touches_within(
     for (k, facet) in facets.iter().enumerate() {
         let [a, b, c] = facet.corners;
         let (closest_point, mut used) = nearest(*centre, a, b, c);
-        // In line with a corner rounding decides whether a facet finds that or an edge of it; the facets around it must agree.
+        // In line with a corner rounding decides whether a facet finds that or an edge of it; the
+        // facets around it must agree.
         for (k, corner) in facet.corners.iter().enumerate() {
             let edge = (facet.corners[(k + 1) % 3] - corner).norm();
             if at_corner > 0.0 && (closest_point - corner).norm() <= at_corner * edge {
@@ -125,7 +129,8 @@ pub fn touches_within(
         if (arm.dot(&up) < 0.0) != inside && length > tiny {
             continue;
         }
-        // Nor has its part across the normal: a point that touches a seam of a plane would be pushed along it.
+        // Nor has its part across the normal: a point that touches a seam of a plane would be
+        // pushed along it.
         let aligned = (arm - up * arm.dot(&up)).norm() <= tiny;
         let face = f.corners == 3 || aligned;
         let rises = |g: &Facet<V>| {
@@ -188,9 +193,9 @@ pub fn fan(facets: &[Facet<V>], at: &V, within: f64, out: &mut Fan<V>) {
     }
 }
 
-/// Returns the mean normal at a part, weighted by the angles of the facets, which determines inside or
-/// outside. Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE
-/// TVCG 11 (2005).
+/// Returns the mean normal at a part, weighted by the angles of the facets, which determines inside
+/// or outside. Baerentzen and Aanaes, "Signed distance computation using the angle weighted
+/// pseudonormal", IEEE TVCG 11 (2005).
 fn pseudo_normal<'a>(
     about: impl Iterator<Item = &'a Facet<V>>,
     part: &[u64; 3],
@@ -224,7 +229,8 @@ fn feature(facets: &[Facet<V>], first: usize, part: &[u64; 3], corners: usize) -
         }
 }
 
-/// A convex edge of a surface: a sharp one, or one with a facet on one side only; of a surface that deforms any edge.
+/// A convex edge of a surface: a sharp one, or one with a facet on one side only; of a surface that
+/// deforms any edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Ridge {
     /// Its ends (m), in the direction of the side of its first facet.
@@ -235,7 +241,8 @@ pub struct Ridge {
     pub facet: u32,
     /// Index of the edge in that facet.
     pub side: u8,
-    /// Normals of the facets on both sides; at an open border the second is the reverse of the first.
+    /// Normals of the facets on both sides; at an open border the second is the reverse of the
+    /// first.
     normals: [V; 2],
 }
 
@@ -306,8 +313,8 @@ pub fn behind(facets: &[Facet<V>], name: u64, place: &V, normal: &V) -> bool {
         .all(|c| height(c) <= BEHIND * (c - place).norm())
 }
 
-/// Returns the nearest point of a triangle and the corners involved (one: a corner, two: an edge, three: the
-/// face). Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+/// Returns the nearest point of a triangle and the corners involved (one: a corner, two: an edge,
+/// three: the face). Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 pub fn nearest(
     p: Vector3<f64>,
     a: Vector3<f64>,

@@ -1,9 +1,9 @@
 //! Neighbour search for balls: a uniform grid of cells, each slightly wider than the largest search
 //! distance.
 //!
-//! Where a few large balls would put many small ones into each cell, balls are sorted by size into levels
-//! with a grid each, and a ball searches the grids of its own level and of the larger ones (Ericson,
-//! Real-Time Collision Detection, 2005, section 7.2.1).
+//! Where a few large balls would put many small ones into each cell, balls are sorted by size into
+//! levels with a grid each, and a ball searches the grids of its own level and of the larger ones
+//! (Ericson, Real-Time Collision Detection, 2005, section 7.2.1).
 
 use super::cells::Grid;
 use super::periodic::Periodic;
@@ -16,11 +16,13 @@ const CHUNK: usize = 1024;
 /// Time of a ball (ns).
 const COST: f64 = 300.0;
 
-/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a, b).
+/// Returns all pairs (a, b), a < b, of balls with |x_a - x_b| < r_a + r_b + `reach`, sorted by (a,
+/// b).
 ///
-/// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is linear in
-/// the number of balls, for any sizes; memory is bounded for any extent (cells grow if the scene is sparse). Balls are
-/// distributed over threads if `parallel`; the results are the same.
+/// `keep(a, b)` selects the relevant pairs (balls of one body never touch each other). The cost is
+/// linear in the number of balls, for any sizes; memory is bounded for any extent (cells grow if
+/// the scene is sparse). Balls are distributed over threads if `parallel`; the results are the
+/// same.
 pub fn pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -68,8 +70,8 @@ pub struct Crowd {
     pub size: f64,
 }
 
-/// Returns, if [`pairs`] would find more than `most` pairs, the cell with the most balls. Stores no pairs,
-/// and stops counting when the answer is known.
+/// Returns, if [`pairs`] would find more than `most` pairs, the cell with the most balls. Stores no
+/// pairs, and stops counting when the answer is known.
 pub fn more_than<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -97,8 +99,8 @@ pub fn more_than<V: VectorLike>(
     None
 }
 
-/// Returns the number of pairs that [`pairs`] examines, an upper bound of those it finds. Linear in the
-/// number of balls.
+/// Returns the number of pairs that [`pairs`] examines, an upper bound of those it finds. Linear in
+/// the number of balls.
 pub fn most_pairs<V: VectorLike>(
     centres: &[V],
     radii: &[f64],
@@ -121,11 +123,11 @@ pub fn most_pairs<V: VectorLike>(
     sum
 }
 
-/// Mean number of balls per cell searched, above which balls are sorted by size. For balls of one size it is
-/// three.
+/// Mean number of balls per cell searched, above which balls are sorted by size. For balls of one
+/// size it is three.
 const CROWD: f64 = 8.0;
-/// The largest search distance of a level is at most twice its smallest, except in the last level, which
-/// starts at 1e-9 of the largest.
+/// The largest search distance of a level is at most twice its smallest, except in the last level,
+/// which starts at 1e-9 of the largest.
 const MAX_LEVELS: usize = 31;
 
 /// Balls sorted by size into levels with a grid each, from small to large.
@@ -206,8 +208,8 @@ impl<V: VectorLike> Levels<V> {
         &self.levels[usize::from(own)..]
     }
 
-    /// Calls `each` with the balls within the search distance of `a` that it is paired with, until it
-    /// returns false.
+    /// Calls `each` with the balls within the search distance of `a` that it is paired with, until
+    /// it returns false.
     #[allow(clippy::too_many_arguments)]
     fn near(
         &self,

@@ -6,8 +6,8 @@ use super::shape::{ClosestPoint, Fan, Surface};
 use super::space::Dim3;
 use nalgebra::Vector3;
 
-/// Heights z on a regular grid of `nx` by `ny` points, with two triangles per cell. With `periodic` the grid
-/// repeats: point nx is then the image of point 0 and is not stored.
+/// Heights z on a regular grid of `nx` by `ny` points, with two triangles per cell. With `periodic`
+/// the grid repeats: point nx is then the image of point 0 and is not stored.
 #[derive(Debug, Clone)]
 pub struct HeightField {
     nx: usize,

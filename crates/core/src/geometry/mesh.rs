@@ -76,8 +76,8 @@ impl Mesh {
     /// Creates a mesh from points (m) and triangles of point indices.
     ///
     /// # Errors
-    /// No triangles, points that are not finite, triangles without area, inconsistent orientation, or more
-    /// than two triangles at an edge.
+    /// No triangles, points that are not finite, triangles without area, inconsistent orientation,
+    /// or more than two triangles at an edge.
     pub fn new(points: Vec<V>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
@@ -161,7 +161,8 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// The facets at a vertex on the border, of which one is known; none at a vertex that is not on it.
+    /// The facets at a vertex on the border, of which one is known; none at a vertex that is not on
+    /// it.
     fn about(&self, known: u32, vertex: u32) -> Option<Vec<u32>> {
         let (mut found, mut next, mut border) = (vec![known], 0, false);
         while next < found.len() {

@@ -1,37 +1,46 @@
-//! The place on a surface that a point of another surface faces on average over the facets at the point: the mortar method with dual shape
-//! functions. Contacts of points with their nearest place alone do not carry a uniform pressure from one mesh to another that does not
-//! match; with these weights they do. Facets are segments in the plane and triangles in space.
+//! The place on a surface that a point of another surface faces on average over the facets at the
+//! point: the mortar method with dual shape functions. Contacts of points with their nearest place
+//! alone do not carry a uniform pressure from one mesh to another that does not match; with these
+//! weights they do. Facets are segments in the plane and triangles in space.
 //!
-//! With the coordinates t along the contact from the point, the dual function psi of the point, the shape function phi_k of a vertex of the
-//! other surface, and C the part of a facet at the point that the other surface covers, seen along the normal,
+//! With the coordinates t along the contact from the point, the dual function psi of the point, the
+//! shape function phi_k of a vertex of the other surface, and C the part of a facet at the point
+//! that the other surface covers, seen along the normal,
 //!
 //! ```text
 //! w_k = int_C psi phi_k dt / int_C psi dt        gap = n . (x - sum_k w_k x_k)
 //! psi = c (1 + b . t)        int_C psi t dt = 0        int_C psi dt = int_C phi dt
 //! ```
 //!
-//! psi is orthogonal to the shape functions of all other points of its surface, so that the contact acts on its point alone; these are the
-//! linear functions that vanish at the point. On a facet that is covered as a whole psi is 2 - 3 s on a segment, s = 1 at its other end, and
-//! 3 phi - phi_2 - phi_3 on a triangle with the shape functions phi_2, phi_3 of the other corners. Where the other surface ends below a facet psi is found
-//! anew on what is covered. The weights sum to 1, and sum w_k t_k is the place of the point. They may be negative.
+//! psi is orthogonal to the shape functions of all other points of its surface, so that the contact
+//! acts on its point alone; these are the linear functions that vanish at the point. On a facet
+//! that is covered as a whole psi is 2 - 3 s on a segment, s = 1 at its other end, and 3 phi -
+//! phi_2 - phi_3 on a triangle with the shape functions phi_2, phi_3 of the other corners. Where
+//! the other surface ends below a facet psi is found anew on what is covered. The weights sum to 1,
+//! and sum w_k t_k is the place of the point. They may be negative.
 //!
-//! What is worn off where a point rubs comes from below its facets: vertex k gives the share s_k = int_C phi phi_k dt / int_C phi dt of it, with the shape
-//! function phi of the point. Shares sum to 1, and none is negative. A depth that is the same at all points, on the areas that they stand for, is the
-//! same at all vertices, since the phi of all points sum to 1.
+//! What is worn off where a point rubs comes from below its facets: vertex k gives the share s_k =
+//! int_C phi phi_k dt / int_C phi dt of it, with the shape function phi of the point. Shares sum to
+//! 1, and none is negative. A depth that is the same at all points, on the areas that they stand
+//! for, is the same at all vertices, since the phi of all points sum to 1.
 //!
-//! Sources: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth, Comput. Methods Appl. Mech. Eng. 194 (2005)
-//! 3147; M. A. Puso and T. A. Laursen, Comput. Methods Appl. Mech. Eng. 193 (2004) 601 (facets in space); T. Cichosz and M. Bischoff,
-//! Comput. Methods Appl. Mech. Eng. 200 (2011) 1317 (facets that are covered in part).
+//! Sources: B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989; S. Hueeber and B. I. Wohlmuth,
+//! Comput. Methods Appl. Mech. Eng. 194 (2005) 3147; M. A. Puso and T. A. Laursen, Comput. Methods
+//! Appl. Mech. Eng. 193 (2004) 601 (facets in space); T. Cichosz and M. Bischoff, Comput. Methods
+//! Appl. Mech. Eng. 200 (2011) 1317 (facets that are covered in part).
 
 use super::overlap::{Along, integrate, shape_functions, signed_size};
 
-/// Share of a facet that counts for nothing: what is covered of it, or is covered twice, or by which the point lies beside the other surface.
+/// Share of a facet that counts for nothing: what is covered of it, or is covered twice, or by
+/// which the point lies beside the other surface.
 const ROUNDING: f64 = 1e-6;
 /// Weights of rounding.
 const NONE: f64 = 1e-12;
-/// Largest sum of the sizes of weights of a point beside the other surface: with one facet of which half is covered it is 4.5, and 1.7 where all is.
+/// Largest sum of the sizes of weights of a point beside the other surface: with one facet of which
+/// half is covered it is 4.5, and 1.7 where all is.
 const FARTHEST: f64 = 4.5;
-/// Smallest determinant of the second moments of what is covered, over the product of these, from which on it is an area.
+/// Smallest determinant of the second moments of what is covered, over the product of these, from
+/// which on it is an area.
 const FLAT: f64 = 1e-12;
 
 /// The facets at a point, and what of another surface they face.
@@ -52,7 +61,8 @@ struct Facet {
     point: usize,
     /// Length (m) or area (m^2).
     size: f64,
-    /// Over what is covered of it the integrals of 1, the coordinates, their squares, and their product.
+    /// Over what is covered of it the integrals of 1, the coordinates, their squares, and their
+    /// product.
     one: f64,
     first: Along,
     squares: Along,
@@ -63,7 +73,8 @@ struct Facet {
     own: f64,
 }
 
-/// Integrals of the shape function of a vertex of the other surface over what is covered of a facet.
+/// Integrals of the shape function of a vertex of the other surface over what is covered of a
+/// facet.
 #[derive(Clone, Copy, Debug, Default)]
 struct Term {
     vertex: u32,
@@ -74,7 +85,8 @@ struct Term {
     own: f64,
 }
 
-/// The vertices of another surface that a point faces, in increasing order, with numbers that sum to 1.
+/// The vertices of another surface that a point faces, in increasing order, with numbers that sum
+/// to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faced {
     /// The weights of the mean place.
@@ -83,7 +95,8 @@ pub struct Faced {
     pub shares: Vec<(u32, f64)>,
 }
 
-/// Sums up the numbers of each vertex, leaves out those of rounding, and has the others sum to 1; none where they sum to nothing.
+/// Sums up the numbers of each vertex, leaves out those of rounding, and has the others sum to 1;
+/// none where they sum to nothing.
 fn normalised(mut all: Vec<(u32, f64)>) -> Option<Vec<(u32, f64)>> {
     all.sort_by_key(|(vertex, _)| *vertex);
     let mut sums: Vec<(u32, f64)> = Vec::with_capacity(all.len());
@@ -168,8 +181,9 @@ impl Facet {
 }
 
 impl Star {
-    /// The facets at a point, each with its D corners in coordinates from the point and the place of the point among them. None where there
-    /// is no facet that faces a surface whose facets are positive; others are left out.
+    /// The facets at a point, each with its D corners in coordinates from the point and the place
+    /// of the point among them. None where there is no facet that faces a surface whose facets are
+    /// positive; others are left out.
     pub fn new(
         facets: impl IntoIterator<Item = ([Along; 3], usize)>,
         count: usize,
@@ -206,7 +220,8 @@ impl Star {
         self.facets.iter().any(|f| meets(f.corners()))
     }
 
-    /// Takes a facet of the other surface, its D vertices and their coordinates; gives whether it covers more than rounding.
+    /// Takes a facet of the other surface, its D vertices and their coordinates; gives whether it
+    /// covers more than rounding.
     pub fn face(&mut self, vertices: &[u32], at: &[Along]) -> bool {
         let mut covers = false;
         for facet in &mut self.facets {
@@ -217,8 +232,9 @@ impl Star {
         covers
     }
 
-    /// The vertices of the other surface that the point faces. None where it faces two layers of it, or is beside it: of one that is `beyond` its
-    /// border what is covered of its facets counts, up to about half of one.
+    /// The vertices of the other surface that the point faces. None where it faces two layers of
+    /// it, or is beside it: of one that is `beyond` its border what is covered of its facets
+    /// counts, up to about half of one.
     pub fn faced(&self, beyond: bool) -> Option<Faced> {
         let twice = |f: &Facet| f.one > (1.0 + ROUNDING) * f.size;
         if !(self.covered || beyond) || self.facets.iter().any(twice) {

@@ -1,7 +1,8 @@
-//! What two segments of a line, or two triangles of a plane, have in common, as places with weights that integrate quadratic functions over
-//! it exactly.
+//! What two segments of a line, or two triangles of a plane, have in common, as places with weights
+//! that integrate quadratic functions over it exactly.
 
-/// A place in the coordinates along a contact (m); in the plane, where that is a line, the second is zero.
+/// A place in the coordinates along a contact (m); in the plane, where that is a line, the second
+/// is zero.
 pub type Along = [f64; 2];
 
 /// Corners of what two triangles have in common, at most; clipping by a side adds one.
@@ -12,7 +13,8 @@ fn twice_area(a: Along, b: Along, c: Along) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Length of a segment (m), positive where it goes up, or area of a triangle (m^2), positive where it is anticlockwise.
+/// Length of a segment (m), positive where it goes up, or area of a triangle (m^2), positive where
+/// it is anticlockwise.
 pub fn signed_size(corners: &[Along]) -> f64 {
     match corners {
         [a, b] => b[0] - a[0],
@@ -21,7 +23,8 @@ pub fn signed_size(corners: &[Along]) -> f64 {
     }
 }
 
-/// The shape functions of a segment or triangle at a place; those of the third corner are zero on a segment.
+/// The shape functions of a segment or triangle at a place; those of the third corner are zero on a
+/// segment.
 pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
     match corners {
         [a, b] => {
@@ -37,8 +40,8 @@ pub fn shape_functions(corners: &[Along], at: Along) -> [f64; 3] {
     }
 }
 
-/// Calls a function with places and weights (m or m^2) whose sum over a quadratic function is its integral over what two segments or two
-/// triangles have in common, whatever their directions.
+/// Calls a function with places and weights (m or m^2) whose sum over a quadratic function is its
+/// integral over what two segments or two triangles have in common, whatever their directions.
 pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64)) {
     match (one, other) {
         ([a, b], [c, d]) => {
@@ -71,7 +74,8 @@ pub fn integrate(one: &[Along], other: &[Along], mut call: impl FnMut(Along, f64
 
 /// The convex polygon that two triangles have in common, and the number of its corners.
 ///
-/// Source: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974) 32.
+/// Source: I. E. Sutherland and G. W. Hodgman, "Reentrant polygon clipping", Commun. ACM 17 (1974)
+/// 32.
 fn common(one: [Along; 3], other: [Along; 3]) -> ([Along; CORNERS], usize) {
     let [a, b, c] = one;
     let sides = match twice_area(a, b, c) > 0.0 {

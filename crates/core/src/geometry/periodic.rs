@@ -2,8 +2,8 @@
 
 use super::space::VectorLike;
 
-/// Lengths of the periodic cell; `None` for axes without a period. Positions in the state are never wrapped
-/// (paths stay continuous); only differences are.
+/// Lengths of the periodic cell; `None` for axes without a period. Positions in the state are never
+/// wrapped (paths stay continuous); only differences are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Periodic {
     /// Period of each axis (m).

@@ -9,19 +9,21 @@ use nalgebra::Vector2;
 /// Distance from a vertex, relative to its segment, up to which it is one of rounding.
 const AT_VERTEX: f64 = 1e-9;
 
-/// How far below the line of the last segment of a surface that deforms a point beyond its end may be and still lie in it, as a fraction of the
-/// segment: more than loads press it in. What is lower is beside the surface.
+/// How far below the line of the last segment of a surface that deforms a point beyond its end may
+/// be and still lie in it, as a fraction of the segment: more than loads press it in. What is lower
+/// is beside the surface.
 const BELOW: f64 = 0.25;
 
 /// Points of a closed chain are one if they are closer than this share of the search distance.
 const SEAM: f64 = 1e-9;
 
-/// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it determines how
-/// often they are rebuilt.
+/// Margin of the bounding boxes of wearing segments, relative to the mean segment length; it
+/// determines how often they are rebuilt.
 const MARGIN: f64 = 0.25;
 
-/// An open chain of segments. In the direction of the chain the solid is on the right, the open side on the
-/// left. With a period the chain repeats along x and its last point is the image of the first.
+/// An open chain of segments. In the direction of the chain the solid is on the right, the open
+/// side on the left. With a period the chain repeats along x and its last point is the image of the
+/// first.
 #[derive(Debug)]
 pub struct Polyline {
     points: Vec<Vector2<f64>>,
@@ -31,11 +33,13 @@ pub struct Polyline {
     boxes: Boxes,
     /// Data of a wearing profile; `None` without wear.
     worn: Option<Worn>,
-    /// Where the points were when the boxes were built, and the margin of these (m); `None` unless the profile deforms.
+    /// Where the points were when the boxes were built, and the margin of these (m); `None` unless
+    /// the profile deforms.
     deformed: Option<(Vec<Vector2<f64>>, f64)>,
 }
 
-/// Heights before any wear, depths, and the displacement of vertices since the boxes were built, and the margin (m).
+/// Heights before any wear, depths, and the displacement of vertices since the boxes were built,
+/// and the margin (m).
 #[derive(Debug)]
 struct Worn {
     first: Vec<f64>,
@@ -146,7 +150,8 @@ impl Polyline {
         self.boxes.set(self.points.windows(2).map(of));
     }
 
-    /// Calls `each` with the segments whose boxes meet a window, and their shifts along x (m), until it returns false.
+    /// Calls `each` with the segments whose boxes meet a window, and their shifts along x (m),
+    /// until it returns false.
     fn visit(&self, window: &Window, mut each: impl FnMut(usize, f64) -> bool) {
         let Some(period) = self.period else {
             self.boxes.visit(window, &mut |k| each(k, 0.0));
@@ -171,8 +176,8 @@ impl Polyline {
         [image(self.points[k]), image(self.points[k + 1])]
     }
 
-    /// Returns 1 if the chain goes to the right, so that the solid is below it, and -1 if it goes to the
-    /// left.
+    /// Returns 1 if the chain goes to the right, so that the solid is below it, and -1 if it goes
+    /// to the left.
     fn direction(&self) -> f64 {
         let last = self.points[self.points.len() - 1];
         if last.x > self.points[0].x { 1.0 } else { -1.0 }
@@ -230,7 +235,8 @@ impl Surface<Dim2> for Polyline {
                 }
                 return true;
             }
-            // A vertex gives one contact point: from the segment that ends in it, or at the chain's start.
+            // A vertex gives one contact point: from the segment that ends in it, or at the chain's
+            // start.
             let at_end = s > end;
             if !at_end && (k > 0 || self.goes_on()) {
                 return true;
@@ -247,7 +253,8 @@ impl Surface<Dim2> for Polyline {
             let valley = next.is_some_and(|next| along.perp(&next) > 0.0);
             let length = from.norm();
             if length < reach && nearest {
-                // At the vertex itself, and behind one that is no valley, a direction from the vertex means nothing.
+                // At the vertex itself, and behind one that is no valley, a direction from the
+                // vertex means nothing.
                 let of = |v: Vector2<f64>| Vector2::new(-v.y, v.x) / v.norm();
                 let mean = (of(along) + of(next.unwrap_or(along))).normalize();
                 let level = from.dot(&mean) >= -BELOW * along.norm();

@@ -1,11 +1,11 @@
 //! Receding surfaces: their vertices move along one axis of the surface's frame, into the solid.
 //!
-//! With the coordinates perpendicular to that axis fixed, the removed volume is linear in the depths: the
-//! area between a chain of segments and the worn chain is the sum of depth times tributary length, to
-//! rounding and for any depth (for triangles the volume, with tributary areas). A single-valued chain stays
-//! single-valued and cannot intersect itself. On a flank inclined by a, the depth d normal to the flank is
-//! d/cos a along the axis, over a length shorter by the same factor: wear normal to the flank and wear along
-//! the axis remove the same volume.
+//! With the coordinates perpendicular to that axis fixed, the removed volume is linear in the
+//! depths: the area between a chain of segments and the worn chain is the sum of depth times
+//! tributary length, to rounding and for any depth (for triangles the volume, with tributary
+//! areas). A single-valued chain stays single-valued and cannot intersect itself. On a flank
+//! inclined by a, the depth d normal to the flank is d/cos a along the axis, over a length shorter
+//! by the same factor: wear normal to the flank and wear along the axis remove the same volume.
 
 use super::space::Space;
 use serde::{Deserialize, Serialize};
@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 pub struct Vertex<V> {
     /// Its initial position, in the surface's frame (m).
     pub at: V,
-    /// Tributary length (m) or area (m^2), perpendicular to the axis of wear: the integral of the shape
-    /// function that is 1 at this vertex, 0 at all others and linear between.
+    /// Tributary length (m) or area (m^2), perpendicular to the axis of wear: the integral of the
+    /// shape function that is 1 at this vertex, 0 at all others and linear between.
     pub tributary: f64,
 }
 
@@ -31,12 +31,13 @@ pub trait Recede<S: Space> {
     fn end(&self) -> Option<S::Vector> {
         None
     }
-    /// Returns the vertices around a point of the surface, with the linear shape functions of its segment or
-    /// triangle.
+    /// Returns the vertices around a point of the surface, with the linear shape functions of its
+    /// segment or triangle.
     fn shares(&self, closest_point: &S::Vector) -> Shares;
-    /// Moves the given vertices to their depths (m) below their initial positions. Returns the largest
-    /// displacement (m).
+    /// Moves the given vertices to their depths (m) below their initial positions. Returns the
+    /// largest displacement (m).
     fn recede(&mut self, depth: &[f64], named: &[usize]) -> f64;
-    /// Returns 1 where the solid is below and heights decrease, -1 where it is above and they increase.
+    /// Returns 1 where the solid is below and heights decrease, -1 where it is above and they
+    /// increase.
     fn sign(&self) -> f64;
 }

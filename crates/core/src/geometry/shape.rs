@@ -18,8 +18,8 @@ pub struct Ball<S: Space> {
     pub offset: S::Vector,
     /// Index of the material.
     pub material: u16,
-    /// Of a vertex of a grain that deforms the length (m) or area (m^2) that it stands for, along its normals in the axes of the
-    /// body; zero otherwise.
+    /// Of a vertex of a grain that deforms the length (m) or area (m^2) that it stands for, along
+    /// its normals in the axes of the body; zero otherwise.
     pub area: S::Vector,
 }
 
@@ -27,8 +27,9 @@ pub struct Ball<S: Space> {
 const LEAST_SHARE: f64 = 1e-6;
 
 impl<S: Space> Ball<S> {
-    /// Half of its thickness (m), of which `lengths` has that of each body: the radius; of a point of a surface half the length
-    /// that it stands for, in space the radius of the disk of its area.
+    /// Half of its thickness (m), of which `lengths` has that of each body: the radius; of a point
+    /// of a surface half the length that it stands for, in space the radius of the disk of its
+    /// area.
     pub fn size(&self, lengths: &[f64]) -> f64 {
         if self.radius > 0.0 {
             self.radius
@@ -42,8 +43,8 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Its radius in contacts (m), from which laws find their area: that of a ball; of a point of a surface the one whose contact has the
-    /// area that it stands for.
+    /// Its radius in contacts (m), from which laws find their area: that of a ball; of a point of a
+    /// surface the one whose contact has the area that it stands for.
     pub fn contact_radius(&self, lengths: &[f64]) -> f64 {
         match S::D {
             2 if self.radius == 0.0 => 2.0 * self.size(lengths),
@@ -51,8 +52,9 @@ impl<S: Space> Ball<S> {
         }
     }
 
-    /// Its radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it, in the axes of its body)
-    /// is known. The vertex at a corner stands for a part of either side, of which one touches.
+    /// Its radius (m), as [`Self::contact_radius`] gives it, in a contact whose normal (towards it,
+    /// in the axes of its body) is known. The vertex at a corner stands for a part of either side,
+    /// of which one touches.
     pub fn radius_towards(&self, normal: &S::Vector, lengths: &[f64]) -> f64 {
         if self.area == S::Vector::zero() {
             return self.contact_radius(lengths);
@@ -62,8 +64,8 @@ impl<S: Space> Ball<S> {
     }
 }
 
-/// The radius of a contact (m) that stands for a length (2D, m) or an area (3D, m^2) of a surface: that length, as it is for the sides of
-/// polygons; the radius of the disk of that area.
+/// The radius of a contact (m) that stands for a length (2D, m) or an area (3D, m^2) of a surface:
+/// that length, as it is for the sides of polygons; the radius of the disk of that area.
 pub fn point_radius<S: Space>(area: f64) -> f64 {
     match S::D {
         2 => area,
@@ -71,7 +73,8 @@ pub fn point_radius<S: Space>(area: f64) -> f64 {
     }
 }
 
-/// Size of the contact of two balls of these radii (m), which are not both zero: half their harmonic mean; of a point its size.
+/// Size of the contact of two balls of these radii (m), which are not both zero: half their
+/// harmonic mean; of a point its size.
 pub fn reduced_radius(radii: [f64; 2], sizes: [f64; 2]) -> f64 {
     match radii {
         [0.0, _] => sizes[0],
@@ -104,7 +107,8 @@ pub struct Corner<V> {
     pub feature: u32,
 }
 
-/// The faces around a place of a surface: their normals, and the vectors from the place to their corners (m).
+/// The faces around a place of a surface: their normals, and the vectors from the place to their
+/// corners (m).
 #[derive(Debug)]
 pub struct Fan<V> {
     /// Unit normals, to the open side.
@@ -125,7 +129,8 @@ impl<V> Default for Fan<V> {
 /// A facet of a surface that deforms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MovingFacet {
-    /// Its D vertices, by their places in [`Surface::moving_vertices`]: outside is where they are anticlockwise, in the plane on their left.
+    /// Its D vertices, by their places in [`Surface::moving_vertices`]: outside is where they are
+    /// anticlockwise, in the plane on their left.
     pub vertices: [u32; 3],
     /// The facets on the other side of its edges, in the plane before and after it.
     pub beside: [Option<u32>; 3],
@@ -133,26 +138,27 @@ pub struct MovingFacet {
 
 /// The surface of a first body: solid on one side, open on the other.
 pub trait Surface<S: Space>: Debug + Send + Sync {
-    /// Finds all points where the surface is locally nearest to a ball centred at `centre` within `reach`
-    /// (m), in the order of their features, without ghost contacts at seams between faces.
+    /// Finds all points where the surface is locally nearest to a ball centred at `centre` within
+    /// `reach` (m), in the order of their features, without ghost contacts at seams between faces.
     fn touches(&self, centre: &S::Vector, reach: f64, out: &mut Vec<ClosestPoint<S::Vector>>);
-    /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too often.
+    /// Returns whether a ball may be within `reach` (m): a cheap test that may return true too
+    /// often.
     fn near(&self, centre: &S::Vector, reach: f64) -> bool;
-    /// Finds corners of the surface in the box from `low` to `high` (m) that a flat side may touch, in the
-    /// order of their features; none for a plane, all vertices of a surface that deforms.
+    /// Finds corners of the surface in the box from `low` to `high` (m) that a flat side may touch,
+    /// in the order of their features; none for a plane, all vertices of a surface that deforms.
     fn corners(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Corner<S::Vector>>) {}
-    /// Finds triangles of the surface that intersect the box from `low` to `high` (m), and all that share
-    /// their corners there (3D); none for surfaces that only corners of a body can touch: a plane, the
-    /// inside of a drum.
+    /// Finds triangles of the surface that intersect the box from `low` to `high` (m), and all that
+    /// share their corners there (3D); none for surfaces that only corners of a body can touch: a
+    /// plane, the inside of a drum.
     fn facets(&self, _low: &S::Vector, _high: &S::Vector, _out: &mut Vec<Facet<S::Vector>>) {}
-    /// Finds the faces around a corner or an edge `within` a distance (m) of a place; none within faces in the plane, nor of planes and
-    /// of the insides of drums.
+    /// Finds the faces around a corner or an edge `within` a distance (m) of a place; none within
+    /// faces in the plane, nor of planes and of the insides of drums.
     fn fan(&self, _at: &S::Vector, _within: f64, _out: &mut Fan<S::Vector>) {}
-    /// Returns the outline for figures and files (m): polylines in 2D, polygons in 3D, in the surface's
-    /// frame.
+    /// Returns the outline for figures and files (m): polylines in 2D, polygons in 3D, in the
+    /// surface's frame.
     fn outline(&self) -> Vec<Vec<S::Vector>>;
-    /// Returns its faces within `reach` (m) of the origin of its frame for figures, anticlockwise seen from
-    /// the open side (3D).
+    /// Returns its faces within `reach` (m) of the origin of its frame for figures, anticlockwise
+    /// seen from the open side (3D).
     fn faces_within(&self, _reach: f64) -> Vec<Vec<S::Vector>> {
         self.outline()
     }
@@ -164,8 +170,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn flat(&self) -> Option<S::Vector> {
         None
     }
-    /// Returns whether points behind it are detected at any depth: true for planes and the insides of drums.
-    /// Behind a profile or facets there may be another part of the surface.
+    /// Returns whether points behind it are detected at any depth: true for planes and the insides
+    /// of drums. Behind a profile or facets there may be another part of the surface.
     fn any_depth(&self) -> bool {
         false
     }
@@ -173,7 +179,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn is_hollow(&self) -> bool {
         false
     }
-    /// Returns how much farther from a hollow surface the second of two places is than the first (m).
+    /// Returns how much farther from a hollow surface the second of two places is than the first
+    /// (m).
     fn distance_gained(&self, _from: &S::Vector, _to: &S::Vector) -> f64 {
         0.0
     }
@@ -185,18 +192,22 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
     fn receding_mut(&mut self) -> Option<&mut dyn Recede<S>> {
         None
     }
-    /// Takes new places of its vertices (m), all of them in their order, of a surface that deforms; nothing for others.
+    /// Takes new places of its vertices (m), all of them in their order, of a surface that deforms;
+    /// nothing for others.
     fn move_vertices(&mut self, _vertices: &[S::Vector]) {}
-    /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows each of them.
+    /// Returns the vertices of a surface that deforms, in its frame (m): the neighbour list follows
+    /// each of them.
     fn moving_vertices(&self) -> &[S::Vector] {
         &[]
     }
-    /// Returns the index of the facet that a feature of a surface that deforms belongs to, in the plane of a chain of segments.
+    /// Returns the index of the facet that a feature of a surface that deforms belongs to, in the
+    /// plane of a chain of segments.
     fn facet_of(&self, feature: u32) -> u32 {
         // The start of the chain has the last name.
         if feature == u32::MAX { 0 } else { feature / 2 }
     }
-    /// Returns a facet of a surface that deforms, by its index; `None` for others. In the plane those of a chain of segments.
+    /// Returns a facet of a surface that deforms, by its index; `None` for others. In the plane
+    /// those of a chain of segments.
     fn moving_facet(&self, facet: u32) -> Option<MovingFacet> {
         let vertices = self.moving_vertices().len() as u32;
         (S::D == 2 && facet.saturating_add(1) < vertices).then(|| MovingFacet {
@@ -208,17 +219,18 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             ],
         })
     }
-    /// Returns the normal of the facets at the border of a surface that deforms where a feature is on it, their mean at a vertex; `None` of
-    /// other features and surfaces.
+    /// Returns the normal of the facets at the border of a surface that deforms where a feature is
+    /// on it, their mean at a vertex; `None` of other features and surfaces.
     fn border_normal(&self, _feature: u32) -> Option<S::Vector> {
         None
     }
-    /// Returns whether it encloses its body, which is then smaller than half a period: contacts are looked for at its nearest image.
+    /// Returns whether it encloses its body, which is then smaller than half a period: contacts are
+    /// looked for at its nearest image.
     fn is_closed(&self) -> bool {
         false
     }
-    /// Returns the nearest point of a closed surface to a place that it encloses, at any depth; `None` for places outside and for
-    /// surfaces that are not closed.
+    /// Returns the nearest point of a closed surface to a place that it encloses, at any depth;
+    /// `None` for places outside and for surfaces that are not closed.
     fn enclosing(&self, place: &S::Vector) -> Option<ClosestPoint<S::Vector>> {
         if !self.is_closed() {
             return None;
@@ -235,13 +247,14 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
             .min_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()));
         nearest.filter(|touch| touch.distance < 0.0)
     }
-    /// Returns whether it deforms. Flat sides and balls then touch every vertex within reach: the nearest one is so until it is loaded, and with
-    /// a contact on that alone the load would go from one vertex to the next and back in each step.
+    /// Returns whether it deforms. Flat sides and balls then touch every vertex within reach: the
+    /// nearest one is so until it is loaded, and with a contact on that alone the load would go
+    /// from one vertex to the next and back in each step.
     fn deforms(&self) -> bool {
         !self.moving_vertices().is_empty()
     }
-    /// Finds all vertices within `reach` (m) of a ball's centre in front of a surface that deforms, with the features that
-    /// [`Surface::touches`] gives them; none of others.
+    /// Finds all vertices within `reach` (m) of a ball's centre in front of a surface that deforms,
+    /// with the features that [`Surface::touches`] gives them; none of others.
     fn vertices_within(
         &self,
         _centre: &S::Vector,
@@ -249,8 +262,8 @@ pub trait Surface<S: Space>: Debug + Send + Sync {
         _out: &mut Vec<ClosestPoint<S::Vector>>,
     ) {
     }
-    /// Returns whether a rotation about the body's origin with this spin, in the body's axes, leaves the
-    /// surface in place.
+    /// Returns whether a rotation about the body's origin with this spin, in the body's axes,
+    /// leaves the surface in place.
     fn keeps_place(&self, spin: &S::Spin) -> bool {
         *spin == S::Spin::zero()
     }

@@ -1,7 +1,7 @@
 //! Dimension-independent formulation for 2D and 3D.
 //!
-//! Time stepping, detection and solvers are generic over [`Space`]; each dimension is compiled to separate
-//! code without data of the other.
+//! Time stepping, detection and solvers are generic over [`Space`]; each dimension is compiled to
+//! separate code without data of the other.
 
 pub use super::algebra::{MatrixLike, VectorLike, greatest, least};
 use super::lane_space::LaneSpace;
@@ -21,8 +21,8 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     type Tensor: MatrixLike<V = Self::Spin> + Serialize + DeserializeOwned;
     /// Contact blocks of the Delassus operator.
     type Matrix: MatrixLike<V = Self::Vector>;
-    /// Tangential part of a contact vector: one number along t1 in 2D; in 3D a vector normal to n, so
-    /// that no tangent frame is needed.
+    /// Tangential part of a contact vector: one number along t1 in 2D; in 3D a vector normal to n,
+    /// so that no tangent frame is needed.
     type Tangent: VectorLike;
     /// Orientation of a body: an angle in 2D, a unit quaternion in 3D.
     type Rotation: Copy + Debug + Send + Sync + PartialEq + Serialize + DeserializeOwned + 'static;
@@ -39,8 +39,8 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     fn steiner(arm: &Self::Vector) -> Self::Tensor;
     /// Transforms a tensor from body axes to world axes.
     fn turned_tensor(rotation: &Self::Rotation, tensor: &Self::Tensor) -> Self::Tensor;
-    /// Returns `rotation` after a rotation in the body's own axes, by the Cayley map: `half` is the axis
-    /// times tan(angle/2).
+    /// Returns `rotation` after a rotation in the body's own axes, by the Cayley map: `half` is the
+    /// axis times tan(angle/2).
     fn turned_within(rotation: &Self::Rotation, half: &Self::Spin) -> Self::Rotation;
     /// Transforms a spin from body axes to world axes.
     fn rotate_spin(rotation: &Self::Rotation, spin: &Self::Spin) -> Self::Spin;
@@ -56,8 +56,8 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     fn roll(spin: &Self::Spin, n: &Self::Vector) -> Self::Tangent;
     /// Returns n x p_t as a spin.
     fn twist(n: &Self::Vector, t: &Self::Tangent) -> Self::Spin;
-    /// Rotates a tangential part with its contact: by the smallest rotation between the normals, then by an
-    /// angle about the new one. In 2D it rotates with its frame.
+    /// Rotates a tangential part with its contact: by the smallest rotation between the normals,
+    /// then by an angle about the new one. In 2D it rotates with its frame.
     fn transport(
         from: &Self::Vector,
         to: &Self::Vector,
@@ -89,14 +89,15 @@ pub trait Space: LaneSpace + Clone + Default + Send + Sync {
     fn rotation_numbers(rotation: &Self::Rotation) -> [f64; 4];
     /// Returns the rotation with exactly these numbers; `None` if they are not those of a rotation.
     fn rotation_from(numbers: &[f64; 4]) -> Option<Self::Rotation>;
-    /// Returns two tangents that form a right-handed frame with `n`; in 2D the first is n rotated by +90
-    /// degrees and the second is zero.
+    /// Returns two tangents that form a right-handed frame with `n`; in 2D the first is n rotated
+    /// by +90 degrees and the second is zero.
     fn tangents(n: &Self::Vector) -> [Self::Vector; 2];
     /// Splits a spin into twist about `n` and the rest, bending. In 2D all is bending.
     fn split_spin(n: &Self::Vector, spin: &Self::Spin) -> (f64, Self::Spin);
     /// Returns the spin of a twist about `n`.
     fn spin_about(n: &Self::Vector, twist: f64) -> Self::Spin;
-    /// Returns the components of a spin along n and [`Space::tangents`]; in 2D the second contains the spin.
+    /// Returns the components of a spin along n and [`Space::tangents`]; in 2D the second contains
+    /// the spin.
     fn spin_components(n: &Self::Vector, spin: &Self::Spin) -> [f64; 3];
     /// Returns a spin from its components.
     fn spin_from(n: &Self::Vector, components: [f64; 3]) -> Self::Spin;
@@ -397,7 +398,8 @@ impl Space for Dim3 {
     }
 }
 
-/// The rotation by a rotation vector (rad). Rotations of a step are small: sine and cosine by series that are exact to round-off there.
+/// The rotation by a rotation vector (rad). Rotations of a step are small: sine and cosine by
+/// series that are exact to round-off there.
 #[inline]
 fn from_scaled_axis(angle: &Vector3<f64>) -> nalgebra::UnitQuaternion<f64> {
     /// Squared half angle below which the next terms are below round-off.

@@ -1,4 +1,5 @@
-//! Wear of a triangulated surface that is the graph of a height over x and y: its points recede along z.
+//! Wear of a triangulated surface that is the graph of a height over x and y: its points recede
+//! along z.
 
 use super::facets;
 use super::mesh::Mesh;
@@ -51,7 +52,8 @@ pub fn facing(a: V, b: V, c: V) -> f64 {
     }
 }
 
-/// Returns the squared distance of a place from a triangle (m^2), and the shape functions at its nearest point.
+/// Returns the squared distance of a place from a triangle (m^2), and the shape functions at its
+/// nearest point.
 fn nearest_weights(at: &V, [a, b, c]: [V; 3]) -> (f64, [f64; 3]) {
     let (nearest, _) = facets::nearest(*at, a, b, c);
     let normal = (b - a).cross(&(c - a));
@@ -116,7 +118,8 @@ impl Recede<Dim3> for Mesh {
             step = step.max((*height - next).abs());
             *height = next;
         }
-        // The boxes of a surface that deforms are built again as it moves, before contacts are looked for.
+        // The boxes of a surface that deforms are built again as it moves, before contacts are
+        // looked for.
         if !self.deforms {
             self.build_boxes();
         }
@@ -133,7 +136,8 @@ mod tests {
     use super::*;
     use crate::geometry::shape::Surface;
 
-    /// Triangles of a plate of 5 by 4 points of unequal spacing, with heights, that faces up or down.
+    /// Triangles of a plate of 5 by 4 points of unequal spacing, with heights, that faces up or
+    /// down.
     fn plate(up: bool) -> (Vec<V>, Vec<[u32; 3]>) {
         let point = |k: u32| {
             let (x, y) = (f64::from(k % 5), f64::from(k / 5));

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 pub enum Supply {
     /// A voltage (V).
     Voltage(f64),
-    /// A current (A; A/m in 2D), at most so that the voltage stays below a limit (V), as laboratories measure contact resistance: where the
-    /// contact is lost the voltage is the limit.
+    /// A current (A; A/m in 2D), at most so that the voltage stays below a limit (V), as
+    /// laboratories measure contact resistance: where the contact is lost the voltage is the limit.
     Current {
         /// Current (A; A/m in 2D).
         current: f64,
@@ -49,7 +49,8 @@ pub struct CircuitState {
     pub voltage: f64,
     /// Current (A; A/m in 2D).
     pub current: f64,
-    /// Conductance between the bodies (S; S/m in 2D); 0 where no path joins them. The resistance is its inverse.
+    /// Conductance between the bodies (S; S/m in 2D); 0 where no path joins them. The resistance is
+    /// its inverse.
     pub conductance: f64,
     /// Potential of each body (V); 0 where no path leads to it.
     pub potential: Vec<f64>,

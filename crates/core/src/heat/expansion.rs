@@ -5,7 +5,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use std::ops::Range;
 
-/// alpha (T - T_0) by the coefficient (1/K) and the difference of temperature (K); no body shrinks to less than a tenth.
+/// alpha (T - T_0) by the coefficient (1/K) and the difference of temperature (K); no body shrinks
+/// to less than a tenth.
 pub fn free_strain(coefficient: f64, difference: f64) -> f64 {
     (coefficient * difference).max(-0.9)
 }
@@ -34,13 +35,15 @@ pub struct ExpandingSystem {
     pub reference: f64,
 }
 
-/// Bodies that keep their shape and change their size with their temperature: all lengths from the centre of the body are
+/// Bodies that keep their shape and change their size with their temperature: all lengths from the
+/// centre of the body are
 ///
 /// ```text
 /// lambda = 1 + alpha (T - T_0)
 /// ```
 ///
-/// times those of the case, with the coefficient of linear expansion alpha and the temperature at the start T_0. Mass and inertia stay.
+/// times those of the case, with the coefficient of linear expansion alpha and the temperature at
+/// the start T_0. Mass and inertia stay.
 #[derive(Clone, Debug)]
 pub struct Expansion<S: Space> {
     /// Coefficient of linear expansion alpha of each body (1/K); 0 for one that does not expand.
@@ -54,8 +57,8 @@ pub struct Expansion<S: Space> {
 }
 
 impl<S: Space> Expansion<S> {
-    /// Of rigid bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of the temperatures `reference` (K), and of
-    /// systems.
+    /// Of rigid bodies with these coefficients (1/K) and lengths (m), whose shapes are now those of
+    /// the temperatures `reference` (K), and of systems.
     pub fn new(
         coefficient: Vec<f64>,
         reference: Vec<f64>,
@@ -89,8 +92,8 @@ impl<S: Space> Expansion<S> {
         1.0 + free_strain(self.coefficient[body], temperature - self.reference[body])
     }
 
-    /// Gives all shapes the sizes of the stretches of their bodies, and bodies of one ball its radius for their length; returns the largest change of a
-    /// distance from a centre (m).
+    /// Gives all shapes the sizes of the stretches of their bodies, and bodies of one ball its
+    /// radius for their length; returns the largest change of a distance from a centre (m).
     pub fn show(&self, stretch: &[f64], shapes: &mut Shapes<S>, lengths: &mut [f64]) -> f64 {
         let mut most = 0.0f64;
         for (ball, rest) in shapes.balls.iter_mut().zip(&self.balls) {

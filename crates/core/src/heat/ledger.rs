@@ -3,10 +3,12 @@
 use fretwork_math::diffusion::Balance;
 use serde::{Deserialize, Serialize};
 
-/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings - expansion = stored + fixed + pending + residual.
+/// Heat since the start (J; per metre of depth in 2D): dissipated + joule + imposed + surroundings
+/// - expansion = stored + fixed + pending + residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HeatLedger {
-    /// Put in by mechanical dissipation: the shares that the case gives of the entries of [`crate::energy::Energy`].
+    /// Put in by mechanical dissipation: the shares that the case gives of the entries of
+    /// [`crate::energy::Energy`].
     pub dissipated: f64,
     /// Put in by electric current.
     pub joule: f64,
@@ -24,7 +26,8 @@ pub struct HeatLedger {
     pub pending: f64,
     /// What does not add up.
     pub residual: f64,
-    /// Largest heat put in, stored, received by a first body, or passed through all contacts in one step, so far.
+    /// Largest heat put in, stored, received by a first body, or passed through all contacts in one
+    /// step, so far.
     pub scale: f64,
 }
 
@@ -118,7 +121,8 @@ impl HeatLedger {
 mod tests {
     use super::*;
 
-    /// What is put in is stored, gone into fixed temperatures, or pending; the scale is the largest of all, and does not fall.
+    /// What is put in is stored, gone into fixed temperatures, or pending; the scale is the largest
+    /// of all, and does not fall.
     #[test]
     fn heat_that_is_accounted_for_leaves_no_residual() {
         let mut ledger = HeatLedger {

@@ -24,7 +24,8 @@ impl ThermalMaterial {
         }
     }
 
-    /// Thermal conductivity of a pair, 2 k1 k2/(k1 + k2) (W/(m K)): that of two equal halves in series.
+    /// Thermal conductivity of a pair, 2 k1 k2/(k1 + k2) (W/(m K)): that of two equal halves in
+    /// series.
     pub fn pair_conductivity(&self, other: &Self) -> f64 {
         let [a, b] = [self.conductivity, other.conductivity];
         if a + b > 0.0 {

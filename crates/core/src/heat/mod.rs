@@ -1,15 +1,17 @@
 //! Heat and electric current of a scene: what a case gives of them, and what steps change.
 //!
-//! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a half-space below each. Contacts join them by the
-//! conductances that transport laws give, and put in the heat that the energy ledger books as dissipated at that contact in that step:
+//! Nodes with a temperature stand for bodies, or for the pieces of a body's surface with a
+//! half-space below each. Contacts join them by the conductances that transport laws give, and put
+//! in the heat that the energy ledger books as dissipated at that contact in that step:
 //!
 //! ```text
 //! C_i dT_i/dt = sum_c G_c (T_j - T_i) + Q_i
 //! ```
 //!
-//! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of depth; `fretwork-math` solves it,
-//! implicitly in time. Electric potentials follow from the electrical conductances of the same contacts, and Joule's heat of each contact is
-//! added to its sources. Laws are given the temperatures at the start of the step.
+//! with capacities C (J/K), conductances G (W/K) and sources Q (W), in two dimensions per metre of
+//! depth; `fretwork-math` solves it, implicitly in time. Electric potentials follow from the
+//! electrical conductances of the same contacts, and Joule's heat of each contact is added to its
+//! sources. Laws are given the temperatures at the start of the step.
 
 pub mod circuit;
 pub mod expansion;

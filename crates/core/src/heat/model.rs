@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays elsewhere (new surfaces, sound, plastic work that
-/// is stored).
+/// The share of each kind of dissipated energy that becomes heat at its contact; the rest stays
+/// elsewhere (new surfaces, sound, plastic work that is stored).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Shares {
@@ -23,7 +23,8 @@ pub struct Shares {
     pub viscous: f64,
     /// Of the work against cohesion without an opening.
     pub adhesion: f64,
-    /// Of the energy that damage releases: its plastic part. That of bonds torn out of reach stays elsewhere.
+    /// Of the energy that damage releases: its plastic part. That of bonds torn out of reach stays
+    /// elsewhere.
     pub fracture: f64,
 }
 
@@ -55,7 +56,8 @@ impl Shares {
 /// How the heat of a contact is split between its two sides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Partition {
-    /// In proportion to the effusivities e = sqrt(k rho c), so that two half-spaces keep one surface temperature.
+    /// In proportion to the effusivities e = sqrt(k rho c), so that two half-spaces keep one
+    /// surface temperature.
     #[default]
     Effusivity,
     /// Half to each.
@@ -86,7 +88,8 @@ impl BodyNodes {
         }
     }
 
-    /// The node at a place in the axes of the body (m); none of a mesh, where a place is between several.
+    /// The node at a place in the axes of the body (m); none of a mesh, where a place is between
+    /// several.
     #[inline]
     pub fn at<S: Space>(&self, place: impl FnOnce() -> S::Vector) -> Option<u32> {
         match self {
@@ -123,7 +126,8 @@ pub struct Heat {
     pub columns: Vec<Columns>,
     /// Conductances of finite elements between nodes (W/K; W/(m K) in 2D).
     pub elements: Vec<Edge>,
-    /// First bodies that heat flows into, with their nodes: driven ones in their order, then those of finite elements.
+    /// First bodies that heat flows into, with their nodes: driven ones in their order, then those
+    /// of finite elements.
     pub first_bodies: Vec<(String, Range<usize>)>,
     /// Heat flows imposed from outside.
     pub imposed: Vec<Imposed>,
@@ -135,13 +139,15 @@ pub struct Heat {
     pub partition: Partition,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
-    /// Thermal time over mechanical time: a step of h lets heat flow for `clock` h, while what friction puts in stays the same.
+    /// Thermal time over mechanical time: a step of h lets heat flow for `clock` h, while what
+    /// friction puts in stays the same.
     pub clock: f64,
     /// Steps of the mechanics per step of the heat.
     pub every: u64,
     /// Time at which heat begins to flow and to be put in (s); temperatures stay until then.
     pub start: f64,
-    /// Hardness (Pa) that gives the area on which sliding contacts are warmer than their bodies; none for no flash temperatures.
+    /// Hardness (Pa) that gives the area on which sliding contacts are warmer than their bodies;
+    /// none for no flash temperatures.
     pub flash: Option<f64>,
     /// The electric circuit.
     pub circuit: Option<Circuit>,
@@ -173,7 +179,8 @@ impl Heat {
         of(a) * self.materials.len() + of(b)
     }
 
-    /// Share of the heat of a contact that its first body takes, by the index of its materials in [`Self::pairs`].
+    /// Share of the heat of a contact that its first body takes, by the index of its materials in
+    /// [`Self::pairs`].
     #[inline]
     pub fn share(&self, pair: usize) -> f64 {
         match self.partition {
@@ -182,10 +189,12 @@ impl Heat {
         }
     }
 
-    /// Rise of temperature (K) of the spots where two bodies really touch above that of the bodies, under a force (N; N/m in 2D) at a
-    /// sliding speed `v` (m/s) with a friction power (W; W/m in 2D). The real area is force over hardness; in 3D it is one circle, in 2D one
-    /// band, and moves at half of the speed over each of the bodies. The two rises that all of the heat would give in either body
-    /// alone add up as resistances in parallel (H. Blok, Proc. Inst. Mech. Eng. 2 (1937) 222-235).
+    /// Rise of temperature (K) of the spots where two bodies really touch above that of the bodies,
+    /// under a force (N; N/m in 2D) at a sliding speed `v` (m/s) with a friction power (W; W/m in
+    /// 2D). The real area is force over hardness; in 3D it is one circle, in 2D one band, and moves
+    /// at half of the speed over each of the bodies. The two rises that all of the heat would give
+    /// in either body alone add up as resistances in parallel (H. Blok, Proc. Inst. Mech. Eng. 2
+    /// (1937) 222-235).
     pub fn flash_rise<S: Space>(&self, bodies: [u32; 2], force: f64, v: f64, power: f64) -> f64 {
         let Some(hardness) = self.flash else {
             return 0.0;

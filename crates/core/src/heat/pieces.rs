@@ -1,4 +1,5 @@
-//! Pieces of the surface of a first body: strips along one axis, or rectangles along two, in the axes of the body.
+//! Pieces of the surface of a first body: strips along one axis, or rectangles along two, in the
+//! axes of the body.
 
 use crate::geometry::space::{Space, VectorLike};
 use fretwork_math::diffusion::{ColumnAxis, Columns};
@@ -51,7 +52,8 @@ impl Pieces {
         each.map(|a| a.length / f64::from(a.count)).product()
     }
 
-    /// Their half-spaces, as neighbours, from a first node on, of a material of this diffusivity (m^2/s).
+    /// Their half-spaces, as neighbours, from a first node on, of a material of this diffusivity
+    /// (m^2/s).
     pub fn columns(&self, first: u32, diffusivity: f64) -> Columns {
         let axis = |a: &PieceAxis| ColumnAxis {
             count: a.count,

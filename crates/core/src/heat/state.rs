@@ -19,11 +19,13 @@ pub struct HeatState {
     pub(crate) pending_steps: u64,
     /// The account.
     pub ledger: HeatLedger,
-    /// Heat that went into each of [`super::Heat::first_bodies`] since the start (J; J/m in 2D): by its contacts, not by its surroundings.
+    /// Heat that went into each of [`super::Heat::first_bodies`] since the start (J; J/m in 2D): by
+    /// its contacts, not by its surroundings.
     pub received: Vec<f64>,
     /// Size of each body over that of the case; empty where none expands.
     pub stretch: Vec<f64>,
-    /// Temperature of each node that its body has expanded to (K); empty where no body of finite elements expands.
+    /// Temperature of each node that its body has expanded to (K); empty where no body of finite
+    /// elements expands.
     pub expanded: Vec<f64>,
     /// The circuit in the last step, where there is one.
     pub circuit: CircuitState,
@@ -40,7 +42,8 @@ impl HeatState {
         }
     }
 
-    /// Mean temperature of some nodes (K): by their capacities where they have one; `None` of no node.
+    /// Mean temperature of some nodes (K): by their capacities where they have one; `None` of no
+    /// node.
     pub fn mean_temperature(&self, nodes: Range<usize>) -> Option<f64> {
         let nodes = self.nodes.get(nodes)?;
         if let [node] = nodes {
@@ -75,7 +78,8 @@ impl HeatState {
         lengths(self) == lengths(first) && nodes.into_iter().all(|(a, b)| a.fits(b))
     }
 
-    /// In how many steps of the mechanics, this one included, bodies come to the size of their temperature.
+    /// In how many steps of the mechanics, this one included, bodies come to the size of their
+    /// temperature.
     pub(crate) fn parts(&self, every: u64) -> f64 {
         every.saturating_sub(self.pending_steps).max(1) as f64
     }
@@ -93,7 +97,8 @@ mod tests {
     use super::*;
     use fretwork_math::diffusion::Node;
 
-    /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where there is nothing else.
+    /// By capacity; nodes of fixed temperature, of which there is no finite store, count only where
+    /// there is nothing else.
     #[test]
     fn the_mean_temperature_is_that_of_the_heat_that_is_stored() {
         let lumped = |t, c| Node::new(t, Store::Lumped(c));

@@ -1,4 +1,5 @@
-//! A batch of contacts: its columns, the calls of laws with them, and the checks of what these return.
+//! A batch of contacts: its columns, the calls of laws with them, and the checks of what these
+//! return.
 
 use super::bonds::BondStep;
 use super::columns::{Columns, StepInfo};
@@ -12,7 +13,8 @@ use crate::geometry::space::Space;
 use crate::threads::map_tasks;
 use std::sync::{Mutex, PoisonError};
 
-/// Contacts of a batch: few enough that its columns stay in a cache. It does not depend on the number of threads.
+/// Contacts of a batch: few enough that its columns stay in a cache. It does not depend on the
+/// number of threads.
 pub(super) const BATCH: usize = 512;
 
 /// Batches that are evaluated before what they give is stored, per thread.
@@ -155,7 +157,8 @@ impl Batch {
     }
 }
 
-/// Adds the interface and the contact, one of the members, to an error of a law; a result for all contacts belongs to none of them.
+/// Adds the interface and the contact, one of the members, to an error of a law; a result for all
+/// contacts belongs to none of them.
 pub(super) fn locate<S: Space>(
     law: &Interface,
     network: &Network<S>,
@@ -186,12 +189,13 @@ impl BatchPool {
         result
     }
 
-    /// Evaluates batches, on several threads if `divide` (the plugin interface allows calls on any thread, in any order): `of` reads what they
-    /// share, and `take` stores what it gives, in the order of the batches, some of them at a time while they are in a cache. What a batch gives
+    /// Evaluates batches, on several threads if `divide` (the plugin interface allows calls on any
+    /// thread, in any order): `of` reads what they share, and `take` stores what it gives, in the
+    /// order of the batches, some of them at a time while they are in a cache. What a batch gives
     /// does not depend on what others store.
     ///
-    /// Rounding errors are judged by the largest values of all batches: one that has a value out of range by those known so far is
-    /// evaluated again when all are known.
+    /// Rounding errors are judged by the largest values of all batches: one that has a value out of
+    /// range by those known so far is evaluated again when all are known.
     ///
     /// # Errors
     /// The error of the first batch that has one.
@@ -252,7 +256,8 @@ mod tests {
     use crate::laws::kind::{Kind, Output};
     use crate::laws::range::Range;
 
-    /// A value below zero by round-off of the largest one, which is in another batch, on any number of threads.
+    /// A value below zero by round-off of the largest one, which is in another batch, on any number
+    /// of threads.
     #[test]
     fn round_off_is_judged_by_the_largest_value_of_all_batches() {
         let judge = |(): &(), batch: &mut Batch, column: &mut Vec<f64>| {

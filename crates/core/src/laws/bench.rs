@@ -1,5 +1,5 @@
-//! A test bench for interface laws: drives a single contact, without bodies, along a prescribed path, like a
-//! testing machine.
+//! A test bench for interface laws: drives a single contact, without bodies, along a prescribed
+//! path, like a testing machine.
 
 pub mod fracture;
 pub mod scale;
@@ -48,7 +48,8 @@ pub struct Motion {
 
 /// Temperature of bodies for which none is given (K): 20 degrees Celsius.
 pub const ROOM: f64 = 293.15;
-/// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair on the bench: steel.
+/// Thermal conductivity (W/(m K)) and electrical resistivity (ohm m) of the pair on the bench:
+/// steel.
 pub const STEEL: [f64; 2] = [50.0, 2e-7];
 
 impl Default for Motion {
@@ -126,14 +127,16 @@ impl Bench {
         self
     }
 
-    /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm m); of steel by default.
+    /// Contacts of a pair of this thermal conductivity (W/(m K)) and electrical resistivity (ohm
+    /// m); of steel by default.
     #[must_use]
     pub fn of_material(mut self, material: [f64; 2]) -> Self {
         self.material = material;
         self
     }
 
-    /// Accepts outputs outside their physical range, such as negative friction, for callers that check them.
+    /// Accepts outputs outside their physical range, such as negative friction, for callers that
+    /// check them.
     #[must_use]
     pub fn lenient(mut self) -> Self {
         self.batch.checks = CallChecks::Lenient;
@@ -159,8 +162,8 @@ impl Bench {
         &self.law
     }
 
-    /// Returns the damage that the laws returned in the last step, before the host enforced that it does not
-    /// decrease.
+    /// Returns the damage that the laws returned in the last step, before the host enforced that it
+    /// does not decrease.
     pub fn said(&self) -> &[f64] {
         &self.said
     }
@@ -371,7 +374,8 @@ impl Bench {
         let on_contacts = self.law.loaded().filter(|l| !self.law.acts_on_bonds(l));
         let acting: Vec<Loaded> = on_contacts.cloned().collect();
         for loaded in acting {
-            // Laws whose answers are taken at the start of a step move their variables; the others see the slip.
+            // Laws whose answers are taken at the start of a step move their variables; the others
+            // see the slip.
             let answers_first = loaded.plugin.kind.spec().functions.contains(&Call::Prepare);
             if answers_first && loaded.variables() == 0 {
                 continue;

@@ -46,8 +46,8 @@ struct BondEnd<S: Space> {
     work: [f64; 3],
     /// Work that its impulse did (J).
     given: f64,
-    /// Part of it dissipated by damping and by the time scheme (J); `None` where it follows from the stored energy, see
-    /// [`crate::solve::Elastic::lost`].
+    /// Part of it dissipated by damping and by the time scheme (J); `None` where it follows from
+    /// the stored energy, see [`crate::solve::Elastic::lost`].
     lost: Option<f64>,
     /// Dissipated by friction against sliding and against rotation (J).
     friction: [f64; 2],
@@ -118,7 +118,8 @@ impl<S: Space> Opening<'_, S> {
         }
     }
 
-    /// The bond of a contact at the end of a solved step. Work of the bond's impulse that is not stored is damping.
+    /// The bond of a contact at the end of a solved step. Work of the bond's impulse that is not
+    /// stored is damping.
     #[inline]
     fn end(
         &self,
@@ -210,9 +211,9 @@ impl LawEvaluator {
             .evaluate(divide, largest, network, batches, of, take)
     }
 
-    /// Returns the largest increase from the damage used in the step's impulses to the damage that the
-    /// resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the next solve. Contacts are as at the last
-    /// [`Self::select`].
+    /// Returns the largest increase from the damage used in the step's impulses to the damage that
+    /// the resulting openings give; [`LawEvaluator::adopt_trial_damage`] takes the latter for the
+    /// next solve. Contacts are as at the last [`Self::select`].
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -286,8 +287,8 @@ impl LawEvaluator {
 }
 
 impl Batch {
-    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch if the motion at the start of the step
-    /// goes on through it, by the place in memory.
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a
+    /// batch if the motion at the start of the step goes on through it, by the place in memory.
     pub(super) fn predict_damage<S: Space>(
         &mut self,
         source: &Source<'_, S>,
@@ -302,8 +303,9 @@ impl Batch {
         self.try_damage(&opening, members)
     }
 
-    /// The increase from the damage used in a step to the one that laws give for the bonds of a batch, by the place in memory. Damage does
-    /// not decrease within a step either, so that an iteration is monotonic and ends.
+    /// The increase from the damage used in a step to the one that laws give for the bonds of a
+    /// batch, by the place in memory. Damage does not decrease within a step either, so that an
+    /// iteration is monotonic and ends.
     fn try_damage<S: Space>(
         &mut self,
         opening: &Opening<'_, S>,
@@ -320,8 +322,8 @@ impl Batch {
         Ok(tried)
     }
 
-    /// Computes the damage of the bonds of a batch at their openings at the end of the step; `each` is given the contact, its normal and its
-    /// bond before and after.
+    /// Computes the damage of the bonds of a batch at their openings at the end of the step; `each`
+    /// is given the contact, its normal and its bond before and after.
     fn open_bonds<S: Space>(
         &mut self,
         opening: &Opening<'_, S>,
@@ -354,8 +356,8 @@ impl Batch {
         updated.map_err(|e| locate(law, network, members, e))
     }
 
-    /// Computes damage at the current openings as the maximum of the cohesion law's and the damage law's
-    /// value.
+    /// Computes damage at the current openings as the maximum of the cohesion law's and the damage
+    /// law's value.
     pub(super) fn update_damage(
         &mut self,
         law: &Interface,
@@ -367,7 +369,8 @@ impl Batch {
         };
         bond_step.damage.clone_from(&self.columns.damage);
         let m = cohesion.plugin.degradation;
-        // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the undamaged one.
+        // The stored energy of the damaged bond is psi = (1 - D)^m psi_0, with psi_0 of the
+        // undamaged one.
         if law.damages() {
             self.columns.damage.fill(0.0);
         }
@@ -439,8 +442,8 @@ fn store_bonds<S: Space>(
             damage = (bond.damage + network.cycle_multiplier * (damage - bond.damage)).min(1.0);
         }
         let intact = end.intact * bond.area;
-        // The impulses were computed with D = `step_damage`: the stored energy at that damage, at start and end
-        // of the step.
+        // The impulses were computed with D = `step_damage`: the stored energy at that damage, at
+        // start and end of the step.
         let (start, stop) = if bond.step_damage == bond.damage {
             (bond.energy, intact * share(bond.damage))
         } else {

@@ -1,5 +1,5 @@
-//! Laws linked into the program, for installations without the plugin libraries. The program passes their
-//! tables to the core, which refers to no law by name.
+//! Laws linked into the program, for installations without the plugin libraries. The program passes
+//! their tables to the core, which refers to no law by name.
 
 use super::error::LawError;
 use super::kind::Kind;
@@ -37,12 +37,12 @@ impl BuiltInLaws {
     /// Collects the laws of these tables, leaving out those whose kind or name cannot be read.
     ///
     /// # Safety
-    /// Each table must have been made by `plugin_table!` of the crate `fretwork-law`, for the interface
-    /// version this program is built with: its pointers are dereferenced.
+    /// Each table must have been made by `plugin_table!` of the crate `fretwork-law`, for the
+    /// interface version this program is built with: its pointers are dereferenced.
     pub unsafe fn from_tables(tables: impl IntoIterator<Item = &'static FwPlugin>) -> Self {
         let known = tables.into_iter().filter_map(|table| {
-            // SAFETY: the caller guarantees tables of the wrapper, whose names are NUL-terminated static
-            // text.
+            // SAFETY: the caller guarantees tables of the wrapper, whose names are NUL-terminated
+            // static text.
             let name = unsafe { CStr::from_ptr(table.name) };
             Some(Entry {
                 kind: Kind::from_code(table.kind)?,
@@ -58,8 +58,8 @@ impl BuiltInLaws {
         self.0.iter().map(|e| (e.kind, e.name.as_str()))
     }
 
-    /// Returns the law of this kind and name if it is linked in. Its path and SHA-256 are those of the
-    /// program.
+    /// Returns the law of this kind and name if it is linked in. Its path and SHA-256 are those of
+    /// the program.
     pub fn open(&self, kind: Kind, name: &str) -> Option<Result<Plugin, LawError>> {
         let entry = self.0.iter().find(|e| e.kind == kind && e.name == name)?;
         Some(executable().and_then(|(path, sha256)| {

@@ -10,8 +10,8 @@ use std::ffi::c_char;
 const MESSAGE: usize = 512;
 
 impl Plugin {
-    /// Returns the fracture energy (J/m^2) that the law declares for an opening at an angle (rad) from the
-    /// normal.
+    /// Returns the fracture energy (J/m^2) that the law declares for an opening at an angle (rad)
+    /// from the normal.
     pub fn fracture_energy(&self, values: &[f64], angle: f64) -> Option<f64> {
         if values.len() != self.parameters.len() {
             return None;

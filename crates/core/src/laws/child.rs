@@ -1,6 +1,8 @@
-//! Runs the program as its own child process, to try operations that may hang or terminate the process.
+//! Runs the program as its own child process, to try operations that may hang or terminate the
+//! process.
 //!
-//! Only the command-line program does so, after [`enable`]; other users of the library are not affected.
+//! Only the command-line program does so, after [`enable`]; other users of the library are not
+//! affected.
 
 use super::error::LawError;
 use super::library::Plugin;
@@ -28,7 +30,8 @@ struct Helper {
 
 static HELPER: OnceLock<Helper> = OnceLock::new();
 
-/// Declares that the [program](crate::program) of this process has the command line, which may be run as a child.
+/// Declares that the [program](crate::program) of this process has the command line, which may be
+/// run as a child.
 pub fn enable(limit: Option<Duration>) {
     if program::command().is_ok() {
         let _ = HELPER.set(Helper { limit });
@@ -47,7 +50,8 @@ pub enum End {
     Done,
     /// It ended early, for the given reason.
     Early(String),
-    /// It ended early since the system refused it memory, which is no fault of what was tried: in a sentence.
+    /// It ended early since the system refused it memory, which is no fault of what was tried: in a
+    /// sentence.
     NoMemory(String),
 }
 
@@ -70,14 +74,14 @@ struct Question {
 /// In the child process: the token of the request.
 static TOKEN: OnceLock<u64> = OnceLock::new();
 
-/// Returns the prefix of answer lines, which separates them from anything a law prints. The token is
-/// different in each call, so that a law cannot forge an answer.
+/// Returns the prefix of answer lines, which separates them from anything a law prints. The token
+/// is different in each call, so that a law cannot forge an answer.
 fn mark(token: u64) -> String {
     format!("\u{1}fretwork {token:016x} ")
 }
 
-/// Returns an unpredictable number: the standard library seeds its hash tables from the system's random
-/// source.
+/// Returns an unpredictable number: the standard library seeds its hash tables from the system's
+/// random source.
 fn new_token() -> u64 {
     std::hash::RandomState::new().hash_one(std::process::id())
 }
@@ -141,14 +145,15 @@ pub fn run_request(word: &str, question: &Value) -> Result<ChildOutput, String> 
         None => None,
     };
     if let Some(mut to) = child.stdin.take() {
-        // A process that has already ended does not read its request; the way it ended is reported below.
+        // A process that has already ended does not read its request; the way it ended is reported
+        // below.
         let question = json!({ "token": token, "question": question });
         let _ = to.write_all(question.to_string().as_bytes());
     }
     let mut messages = Vec::new();
     let hung = loop {
-        // The child enforces its own time limit; this longer one covers a child that cannot. Starting may be
-        // slow on a busy machine.
+        // The child enforces its own time limit; this longer one covers a child that cannot.
+        // Starting may be slow on a busy machine.
         let slack = Duration::from_secs(if messages.is_empty() { 30 } else { 5 });
         let next = match helper.limit {
             Some(limit) => heard
@@ -220,7 +225,8 @@ fn read_error_output(mut err: impl Read) -> String {
 /// How the program begins the sentence that memory ran out.
 pub const NO_MEMORY: &str = "memory ran out";
 
-/// The sentence of a process that had no memory: the program's own, or that of the standard library.
+/// The sentence of a process that had no memory: the program's own, or that of the standard
+/// library.
 fn no_memory(said: &str) -> Option<String> {
     let sentence = said.lines().find_map(|l| {
         let own = l.strip_prefix("error: ").unwrap_or(l);
@@ -266,8 +272,9 @@ struct Library {
     sha256: String,
 }
 
-/// Results of the trials: `None` for success, otherwise the reason why the library cannot be opened. The
-/// path is part of the key, since the same bytes in another folder may load other dependencies.
+/// Results of the trials: `None` for success, otherwise the reason why the library cannot be
+/// opened. The path is part of the key, since the same bytes in another folder may load other
+/// dependencies.
 static FOUND: Mutex<Option<HashMap<Library, Option<String>>>> = Mutex::new(None);
 
 fn cached_result(library: &Library) -> Option<Option<String>> {
@@ -300,7 +307,8 @@ pub(super) fn check_loads(path: &Path, sha256: &str) -> Result<(), String> {
     }
 }
 
-/// Tries several libraries in one child process; a library whose SHA-256 differs from its pin is not opened.
+/// Tries several libraries in one child process; a library whose SHA-256 differs from its pin is
+/// not opened.
 pub(super) fn try_loading(libraries: &[(PathBuf, Option<&str>)]) {
     if !enabled() {
         return;
@@ -327,8 +335,8 @@ pub(super) fn try_loading(libraries: &[(PathBuf, Option<&str>)]) {
 
 const UNANSWERED: &str = "it was tried in a separate process, which ended without reporting on it; build or copy it again";
 
-/// Tries libraries in a child process and stores the results; returns the number of libraries with a result,
-/// at least one.
+/// Tries libraries in a child process and stores the results; returns the number of libraries with
+/// a result, at least one.
 fn try_in_order(libraries: &[Library]) -> usize {
     let question = serde_json::to_value(libraries).map_err(|e| e.to_string());
     let told = match question.and_then(|q| run_request(TRY_LIBRARIES, &q)) {
@@ -360,8 +368,9 @@ fn try_in_order(libraries: &[Library]) -> usize {
     answered + 1
 }
 
-/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is unchanged. The trial checks that
-/// opening returns, and brings no other libraries than were examined; other errors are reported later, when the parent opens it.
+/// In the child process: opens the requested libraries one by one, each only if its SHA-256 is
+/// unchanged. The trial checks that opening returns, and brings no other libraries than were
+/// examined; other errors are reported later, when the parent opens it.
 ///
 /// # Errors
 /// The request cannot be read.

@@ -209,7 +209,8 @@ impl Columns {
         self.state_next.clear();
     }
 
-    /// Sizes the inputs that a gather sets for `n` contacts, and empties the others; internal variables and outputs have their own.
+    /// Sizes the inputs that a gather sets for `n` contacts, and empties the others; internal
+    /// variables and outputs have their own.
     pub(super) fn begin(&mut self, n: usize, contents: Contents) {
         self.n = n;
         let count = |used: bool| if used { n } else { 0 };
@@ -265,7 +266,8 @@ impl Columns {
         }
     }
 
-    /// Sizes the columns of an internal variable, at the start and at the end of the step, and returns them.
+    /// Sizes the columns of an internal variable, at the start and at the end of the step, and
+    /// returns them.
     pub(super) fn fit_state(&mut self, variable: usize) -> [&mut [f64]; 2] {
         let count = self.state.len().max(variable + 1);
         [&mut self.state, &mut self.state_next].map(|columns| {
@@ -287,7 +289,8 @@ impl Columns {
         }
     }
 
-    /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`] follows.
+    /// Sizes the outputs, without the values of earlier calls only where [`Self::clear_outputs`]
+    /// follows.
     pub(super) fn fit_outputs(&mut self) {
         let (all, springs, transport) = self.out.groups();
         all.into_iter().for_each(|column| fit(column, self.n));
@@ -304,7 +307,8 @@ impl Columns {
         }
     }
 
-    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one, and those of transport where heat is computed.
+    /// Resizes the outputs to `n` zeros; those of compliant contacts only where the law is one, and
+    /// those of transport where heat is computed.
     pub fn size_outputs(&mut self) {
         let (all, springs, transport) = self.out.groups();
         let zeros = |column: &mut Vec<f64>, n| {

@@ -201,18 +201,20 @@ struct Group<'a> {
     members: &'a [usize],
 }
 
-/// Whether a law is given slip and friction work: the host does not take its answers at the start of a step.
+/// Whether a law is given slip and friction work: the host does not take its answers at the start
+/// of a step.
 fn sees_slip(law: &Loaded) -> bool {
     !law.plugin.kind.spec().functions.contains(&Call::Prepare)
 }
 
-/// Whether a law is given friction work that is not negative: where the velocity turns within a step, friction gives work back, and later
-/// steps owe it to the law.
+/// Whether a law is given friction work that is not negative: where the velocity turns within a
+/// step, friction gives work back, and later steps owe it to the law.
 fn is_paid(law: &Loaded) -> bool {
     law.plugin.kind == Kind::WEAR
 }
 
-/// Slip (m) and friction work (J) of a contact over the step, the latter negative where friction gave back.
+/// Slip (m) and friction work (J) of a contact over the step, the latter negative where friction
+/// gave back.
 #[inline]
 fn slide<S: Space>(network: &Network<S>, step: &SolvedStep<'_, S>, at: usize) -> (f64, f64) {
     let contact_step = &step.contacts[at];
@@ -226,7 +228,8 @@ fn slide<S: Space>(network: &Network<S>, step: &SolvedStep<'_, S>, at: usize) ->
     }
 }
 
-/// The friction work of contacts less what their pairs owe, and not negative: the rest they owe to later steps.
+/// The friction work of contacts less what their pairs owe, and not negative: the rest they owe to
+/// later steps.
 fn pay_debts<S: Space>(
     slides: &[(f64, f64)],
     network: &Network<S>,
@@ -281,7 +284,8 @@ fn commit_contacts<S: Space>(
     parts.iter().for_each(|part| totals.add(part));
 }
 
-/// Stores the impulse of a contact, adds its energies to the totals, and returns what it dissipated.
+/// Stores the impulse of a contact, adds its energies to the totals, and returns what it
+/// dissipated.
 fn book_contact<S: Space>(
     contact: &mut Contact<S>,
     k: usize,
@@ -306,8 +310,8 @@ fn book_contact<S: Space>(
     dissipated
 }
 
-/// Stores the impulse and the spring of a compliant contact; returns what it dissipated, and the rest of the work done on
-/// it, which its spring took.
+/// Stores the impulse and the spring of a compliant contact; returns what it dissipated, and the
+/// rest of the work done on it, which its spring took.
 fn commit_spring<S: Space>(
     contact: &mut Contact<S>,
     contact_step: &ContactStep<S>,
@@ -380,8 +384,8 @@ fn commit_moments<S: Space>(
     }
 }
 
-/// The end of a step for one law of an interface that acts on contacts: what a [`CommitHook`](super::kind::CommitHook) works
-/// on, after the law was called.
+/// The end of a step for one law of an interface that acts on contacts: what a
+/// [`CommitHook`](super::kind::CommitHook) works on, after the law was called.
 #[derive(Debug)]
 pub struct SlotCommit<'a, S: Space> {
     /// The interface.
@@ -399,12 +403,14 @@ pub struct SlotCommit<'a, S: Space> {
 }
 
 impl<S: Space> SlotCommit<'_, S> {
-    /// Contacts that the law acts on, as places in the network; values of outputs are in their order.
+    /// Contacts that the law acts on, as places in the network; values of outputs are in their
+    /// order.
     pub fn contacts(&self) -> &[usize] {
         self.members
     }
 
-    /// What the law wrote: the columns that its kind names as outputs of a commit; the others are empty.
+    /// What the law wrote: the columns that its kind names as outputs of a commit; the others are
+    /// empty.
     pub fn outputs(&self) -> &Outputs {
         self.outputs
     }

@@ -1,7 +1,8 @@
 //! Requirements of interface laws on the solver, determined before the first step.
 //!
-//! Bonds are known from the laws' flags. Rolling friction and shear cohesion are values that a contact law
-//! returns at run time: a constant law is called once, any other is tried on a bench with trial contacts.
+//! Bonds are known from the laws' flags. Rolling friction and shear cohesion are values that a
+//! contact law returns at run time: a constant law is called once, any other is tried on a bench
+//! with trial contacts.
 
 use super::bench::{Bench, Motion, State};
 use super::error::LawError;
@@ -89,8 +90,8 @@ impl Interface {
 /// Time step of the trial (s).
 const STEP: f64 = 1e-4;
 
-/// Returns trial contacts: new and old, intact and damaged, compressed and not, at low and high sliding
-/// speeds.
+/// Returns trial contacts: new and old, intact and damaged, compressed and not, at low and high
+/// sliding speeds.
 fn trials(bench: &Bench, radius: f64) -> (Vec<State>, Vec<Motion>) {
     let (mut states, mut motions) = (Vec::new(), Vec::new());
     for pressure in [0.0, 1e3, 1e6, 1e9] {

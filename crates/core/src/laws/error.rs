@@ -142,8 +142,8 @@ pub enum LawError {
         /// Accepted range.
         range: Range,
     },
-    /// A function of the law wrote to memory it must not write, or returned different results for equal
-    /// inputs.
+    /// A function of the law wrote to memory it must not write, or returned different results for
+    /// equal inputs.
     #[error("the {kind} law `{name}` {what} in {call:?}; fix the law before using it again")]
     Trespass {
         /// Kind.

@@ -1,4 +1,5 @@
-//! Evaluation of the laws in a step: which contacts they act on, in batches on one or several threads.
+//! Evaluation of the laws in a step: which contacts they act on, in batches on one or several
+//! threads.
 
 use super::batch::{BATCH, BatchPool};
 use super::gather::{AHEAD, prefetch_bond};
@@ -12,11 +13,13 @@ const CHUNK: usize = 4096;
 /// About what that takes for each (ns).
 const SELECT: f64 = 10.0;
 
-/// How many times more work than for a plain loop makes dividing batches pay: an interface is evaluated in several regions, between which one
-/// thread stores. On scenes of 5,000 to 6,000 contacts, which are below it, two threads were slower than one.
+/// How many times more work than for a plain loop makes dividing batches pay: an interface is
+/// evaluated in several regions, between which one thread stores. On scenes of 5,000 to 6,000
+/// contacts, which are below it, two threads were slower than one.
 const OVERHEAD: f64 = 8.0;
 
-/// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a step.
+/// Evaluates the laws; owns the working memory of prepare and commit, and nothing that outlasts a
+/// step.
 #[derive(Debug, Default)]
 pub struct LawEvaluator {
     pub(super) pool: BatchPool,
@@ -24,10 +27,11 @@ pub struct LawEvaluator {
     pub(super) members: Vec<Members>,
     /// Interface, slot and damage of the bonds in the last trial of an implicit coupling.
     pub(super) trials: Vec<(usize, usize, f64)>,
-    /// Contacts of the last solve that close within the step and were kept from closing although their law
-    /// has restitution.
+    /// Contacts of the last solve that close within the step and were kept from closing although
+    /// their law has restitution.
     pub(crate) held_back: Vec<usize>,
-    /// Place of the moments of each contact in the step, while bonds that resist rotation are committed.
+    /// Place of the moments of each contact in the step, while bonds that resist rotation are
+    /// committed.
     pub(super) moment_places: Vec<u32>,
     /// Slip (m) and friction work (J) of contacts.
     pub(super) slides: Vec<(f64, f64)>,
@@ -72,8 +76,8 @@ impl Members {
 }
 
 impl LawEvaluator {
-    /// Finds the contacts of each interface. It comes before the other calls of a step, until whose end the contacts and their bonds
-    /// stay.
+    /// Finds the contacts of each interface. It comes before the other calls of a step, until whose
+    /// end the contacts and their bonds stay.
     pub fn select<S: Space>(&mut self, laws: &[Interface], network: &Network<S>) {
         self.members.resize_with(laws.len(), Members::default);
         for list in self.members.iter_mut().flat_map(Members::lists) {
@@ -104,12 +108,14 @@ impl LawEvaluator {
         }
     }
 
-    /// The contacts of the step that are beyond the alert distance and held by no bond, as places in the network.
+    /// The contacts of the step that are beyond the alert distance and held by no bond, as places
+    /// in the network.
     pub(crate) fn beyond(&self) -> impl Iterator<Item = usize> {
         self.members.iter().flat_map(|m| m.beyond.iter().copied())
     }
 
-    /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds, among threads.
+    /// Whether to divide batches of some contacts, each of which takes about `each` nanoseconds,
+    /// among threads.
     pub(super) fn divides(&self, contacts: usize, each: f64) -> bool {
         contacts > any_size(BATCH) && pays(self.parallel, contacts, each / OVERHEAD)
     }

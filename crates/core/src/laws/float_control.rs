@@ -1,5 +1,6 @@
-//! Control of floating point: how a thread rounds, and what it makes of subnormal numbers. It belongs to the caller of a law, and by
-//! the conventions of the C ABI comes back as it was; a law that does not keep to them would change every later number of a run.
+//! Control of floating point: how a thread rounds, and what it makes of subnormal numbers. It
+//! belongs to the caller of a law, and by the conventions of the C ABI comes back as it was; a law
+//! that does not keep to them would change every later number of a run.
 
 /// Control of floating point of this thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +28,8 @@ impl FloatControl {
 mod registers {
     use std::arch::asm;
 
-    /// MXCSR without its flags of what has happened, and the control word of the x87, which long double of C uses.
+    /// MXCSR without its flags of what has happened, and the control word of the x87, which long
+    /// double of C uses.
     pub type Control = (u32, u16);
 
     /// Bits of MXCSR that say what has happened.
@@ -48,7 +50,8 @@ mod registers {
 
     #[cold]
     pub fn write((mxcsr, x87): Control) {
-        // SAFETY: they load what was stored: valid control words, that the code around was compiled for.
+        // SAFETY: they load what was stored: valid control words, that the code around was compiled
+        // for.
         unsafe {
             asm!(
                 "fnclex", "ldmxcsr [{}]", "fldcw [{}]", in(reg) &raw const mxcsr, in(reg) &raw const x87,

@@ -19,8 +19,8 @@ const CHUNK: usize = 4096;
 const LOOK: f64 = 4.0;
 
 impl LawEvaluator {
-    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's bond
-    /// rule, and by compression time (healing).
+    /// Allocates the internal variables of contacts and forms the bonds that are due: by the case's
+    /// bond rule, and by compression time (healing).
     ///
     /// # Errors
     /// The law's error in `initialise`.
@@ -62,9 +62,9 @@ impl LawEvaluator {
                 let near = law.bonds_within.is_none_or(|most| contact.gap <= most);
                 let may = !intact && !contact.vertex_contact && !contact.beyond && near;
                 let bonds = may && (due || healed);
-                // The rest position of a new bond: a tension-only bond starts without tension over its gap;
-                // one that also pushes yields until the gap is closed. Penetration is included in both, so
-                // that a bond is formed without stress.
+                // The rest position of a new bond: a tension-only bond starts without tension over
+                // its gap; one that also pushes yields until the gap is closed. Penetration is
+                // included in both, so that a bond is formed without stress.
                 let open = law.bond_opening == BondOpening::Gap && contact.gap > 0.0;
                 let filled = if law.tension_only() && !open {
                     contact.gap
@@ -103,7 +103,8 @@ impl LawEvaluator {
         Ok(())
     }
 
-    /// The contacts of each interface that may become bonds, and those without memory that have internal variables.
+    /// The contacts of each interface that may become bonds, and those without memory that have
+    /// internal variables.
     fn find_concerned<S: Space>(
         &self,
         laws: &[Interface],
@@ -149,7 +150,8 @@ impl LawEvaluator {
         concerned
     }
 
-    /// Gives bonds that begin open the energy of their opening, which counts as negative fracture energy.
+    /// Gives bonds that begin open the energy of their opening, which counts as negative fracture
+    /// energy.
     fn store_initial_energy<S: Space>(
         &mut self,
         index: usize,

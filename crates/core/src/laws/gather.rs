@@ -20,8 +20,9 @@ pub(super) struct Source<'a, S: Space> {
 /// What contacts do in a step.
 #[derive(Debug)]
 pub(super) enum Motion<'a, S: Space> {
-    /// The motion at the start of the step goes on through it, under the impulses and springs of the last step: what is known of the load
-    /// before the step is solved. Contacts that begin in this step carry nothing yet.
+    /// The motion at the start of the step goes on through it, under the impulses and springs of
+    /// the last step: what is known of the load before the step is solved. Contacts that begin in
+    /// this step carry nothing yet.
     Continued(&'a Velocities<S>),
     /// As solved.
     Solved(&'a SolvedStep<'a, S>),
@@ -128,7 +129,8 @@ pub(super) fn prefetch_bond<S: Space>(memory: &Memory<S>, contact: &Contact<S>) 
 }
 
 impl Batch {
-    /// Fills the columns with the state at the start of the step: the damage is that of the step's impulses.
+    /// Fills the columns with the state at the start of the step: the damage is that of the step's
+    /// impulses.
     pub(super) fn gather_before<S: Space>(
         &mut self,
         source: &Source<'_, S>,
@@ -163,7 +165,8 @@ impl Batch {
         );
     }
 
-    /// Fills the columns with the state at the end of the step: u_th, the step's impulses; bonds are as the network has them.
+    /// Fills the columns with the state at the end of the step: u_th, the step's impulses; bonds
+    /// are as the network has them.
     pub(super) fn gather_after<S: Space>(
         &mut self,
         source: &Source<'_, S>,
@@ -180,8 +183,8 @@ impl Batch {
         );
     }
 
-    /// Fills the columns with what `of` gives of each member, its bond and the bond's rotation at the start of the step, and the internal
-    /// variables of some laws.
+    /// Fills the columns with what `of` gives of each member, its bond and the bond's rotation at
+    /// the start of the step, and the internal variables of some laws.
     #[inline]
     pub(super) fn fill<S: Space>(
         &mut self,
@@ -327,7 +330,8 @@ impl Batch {
     }
 }
 
-/// Stores the new internal variables of some laws for contacts of one interface, as [`Batch::new_states`] gives them.
+/// Stores the new internal variables of some laws for contacts of one interface, as
+/// [`Batch::new_states`] gives them.
 pub(super) fn store_states<S: Space>(
     network: &mut Network<S>,
     index: usize,

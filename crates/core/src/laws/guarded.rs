@@ -1,5 +1,6 @@
-//! Calls laws on a copy of the batch in guarded memory: wide marks between the columns, and a comparison of
-//! the inputs afterwards, detect every invalid write. Too slow for a run; used for certification.
+//! Calls laws on a copy of the batch in guarded memory: wide marks between the columns, and a
+//! comparison of the inputs afterwards, detect every invalid write. Too slow for a run; used for
+//! certification.
 
 use fretwork_abi::FwBatch;
 use std::time::{Duration, Instant};
@@ -38,7 +39,8 @@ impl Column {
 }
 
 impl Guarded {
-    /// Makes the call twice on a copy of the batch; returns the outputs and a description of any violation.
+    /// Makes the call twice on a copy of the batch; returns the outputs and a description of any
+    /// violation.
     ///
     /// # Safety
     /// As the ABI requires of the batch, for a law with these numbers of parameters and variables.
@@ -78,7 +80,8 @@ impl Guarded {
         (answer, wrong)
     }
 
-    /// Copies all columns in, and points the batch and its lists of internal variables to the copies.
+    /// Copies all columns in, and points the batch and its lists of internal variables to the
+    /// copies.
     unsafe fn lay_out(
         &mut self,
         batch: &mut FwBatch,
@@ -113,8 +116,8 @@ impl Guarded {
         }
         self.words.resize(self.words.len() + END, MARK);
         self.before.clone_from(&self.words);
-        // The memory does not move any more. All addresses are of one pointer by which the law may write, to the marks too: that it
-        // does is what is looked for.
+        // The memory does not move any more. All addresses are of one pointer by which the law may
+        // write, to the marks too: that it does is what is looked for.
         let words: *mut f64 = self.words.as_mut_ptr().cast();
         let address = |start: Option<usize>| match start {
             // SAFETY: within the words.
@@ -144,7 +147,8 @@ impl Guarded {
         (state, next)
     }
 
-    /// Copies a column in, followed by guard values; returns where it is among the words, none for null.
+    /// Copies a column in, followed by guard values; returns where it is among the words, none for
+    /// null.
     unsafe fn put(
         &mut self,
         name: &str,
@@ -205,8 +209,8 @@ impl Guarded {
     }
 }
 
-/// Repeats a call for a while, each time with the original outputs; returns the first result, and whether
-/// any later one differs.
+/// Repeats a call for a while, each time with the original outputs; returns the first result, and
+/// whether any later one differs.
 ///
 /// # Safety
 /// As the ABI requires of the batch, for a law with this number of variables.

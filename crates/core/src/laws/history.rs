@@ -33,7 +33,8 @@ impl LawHistory {
     }
 }
 
-/// Negative work by pair, in their order: contacts come in the same order, so that both are gone through together.
+/// Negative work by pair, in their order: contacts come in the same order, so that both are gone
+/// through together.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(from = "BTreeMap<Pair, f64>", into = "BTreeMap<Pair, f64>")]
 pub(super) struct DeferredWork(Vec<(Pair, f64)>);
@@ -53,7 +54,8 @@ impl From<DeferredWork> for BTreeMap<Pair, f64> {
 }
 
 impl DeferredWork {
-    /// Returns the work of contacts, given by pair in ascending order, with what was deferred for their pairs. What is negative becomes zero and is deferred.
+    /// Returns the work of contacts, given by pair in ascending order, with what was deferred for
+    /// their pairs. What is negative becomes zero and is deferred.
     pub fn not_negative(&mut self, works: impl Iterator<Item = (Pair, f64)>) -> Vec<f64> {
         let before = std::mem::take(&mut self.0);
         let mut before = before.into_iter().peekable();

@@ -71,13 +71,14 @@ pub enum BondOpening {
     /// Zero: cement fills the gap, and the bodies cannot come nearer while the bond holds.
     #[default]
     Filled,
-    /// The gap, where there is one: the bond pulls from the start, with the energy of this opening, and the bodies are free to close
-    /// it. LMGC90's cohesive laws do so.
+    /// The gap, where there is one: the bond pulls from the start, with the energy of this opening,
+    /// and the bodies are free to close it. LMGC90's cohesive laws do so.
     Gap,
 }
 
-/// Area on which tractions act, from the radius r of a contact, r1 r2/(r1 + r2) of two balls: `factor` r times unit depth in
-/// 2D, `factor` pi r^2 in 3D. Points of surfaces that deform and facing sides and faces have the r whose area is theirs, see
+/// Area on which tractions act, from the radius r of a contact, r1 r2/(r1 + r2) of two balls:
+/// `factor` r times unit depth in 2D, `factor` pi r^2 in 3D. Points of surfaces that deform and
+/// facing sides and faces have the r whose area is theirs, see
 /// [`crate::geometry::shape::point_radius`]. LMGC90's benchmark scene uses the factor 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AreaRule {
@@ -114,7 +115,8 @@ pub struct Interface {
     pub bonds_within: Option<f64>,
     /// Opening at which a bond begins.
     pub bond_opening: BondOpening,
-    /// Time under compression (s) after which a contact forms a bond, including after an earlier bond broke.
+    /// Time under compression (s) after which a contact forms a bond, including after an earlier
+    /// bond broke.
     pub healing: Option<f64>,
     /// Area of a contact.
     pub area: AreaRule,
@@ -125,8 +127,8 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// An interface of these laws, in any order, with the default rules: bonds from the start where the laws make bonds, no
-    /// healing, and the default area.
+    /// An interface of these laws, in any order, with the default rules: bonds from the start where
+    /// the laws make bonds, no healing, and the default area.
     ///
     /// # Errors
     /// No contact law, two laws of one kind, or slots that do not fit together.
@@ -272,7 +274,8 @@ impl Interface {
         self.loaded().map(Loaded::variables).sum()
     }
 
-    /// Returns the number of internal variables of the laws that act on every contact, bonded or not.
+    /// Returns the number of internal variables of the laws that act on every contact, bonded or
+    /// not.
     pub fn variables_of_contacts(&self) -> usize {
         let on_contacts = self.loaded().filter(|l| !self.acts_on_bonds(l));
         on_contacts.map(Loaded::variables).sum()
@@ -301,8 +304,8 @@ impl Interface {
         self.opens().then_some(time)
     }
 
-    /// Returns whether the cohesion law has an opening and so forms bonds; without one it acts on every
-    /// contact.
+    /// Returns whether the cohesion law has an opening and so forms bonds; without one it acts on
+    /// every contact.
     pub fn opens(&self) -> bool {
         self.cohesion_flags & FLAG_OPENING != 0
     }
@@ -348,7 +351,8 @@ mod tests {
     use super::*;
     use crate::laws::sample_laws::{bond, growing, interface, sticky};
 
-    /// Laws of 0, 1 and 1 variables, given in another order: the columns of each begin where those of the law before it end.
+    /// Laws of 0, 1 and 1 variables, given in another order: the columns of each begin where those
+    /// of the law before it end.
     #[test]
     fn variables_of_laws_follow_each_other() {
         let law = interface([growing(), sticky()]);

@@ -81,8 +81,8 @@ pub struct Plugin {
     pub(super) disturbed: Arc<Disturbed>,
 }
 
-// SAFETY: the table is read only, and the ABI requires every function to be callable from any thread at any
-// time (pure, no globals).
+// SAFETY: the table is read only, and the ABI requires every function to be callable from any
+// thread at any time (pure, no globals).
 unsafe impl Send for Plugin {}
 // SAFETY: as above.
 unsafe impl Sync for Plugin {}
@@ -96,7 +96,8 @@ impl Plugin {
         Self::open_pinned(path, None)
     }
 
-    /// Opens a library only if it has the given SHA-256 (in hexadecimal); otherwise no code of it runs.
+    /// Opens a library only if it has the given SHA-256 (in hexadecimal); otherwise no code of it
+    /// runs.
     ///
     /// # Errors
     /// As for [`Self::open`]; and [`LawError::Pinned`].
@@ -133,8 +134,8 @@ impl Plugin {
                     with_cause(&e)
                 ))
             })?;
-            // SAFETY: the ABI defines the type of this symbol, of which it is known in addition that it may unwind; a library with
-            // another type violates it.
+            // SAFETY: the ABI defines the type of this symbol, of which it is known in addition
+            // that it may unwind; a library with another type violates it.
             let table = unsafe {
                 let entry = library.get::<Entry>(abi::ENTRY_SYMBOL).map_err(|_| {
                     refuse(format!(
@@ -182,8 +183,8 @@ impl Plugin {
                 abi::ENTRY_SYMBOL
             )));
         }
-        // SAFETY: the table begins with its size and version, which are checked before anything else is
-        // read.
+        // SAFETY: the table begins with its size and version, which are checked before anything
+        // else is read.
         let table = unsafe { read_table(table) }.map_err(&refuse)?;
         let kind = Kind::from_code(table.kind).ok_or_else(|| {
             refuse(format!(
@@ -288,8 +289,8 @@ impl Plugin {
         function.is_some()
     }
 
-    /// When the law left another control of floating point (rounding, subnormal numbers) to its caller, which puts its own back:
-    /// while its library was loaded, or in a call.
+    /// When the law left another control of floating point (rounding, subnormal numbers) to its
+    /// caller, which puts its own back: while its library was loaded, or in a call.
     pub fn disturbs_floating_point(&self) -> Option<&'static str> {
         if self.disturbed.calling.load(Ordering::Relaxed) {
             return Some("in a call");

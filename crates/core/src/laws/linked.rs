@@ -1,11 +1,14 @@
-//! Libraries that a law's library links to: the dynamic linker runs their code with that of the law. Those of the system are taken for
-//! granted, as the linker finds them in its own folders; those that are found beside the law or through the environment are as much
-//! part of the law as its own file.
+//! Libraries that a law's library links to: the dynamic linker runs their code with that of the
+//! law. Those of the system are taken for granted, as the linker finds them in its own folders;
+//! those that are found beside the law or through the environment are as much part of the law as
+//! its own file.
 //!
-//! Read from ELF files (Linux); elsewhere none are known. What a law opens by itself (`dlopen`) is not known either.
+//! Read from ELF files (Linux); elsewhere none are known. What a law opens by itself (`dlopen`) is
+//! not known either.
 //!
-//! What is read says what the linker will do, but not quite: where it would look in folders that depend on the machine, a law is
-//! refused before it is opened, and after it the [libraries that came](Opening) are compared with those that were read.
+//! What is read says what the linker will do, but not quite: where it would look in folders that
+//! depend on the machine, a law is refused before it is opened, and after it the [libraries that
+//! came](Opening) are compared with those that were read.
 
 use super::built_in::hex;
 use sha2::{Digest, Sha256};
@@ -41,7 +44,8 @@ impl LawCode {
         let mut all = Sha256::new();
         all.update(&own);
         for (path, sum) in &links {
-            // The name by which it is linked, not the folder, so that a copy of all has the same sum.
+            // The name by which it is linked, not the folder, so that a copy of all has the same
+            // sum.
             let name = path.file_name().unwrap_or_default();
             all.update([b"\n", sum.as_bytes(), b" ", name.as_encoded_bytes()].concat());
         }
@@ -57,7 +61,8 @@ fn sum(path: &Path) -> std::io::Result<String> {
     Ok(hex(&Sha256::digest(std::fs::read(path)?)))
 }
 
-/// The libraries that a library links to, directly or not, and that are found neither in the program nor by the system alone.
+/// The libraries that a library links to, directly or not, and that are found neither in the
+/// program nor by the system alone.
 ///
 /// # Errors
 /// A sentence: where the linker looks depends on the machine.
@@ -90,7 +95,8 @@ impl Opening {
     /// Whether those that are there now are those that were read from the files of the law.
     ///
     /// # Errors
-    /// A sentence: one that was read is not there, or another one came from where the law has its libraries looked for.
+    /// A sentence: one that was read is not there, or another one came from where the law has its
+    /// libraries looked for.
     pub fn check(self, library: &Path) -> Result<(), String> {
         #[cfg(target_os = "linux")]
         linux::Walk::of(library)?.check(&self.before, &linux::loaded())?;
@@ -129,7 +135,8 @@ mod linux {
         "/usr/lib64",
     ];
 
-    /// Sub-folders in which the linker prefers variants for some processors; the names of [`VARIANTS`] also within each other.
+    /// Sub-folders in which the linker prefers variants for some processors; the names of
+    /// [`VARIANTS`] also within each other.
     const PREFERRED: &str = "glibc-hwcaps";
     const VARIANTS: [&str; 6] = [
         "tls", "x86_64", "haswell", "xeon_phi", "avx512_1", "aarch64",
@@ -277,7 +284,8 @@ mod linux {
         })
     }
 
-    /// Whether the linker takes a file: it passes over libraries of other machines, and fails at what is none.
+    /// Whether the linker takes a file: it passes over libraries of other machines, and fails at
+    /// what is none.
     fn fits(path: &Path) -> bool {
         use std::io::Read;
         let head = |path: &Path| {
@@ -292,8 +300,8 @@ mod linux {
         }
     }
 
-    /// The folders of a list; an empty entry is the current one, and `$ORIGIN` the folder of the library. The error is another word
-    /// that the linker would put something in the place of.
+    /// The folders of a list; an empty entry is the current one, and `$ORIGIN` the folder of the
+    /// library. The error is another word that the linker would put something in the place of.
     fn folders(list: &[u8], origin: &Path) -> Result<Vec<PathBuf>, &'static str> {
         if list.is_empty() {
             return Ok(Vec::new());
@@ -317,8 +325,9 @@ mod linux {
         entries.map(folder).collect()
     }
 
-    /// Names of the libraries that came with the program, which the linker does not load again. Taken once, before the first law is
-    /// opened: those that laws bring are parts of each law that links to them.
+    /// Names of the libraries that came with the program, which the linker does not load again.
+    /// Taken once, before the first law is opened: those that laws bring are parts of each law that
+    /// links to them.
     fn program() -> &'static BTreeSet<Vec<u8>> {
         static NAMES: OnceLock<BTreeSet<Vec<u8>>> = OnceLock::new();
         NAMES.get_or_init(|| names(&loaded()))
@@ -417,7 +426,8 @@ mod linux {
     mod tests {
         use super::*;
 
-        /// The libraries of the program are among those of the process, and the C library is one of them where it is no part of the program.
+        /// The libraries of the program are among those of the process, and the C library is one of
+        /// them where it is no part of the program.
         #[test]
         fn libraries_of_the_program_are_known() {
             let now = names(&loaded());
@@ -439,8 +449,8 @@ mod linux {
             }
         }
 
-        /// This test links to the library of C, which its process has: it is no part of a law that links to it. Where the process has
-        /// it not, it is looked for.
+        /// This test links to the library of C, which its process has: it is no part of a law that
+        /// links to it. Where the process has it not, it is looked for.
         #[test]
         fn needs_are_read_from_a_program() {
             let own = std::env::current_exe().unwrap();

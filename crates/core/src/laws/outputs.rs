@@ -29,7 +29,8 @@ pub struct Outputs {
     pub contact_stiffness_n: Vec<f64>,
     pub contact_stiffness_t: Vec<f64>,
     pub contact_unloading_t: Vec<f64>,
-    /// Energy that the tangential spring of a contact holds, where the law tells it (J); `out_energy` of contact laws.
+    /// Energy that the tangential spring of a contact holds, where the law tells it (J);
+    /// `out_energy` of contact laws.
     pub contact_energy_t: Vec<f64>,
     pub contact_damping_n: Vec<f64>,
     pub contact_damping_t: Vec<f64>,

@@ -1,5 +1,5 @@
-//! A call into the code of a law: watched, with the state of the thread and the process kept, and with an end for whatever would
-//! unwind out of it.
+//! A call into the code of a law: watched, with the state of the thread and the process kept, and
+//! with an end for whatever would unwind out of it.
 
 use super::float_control::FloatControl;
 use super::watch::{self, Label};
@@ -14,8 +14,9 @@ pub(super) struct Disturbed {
     pub calling: AtomicBool,
 }
 
-/// Calls a law's function, by its index in [`watch`]. `f` calls it as one that may unwind: an exception, or the end of its thread
-/// (`pthread_exit`), ends the program here, before it passes through frames of Rust.
+/// Calls a law's function, by its index in [`watch`]. `f` calls it as one that may unwind: an
+/// exception, or the end of its thread (`pthread_exit`), ends the program here, before it passes
+/// through frames of Rust.
 #[inline]
 pub(super) fn call<R>(
     label: Label,
@@ -33,7 +34,8 @@ pub(super) fn call<R>(
     answer
 }
 
-/// Runs what loads code; the folder of the process, to which paths are relative, is afterwards what it was.
+/// Runs what loads code; the folder of the process, to which paths are relative, is afterwards what
+/// it was.
 pub(super) fn keep_folder<R>(f: impl FnOnce() -> R) -> R {
     let before = std::env::current_dir();
     let answer = f();

@@ -51,8 +51,8 @@ pub(super) unsafe fn read_table(table: *const abi::FwPlugin) -> Result<abi::FwPl
     }
     let known = size.min(size_of::<abi::FwPlugin>());
     let mut copy = MaybeUninit::<abi::FwPlugin>::zeroed();
-    // SAFETY: the plugin declares this size, capped at that of our struct; all-zero bytes are valid for
-    // every field (null pointers, absent functions).
+    // SAFETY: the plugin declares this size, capped at that of our struct; all-zero bytes are valid
+    // for every field (null pointers, absent functions).
     unsafe {
         ptr::copy_nonoverlapping(table.cast::<u8>(), copy.as_mut_ptr().cast(), known);
         Ok(copy.assume_init())

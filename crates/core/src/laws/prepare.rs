@@ -1,4 +1,5 @@
-//! Prepare: the laws write friction, cohesion and the linearised bond of every contact into its standard local form.
+//! Prepare: the laws write friction, cohesion and the linearised bond of every contact into its
+//! standard local form.
 
 use super::batch::{BATCH, Batch, locate};
 use super::columns::{Outputs, StepInfo};
@@ -22,7 +23,8 @@ const CHUNK: usize = 1024;
 const APPLY: f64 = 10.0;
 /// About what laws that vary take for a contact (ns).
 const PREPARE: f64 = 80.0;
-/// Distance of a traction from stiffness times opening, as a share of it, up to which the two are equal but for rounding.
+/// Distance of a traction from stiffness times opening, as a share of it, up to which the two are
+/// equal but for rounding.
 const LINEAR: f64 = 1e-9;
 
 /// Friction and restitution of one contact.
@@ -59,7 +61,8 @@ impl Friction {
     }
 }
 
-/// Contacts of a batch, and the forms and springs of all contacts from the first of them to the last, which no other batch has.
+/// Contacts of a batch, and the forms and springs of all contacts from the first of them to the
+/// last, which no other batch has.
 struct Task<'a, S: Space> {
     members: &'a [usize],
     first: usize,
@@ -125,10 +128,12 @@ struct Prepared<S: Space> {
 }
 
 impl LawEvaluator {
-    /// Completes the geometric forms of the contacts with the outputs of the laws. Contacts are as at the last [`Self::select`].
+    /// Completes the geometric forms of the contacts with the outputs of the laws. Contacts are as
+    /// at the last [`Self::select`].
     ///
-    /// If `predicts`, the impulses of every intact bond are those of the mean of its damage and of the damage that the law gives for the
-    /// opening which the motion at the start of the step leads to.
+    /// If `predicts`, the impulses of every intact bond are those of the mean of its damage and of
+    /// the damage that the law gives for the opening which the motion at the start of the step
+    /// leads to.
     ///
     /// # Errors
     /// The law's error, with the contact.
@@ -159,8 +164,8 @@ impl LawEvaluator {
             if members.all.is_empty() {
                 continue;
             }
-            // Cohesion with an opening acts on intact bonds. Without one it acts on every contact, but not on those that are there for
-            // their speed.
+            // Cohesion with an opening acts on intact bonds. Without one it acts on every contact,
+            // but not on those that are there for their speed.
             let (cohesive, others) = match law.opens() {
                 true => (&members.bonded[..], &members.loose[..]),
                 false => (members.near(), &members.beyond[..]),
@@ -246,7 +251,8 @@ impl LawEvaluator {
     }
 }
 
-/// Applies friction and restitution that are the same for all contacts of an interface; returns those held back.
+/// Applies friction and restitution that are the same for all contacts of an interface; returns
+/// those held back.
 fn apply_constant<S: Space>(
     asked: &Asked<'_, S>,
     network: &Network<S>,
@@ -346,7 +352,8 @@ impl Batch {
             self.apply_cohesions(asked, network, task, &mut prepared);
         }
         if law.compliant() {
-            // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s + c P.
+            // The spring carries the load and the attraction, P = p + h c_n A: its law is in u + s
+            // + c P.
             for at in task.members {
                 let form = &mut task.forms[at - task.first];
                 form.shift_n += form.compliance[0] * form.tension;
@@ -517,8 +524,8 @@ impl Batch {
     }
 }
 
-/// Applies friction and restitution; returns whether the contact has restitution and is only kept from
-/// closing in this step.
+/// Applies friction and restitution; returns whether the contact has restitution and is only kept
+/// from closing in this step.
 fn apply_friction<S: Space>(
     form: &mut ContactForm<S>,
     friction: &Friction,
@@ -536,10 +543,10 @@ fn apply_friction<S: Space>(
     if contact.beyond || aside {
         (form.tension, form.cohesion) = (0.0, 0.0);
     }
-    // Newton's restitution acts on closed contacts and on those that would close and penetrate within the
-    // step, with their approach velocity; other open contacts are free (a quasi-shock would remove the
-    // approach velocity before the impact). A contact that closes only because of another impact of this
-    // step is kept from closing, and rebounds in the next step.
+    // Newton's restitution acts on closed contacts and on those that would close and penetrate
+    // within the step, with their approach velocity; other open contacts are free (a quasi-shock
+    // would remove the approach velocity before the impact). A contact that closes only because of
+    // another impact of this step is kept from closing, and rebounds in the next step.
     let un = contact.normal.dot(before);
     let first = contact.closing && !contact.later && un < 0.0;
     let impact = gap <= 0.0 || first;
@@ -549,8 +556,8 @@ fn apply_friction<S: Space>(
                 form.shift_n = f64::INFINITY;
             }
         } else if un < 0.0 {
-            // Restitution takes the place of the gap and of its correction. Where the surface bends towards the body, it leaves no slower than
-            // along that.
+            // Restitution takes the place of the gap and of its correction. Where the surface bends
+            // towards the body, it leaves no slower than along that.
             let of_gap = if gap > 0.0 {
                 gap
             } else {

@@ -16,11 +16,12 @@ pub enum Range {
 }
 
 impl Range {
-    /// Tolerance for rounding errors: a fraction may exceed its bound, and a difference may fall below zero,
-    /// by this relative amount.
+    /// Tolerance for rounding errors: a fraction may exceed its bound, and a difference may fall
+    /// below zero, by this relative amount.
     const ROUND_OFF: f64 = 1e-12;
 
-    /// Returns the bounds, and the rounding tolerance for a column whose largest value so far is `largest`.
+    /// Returns the bounds, and the rounding tolerance for a column whose largest value so far is
+    /// `largest`.
     fn bounds(self, largest: f64) -> ([f64; 2], f64) {
         match self {
             Self::NotNegative => ([0.0, f64::INFINITY], Self::ROUND_OFF * largest),
@@ -29,8 +30,8 @@ impl Range {
         }
     }
 
-    /// Returns the first value outside the range by more than rounding, and clamps the others to it. Almost
-    /// always the range of the column tells that there is none.
+    /// Returns the first value outside the range by more than rounding, and clamps the others to
+    /// it. Almost always the range of the column tells that there is none.
     fn settle(self, column: &mut [f64], found: &ColumnRange, largest: &mut f64) -> Option<usize> {
         if self == Self::NotNegative {
             *largest = largest.max(found.most);
@@ -53,7 +54,8 @@ impl Range {
 pub(super) struct ColumnRange {
     /// Whether all values are finite.
     pub finite: bool,
-    /// Least value; infinity of an empty column. As the largest, it has a meaning if all values are finite.
+    /// Least value; infinity of an empty column. As the largest, it has a meaning if all values are
+    /// finite.
     least: f64,
     /// Largest value.
     most: f64,
@@ -88,8 +90,8 @@ impl ColumnRange {
     }
 }
 
-/// Largest value of each column so far, by kind of law and index of the column: the reference for rounding
-/// errors. A single contact near failure has no other value to compare with.
+/// Largest value of each column so far, by kind of law and index of the column: the reference for
+/// rounding errors. A single contact near failure has no other value to compare with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Largest(Vec<(i32, Vec<f64>)>);
 
@@ -133,8 +135,9 @@ pub(super) struct Outside {
     pub range: Range,
 }
 
-/// The first column in which a call gave a value that cannot be; values beyond an end by round-off are put on it. Values are
-/// finite. Tractions, moments and stored energies may have any sign; that damage falls is no error, as the host holds it up.
+/// The first column in which a call gave a value that cannot be; values beyond an end by round-off
+/// are put on it. Values are finite. Tractions, moments and stored energies may have any sign; that
+/// damage falls is no error, as the host holds it up.
 pub(super) fn settle(
     outputs: &mut [Output<'_>],
     ranges: &[ColumnRange],

@@ -1,4 +1,5 @@
-//! Friction at a velocity of sliding other than that at the start of the step, by another call of the contact law.
+//! Friction at a velocity of sliding other than that at the start of the step, by another call of
+//! the contact law.
 
 use super::batch::{Batch, locate};
 use super::error::LawError;
@@ -14,11 +15,12 @@ const EACH: f64 = 120.0;
 /// Velocities of sliding at which a law is tried for whether it depends on them (m/s).
 const TRIED: [f64; 7] = [0.0, 1e-9, 1e-6, 1e-3, 3e-2, 1.0, 1e2];
 
-/// Contacts of an interface on which that is tried, at most, spread over all of them: it may depend on what a contact has, its
-/// state or the size of its bodies.
+/// Contacts of an interface on which that is tried, at most, spread over all of them: it may depend
+/// on what a contact has, its state or the size of its bodies.
 const SAMPLE: usize = 16;
 
-/// Relative change of the velocity from which a slope follows, and of friction by it that is more than rounding.
+/// Relative change of the velocity from which a slope follows, and of friction by it that is more
+/// than rounding.
 const NEARBY: f64 = 1e-4;
 const ROUNDING: f64 = 1e-13;
 
@@ -32,8 +34,9 @@ pub struct FrictionAt {
 }
 
 impl LawEvaluator {
-    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on some of their contacts, with the contacts that
-    /// they have in the step. An error at a velocity that is tried is none of the run's.
+    /// The interfaces whose friction depends on the velocity of sliding, found by trying it on some
+    /// of their contacts, with the contacts that they have in the step. An error at a velocity that
+    /// is tried is none of the run's.
     pub fn rate_dependent<S: Space>(&mut self, step: &mut Step<'_, S>) -> Vec<(usize, Vec<usize>)> {
         let mut found = Vec::new();
         for (index, law) in step.laws.iter().enumerate() {
@@ -99,7 +102,8 @@ impl LawEvaluator {
 }
 
 impl Batch {
-    /// Friction at the velocities in the columns, and its slope from another call at velocities a little above.
+    /// Friction at the velocities in the columns, and its slope from another call at velocities a
+    /// little above.
     fn friction_and_slope<S: Space>(
         &mut self,
         source: &Source<'_, S>,

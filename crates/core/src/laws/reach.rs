@@ -1,4 +1,5 @@
-//! Attraction without opening at a gap other than that of detection, by another call of the cohesion law.
+//! Attraction without opening at a gap other than that of detection, by another call of the
+//! cohesion law.
 
 use super::batch::locate;
 use super::error::LawError;
@@ -27,8 +28,9 @@ impl LawEvaluator {
         all.filter(|(_, members)| !members.is_empty()).collect()
     }
 
-    /// Attraction (N; N/m in 2D) of contacts of an interface, each at a gap (m); contacts may be given several times. A contact that touches
-    /// has what its law makes of that, a neck or a bridge.
+    /// Attraction (N; N/m in 2D) of contacts of an interface, each at a gap (m); contacts may be
+    /// given several times. A contact that touches has what its law makes of that, a neck or a
+    /// bridge.
     ///
     /// # Errors
     /// The law's error, with the contact.

@@ -55,7 +55,8 @@ impl ContactLaw for Coulomb {
 }
 
 parameters! {
-    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension only.
+    /// A bond of one stiffness k over the area against opening, sliding and rotation, in tension
+    /// only.
     pub struct Bond {
         k: "Pa/m" = 2.0, 0.0, 1e30, "stiffness";
     }
@@ -90,7 +91,8 @@ impl CohesionLaw for Bond {
 }
 
 parameters! {
-    /// Sticks without a bond: a shear cohesion, and no attraction. It has a variable, which it leaves as it is.
+    /// Sticks without a bond: a shear cohesion, and no attraction. It has a variable, which it
+    /// leaves as it is.
     pub struct Sticky {
         strength: "Pa" = 3.0, 0.0, 1e30, "shear cohesion";
     }

@@ -29,13 +29,15 @@ pub enum Place {
     BuiltIn,
 }
 
-/// Returns whether a law's name consists of a-z, 0-9, `-` and `_` and begins with a letter or digit.
+/// Returns whether a law's name consists of a-z, 0-9, `-` and `_` and begins with a letter or
+/// digit.
 pub fn name_is_valid(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
     name.chars().next().is_some_and(plain) && name.chars().all(|c| plain(c) || c == '-' || c == '_')
 }
 
-/// Returns the file name of a law's library: `libfretwork_KIND_NAME.so`, with `-` in the name written `_`.
+/// Returns the file name of a law's library: `libfretwork_KIND_NAME.so`, with `-` in the name
+/// written `_`.
 pub fn file_name(kind: Kind, name: &str) -> String {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
     format!(
@@ -45,7 +47,8 @@ pub fn file_name(kind: Kind, name: &str) -> String {
 }
 
 impl SearchPath {
-    /// Builds the search path: the program's own folders, then `extra`, then those of the environment variable.
+    /// Builds the search path: the program's own folders, then `extra`, then those of the
+    /// environment variable.
     pub fn new(extra: &[PathBuf]) -> Self {
         let mut folders = beside_program();
         let beside = folders.len();
@@ -84,8 +87,8 @@ impl SearchPath {
         &self.folders
     }
 
-    /// Opens the law of this kind and name: a built-in one, or that of the first folder that has its library.
-    /// A library therefore cannot replace a built-in law.
+    /// Opens the law of this kind and name: a built-in one, or that of the first folder that has
+    /// its library. A library therefore cannot replace a built-in law.
     ///
     /// # Errors
     /// No such law (with the most similar name), or an unusable library.
@@ -155,8 +158,8 @@ impl SearchPath {
         }
     }
 
-    /// Tries the libraries of several laws in one child process before they are opened one by one. Missing
-    /// or untrusted laws are skipped; opening them reports the error.
+    /// Tries the libraries of several laws in one child process before they are opened one by one.
+    /// Missing or untrusted laws are skipped; opening them reports the error.
     pub fn try_out<'a>(&self, laws: impl IntoIterator<Item = (Kind, &'a str, Option<&'a str>)>) {
         let mut libraries = Vec::new();
         for (kind, name, pin) in laws {
@@ -169,8 +172,8 @@ impl SearchPath {
         child::try_loading(&libraries);
     }
 
-    /// Returns whether a law belongs to the program itself, so that whoever can change it can change the
-    /// program.
+    /// Returns whether a law belongs to the program itself, so that whoever can change it can
+    /// change the program.
     pub fn is_own(&self, plugin: &Plugin) -> bool {
         plugin.built_in || (self.own(&plugin.path) && self.doubt(&plugin.path).is_none())
     }
@@ -207,8 +210,8 @@ impl SearchPath {
         Plugin::open_pinned(path, pin)
     }
 
-    /// Lists all laws by the names under which they are found, unopened and sorted: libraries by their file
-    /// names (with `_` as `-`), and built-in laws.
+    /// Lists all laws by the names under which they are found, unopened and sorted: libraries by
+    /// their file names (with `_` as `-`), and built-in laws.
     pub fn laws(&self) -> Vec<(Kind, String, Place)> {
         let mut out: Vec<(Kind, String, Place)> = Vec::new();
         let mut add = |kind: Kind, name: String, place: Place| {
@@ -302,7 +305,8 @@ fn parse(path: &Path) -> Option<(Kind, String)> {
     })
 }
 
-/// Returns the folders that belong to the program: its own, and the one that an installation has for laws.
+/// Returns the folders that belong to the program: its own, and the one that an installation has
+/// for laws.
 fn beside_program() -> Vec<PathBuf> {
     let Ok(program) = crate::program::file() else {
         return Vec::new();

@@ -1,9 +1,10 @@
 //! Compliant contacts: unilateral springs, integrated implicitly in the standard local form.
 //!
-//! A law gives the normal force F and its slope k at an overlap d, the tangential force T_0 at the displacement at the start
-//! of the step with its slope k_t, and dampings. Detection takes place at the middle of the step, q_m; the spring acts at the overlap
-//! that the next q_m will have, -(g + h u_n), over the whole step (implicit Euler: with theta = 1/2 in its place the amplification factor of a stiff
-//! spring tends to -1, and layers of grains with little inertia blow up):
+//! A law gives the normal force F and its slope k at an overlap d, the tangential force T_0 at the
+//! displacement at the start of the step with its slope k_t, and dampings. Detection takes place at
+//! the middle of the step, q_m; the spring acts at the overlap that the next q_m will have, -(g + h
+//! u_n), over the whole step (implicit Euler: with theta = 1/2 in its place the amplification
+//! factor of a stiff spring tends to -1, and layers of grains with little inertia blow up):
 //!
 //! ```text
 //! 0 <= p_n  _|_  u_n + s_n + c_n p_n >= 0        c_n = 1/(h (k h + d_n)),  s_n = (k (g + d) - F + d_n max(g, 0)/h)/(k h + d_n)
@@ -33,7 +34,8 @@ pub struct SpringForm<S: Space> {
     pub stiffness_t: f64,
     /// Slope of the tangential force when it unloads (N/m): displacement beyond it is slip.
     pub unloading_t: f64,
-    /// Energy that the tangential force holds at the start of the step (J); 0 where that is T_0^2/(2 unloading_t).
+    /// Energy that the tangential force holds at the start of the step (J); 0 where that is
+    /// T_0^2/(2 unloading_t).
     pub energy_t: f64,
     /// Tangential damping d_t (N s/m).
     pub damping_t: f64,
@@ -68,8 +70,8 @@ impl<S: Space> SpringForm<S> {
         form.shift_n =
             (self.stiffness_n * (self.gap + self.overlap) - self.force_n + before_touch) / slope;
         form.compliance[0] = 1.0 / (h * slope);
-        // A spring that is found compressed begins with the impulse that it has at rest: sweeps over stiff springs of little mass are long in
-        // building it up.
+        // A spring that is found compressed begins with the impulse that it has at rest: sweeps
+        // over stiff springs of little mass are long in building it up.
         if self.gap < 0.0 && form.impulse == S::Vector::zero() {
             let at_rest = (-form.shift_n / form.compliance[0]).max(0.0);
             form.impulse = form.normal * at_rest;
@@ -81,8 +83,9 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// Reduces the tangential force to one that holds no more energy than is there: what the spring held, and what friction of the contact has
-    /// taken so far (J). A law that raises the force, or keeps it while the spring grows softer, would make energy by friction.
+    /// Reduces the tangential force to one that holds no more energy than is there: what the spring
+    /// held, and what friction of the contact has taken so far (J). A law that raises the force, or
+    /// keeps it while the spring grows softer, would make energy by friction.
     pub fn limit_to(&mut self, energy: f64) {
         /// Share of the energy that rounding may add, where the force turned with its pair.
         const ROUNDING: f64 = 1e-9;
@@ -121,14 +124,16 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// Returns the energy of the overlap at detection (J), for a spring that was there before the first step.
+    /// Returns the energy of the overlap at detection (J), for a spring that was there before the
+    /// first step.
     pub fn initial_energy(&self) -> f64 {
         let overlap = (-self.gap).max(0.0);
         let force = self.force_n + self.stiffness_n * (overlap - self.overlap);
         self.energy(overlap, force.max(0.0))
     }
 
-    /// The energy at an overlap (J) under a force (N) that grows with a power of the overlap, as a linear spring and Hertz' do: F d/(1 + k d/F).
+    /// The energy at an overlap (J) under a force (N) that grows with a power of the overlap, as a
+    /// linear spring and Hertz' do: F d/(1 + k d/F).
     fn energy(&self, overlap: f64, force: f64) -> f64 {
         if force > 0.0 {
             force * overlap / (1.0 + self.stiffness_n * overlap / force)
@@ -137,8 +142,8 @@ impl<S: Space> SpringForm<S> {
         }
     }
 
-    /// Completes the step of the contact from its solution: relative velocities at the end of the step and averaged over it
-    /// (m/s), and the spring before.
+    /// Completes the step of the contact from its solution: relative velocities at the end of the
+    /// step and averaged over it (m/s), and the spring before.
     pub fn complete(
         &self,
         form: &ContactForm<S>,
@@ -206,8 +211,8 @@ impl<S: Space> SpringForm<S> {
         let unloading = self.unloading();
         spring.force_t = force;
         let held = self.held();
-        // A law of another slope than that of unloading slips within the contact area: what that takes of the work shows in the energy which
-        // the law gives for the next step.
+        // A law of another slope than that of unloading slips within the contact area: what that
+        // takes of the work shows in the energy which the law gives for the next step.
         spring.energy[1] = if self.stiffness_t == unloading && self.energy_t == 0.0 {
             self.tangential_energy(&force)
         } else {
@@ -238,7 +243,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::{Vector1, Vector2};
 
-    /// A spring that has 4 N of normal force at an overlap of 0.2 m, with a slope of 20 N/m, and 3 N along.
+    /// A spring that has 4 N of normal force at an overlap of 0.2 m, with a slope of 20 N/m, and 3
+    /// N along.
     fn form() -> SpringForm<Dim2> {
         SpringForm {
             gap: -0.2,
@@ -254,8 +260,8 @@ mod tests {
         }
     }
 
-    /// F d/(1 + k d/F) of a linear spring is F d/2; of Hertz' spring, F of d^1.5, it is F d/2.5. Beyond the overlap at which the law was asked
-    /// the force is that of its slope.
+    /// F d/(1 + k d/F) of a linear spring is F d/2; of Hertz' spring, F of d^1.5, it is F d/2.5.
+    /// Beyond the overlap at which the law was asked the force is that of its slope.
     #[test]
     fn a_spring_that_is_found_compressed_has_energy() {
         assert!((form().initial_energy() - 0.4).abs() < 1e-15);
@@ -304,8 +310,9 @@ mod tests {
         }
     }
 
-    /// A gap of 0.1 m that closes by 0.15 m in a step of 0.5 s: the damper of 3 N s/m sees the overlap of 0.05 m alone, for h d (0.05/h)^2. A spring
-    /// that was there sees the whole velocity. The energy is that of the overlap.
+    /// A gap of 0.1 m that closes by 0.15 m in a step of 0.5 s: the damper of 3 N s/m sees the
+    /// overlap of 0.05 m alone, for h d (0.05/h)^2. A spring that was there sees the whole
+    /// velocity. The energy is that of the overlap.
     #[test]
     fn a_damper_acts_on_the_overlap() {
         let h = 0.5;

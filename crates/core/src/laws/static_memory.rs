@@ -1,5 +1,5 @@
-//! The static memory of a law's library (`.data` and `.bss`). A law that stores values there between calls
-//! has data races.
+//! The static memory of a law's library (`.data` and `.bss`). A law that stores values there
+//! between calls has data races.
 
 use super::library::Plugin;
 
@@ -104,8 +104,8 @@ mod elf {
         found: Vec<(u64, usize)>,
     }
 
-    /// Returns address and length of the writable segments of the libraries that contain one of these
-    /// functions.
+    /// Returns address and length of the writable segments of the libraries that contain one of
+    /// these functions.
     pub fn writable_segments(functions: &[usize]) -> Vec<(u64, usize)> {
         let mut search = Search {
             functions,
@@ -154,7 +154,8 @@ mod tests {
 
     static KEPT: AtomicU64 = AtomicU64::new(0);
 
-    /// What a law's library keeps in a static variable is seen: here the library is the program of the tests.
+    /// What a law's library keeps in a static variable is seen: here the library is the program of
+    /// the tests.
     #[test]
     fn what_is_stored_in_a_static_variable_is_seen() {
         let mut plugin = (*bond().plugin).clone();

@@ -1,4 +1,5 @@
-//! What the contacts did in a step, as the solver gives it to the laws, and the sums of their energies.
+//! What the contacts did in a step, as the solver gives it to the laws, and the sums of their
+//! energies.
 
 use super::columns::StepInfo;
 use super::spring::SpringStep;
@@ -16,8 +17,8 @@ pub struct ContactStep<S: Space> {
     pub average: S::Vector,
     /// Whether the unilateral part can carry tension (h c_n > 0).
     pub adheres: bool,
-    /// Work dissipated by the bond's damping and by the time scheme (J); `None` where it follows from the bond's stored energy, see
-    /// [`crate::solve::Elastic::lost`].
+    /// Work dissipated by the bond's damping and by the time scheme (J); `None` where it follows
+    /// from the bond's stored energy, see [`crate::solve::Elastic::lost`].
     pub lost: Option<f64>,
     /// Work of the position correction (J).
     pub corrected: f64,
@@ -49,7 +50,8 @@ pub struct SolvedStep<'a, S: Space> {
     pub moments: &'a [MomentStep<S>],
     /// Time and scheme of the step.
     pub info: &'a StepInfo,
-    /// Whether the damage used in the impulses was a prediction, of which the damage at the end may fall short.
+    /// Whether the damage used in the impulses was a prediction, of which the damage at the end may
+    /// fall short.
     pub predicted: bool,
 }
 
@@ -67,9 +69,11 @@ pub struct Velocities<S: Space> {
     pub relative: Vec<S::Vector>,
     /// Relative spins (rad/s); empty unless a bond resists rotation.
     pub turning: Vec<S::Spin>,
-    /// Estimates of the overlaps at the end of the step (m), one per contact; empty without a compliant law.
+    /// Estimates of the overlaps at the end of the step (m), one per contact; empty without a
+    /// compliant law.
     pub overlap: Vec<f64>,
-    /// Effective masses along the normals (kg; kg/m in 2D), zero between immovable bodies; as `overlap`.
+    /// Effective masses along the normals (kg; kg/m in 2D), zero between immovable bodies; as
+    /// `overlap`.
     pub effective_mass: Vec<f64>,
 }
 

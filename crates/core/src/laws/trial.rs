@@ -1,4 +1,5 @@
-//! Calls of laws beside those of the step, with some of their inputs replaced: nothing is remembered of them.
+//! Calls of laws beside those of the step, with some of their inputs replaced: nothing is
+//! remembered of them.
 
 use super::batch::{BATCH, Batch};
 use super::error::LawError;
@@ -27,7 +28,8 @@ pub struct Step<'a, S: Space> {
     pub info: &'a StepInfo,
 }
 
-/// Contacts of one interface that a batch asks for, each with a value that takes the place of an input.
+/// Contacts of one interface that a batch asks for, each with a value that takes the place of an
+/// input.
 pub(super) struct Asked<'a, S: Space, T> {
     pub source: Source<'a, S>,
     pub before: &'a Velocities<S>,
@@ -36,8 +38,8 @@ pub(super) struct Asked<'a, S: Space, T> {
 }
 
 impl LawEvaluator {
-    /// Asks a law of an interface for contacts with given values, by batches that are divided among threads; a call takes about `each` (ns) for a
-    /// contact.
+    /// Asks a law of an interface for contacts with given values, by batches that are divided among
+    /// threads; a call takes about `each` (ns) for a contact.
     pub(super) fn ask<S: Space, T: Sync, R: Send>(
         &mut self,
         step: &mut Step<'_, S>,

@@ -1,18 +1,19 @@
-//! Decides whether a library may be opened: only if nobody but the user and the administrator can have
-//! placed or changed it.
+//! Decides whether a library may be opened: only if nobody but the user and the administrator can
+//! have placed or changed it.
 
 #[cfg(unix)]
 use super::linked;
 use std::path::Path;
 
-/// Returns why a library should not be opened, if others can write to it, or to a folder or link on its
-/// path; or to a library that it links to.
+/// Returns why a library should not be opened, if others can write to it, or to a folder or link on
+/// its path; or to a library that it links to.
 #[cfg(unix)]
 pub(super) fn doubt(library: &Path) -> Option<String> {
     of_all(library, &[on_the_way::me()])
 }
 
-/// As [`doubt`], for a library in a folder of the program's: its owner is trusted too, since who owns the program can change it.
+/// As [`doubt`], for a library in a folder of the program's: its owner is trusted too, since who
+/// owns the program can change it.
 #[cfg(unix)]
 pub(super) fn doubt_beside_program(library: &Path) -> Option<String> {
     use std::os::unix::fs::MetadataExt;
@@ -92,14 +93,15 @@ mod on_the_way {
             self.link.is_none() && self.mode & 0o002 != 0
         }
 
-        /// In a sticky folder only the owners of the folder and of a file may rename or remove the file.
+        /// In a sticky folder only the owners of the folder and of a file may rename or remove the
+        /// file.
         fn sticky(&self) -> bool {
             self.mode & 0o1000 != 0
         }
     }
 
-    /// Follows a path from the root, link by link, and returns the first component that users other than
-    /// these owners, of whom the first is the user, and the administrator may change.
+    /// Follows a path from the root, link by link, and returns the first component that users other
+    /// than these owners, of whom the first is the user, and the administrator may change.
     pub fn doubt(
         library: &Path,
         owners: &[u32],

@@ -45,7 +45,8 @@ const CALLS: [&str; 7] = [
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Label(&'static String);
 
-/// Guard for a call in progress. Dropped without [`Inside::leave`], something unwinds out of the call, and the program ends.
+/// Guard for a call in progress. Dropped without [`Inside::leave`], something unwinds out of the
+/// call, and the program ends.
 #[must_use]
 pub(super) struct Inside;
 
@@ -128,8 +129,8 @@ impl Drop for Ready {
     }
 }
 
-/// Registers an action that saves a run when a law hangs. It runs on a thread of its own while the law is
-/// stuck, receives a description of the stuck call, and returns whether it saved something.
+/// Registers an action that saves a run when a law hangs. It runs on a thread of its own while the
+/// law is stuck, receives a description of the stuck call, and returns whether it saved something.
 pub fn rescue(save: impl FnOnce(&str) -> bool + Send + 'static) -> Ready {
     static NUMBERS: AtomicU64 = AtomicU64::new(0);
     let number = NUMBERS.fetch_add(1, Ordering::Relaxed);
@@ -160,7 +161,8 @@ impl Saved {
     }
 }
 
-/// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is not waited for longer.
+/// A thread that is stuck may hold what a rescue needs, such as the lock of the allocator: it is
+/// not waited for longer.
 pub const RESCUED_WITHIN: Duration = Duration::from_secs(10);
 
 /// Lets all rescues save what they can, beside a thread that is stuck or was stopped.
@@ -185,8 +187,8 @@ pub fn nothing_to_save() -> bool {
     RESCUES.try_lock().is_ok_and(|rescues| rescues.is_empty())
 }
 
-/// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that exceeds the
-/// limit, and the result of the rescue actions.
+/// Starts the watchdog thread, for the lifetime of the program. It reports, once, a call that
+/// exceeds the limit, and the result of the rescue actions.
 ///
 /// # Errors
 /// The system cannot create a thread.
@@ -208,8 +210,8 @@ pub fn watch(
     std::thread::Builder::new().spawn(rescuer)?;
     let looks = 20u32;
     let watcher = move || {
-        // Initialises this thread's thread-local data now: a library that hangs while loading holds the
-        // dynamic linker's lock, which that initialisation needs.
+        // Initialises this thread's thread-local data now: a library that hangs while loading holds
+        // the dynamic linker's lock, which that initialisation needs.
         let _ = saved.recv_timeout(Duration::from_millis(20));
         let _ = std::io::Write::flush(&mut std::io::stderr().lock());
         let mut seen = vec![(0, 0); MAX_SLOTS];
@@ -243,7 +245,8 @@ pub fn watch(
         stuck(&who, saved);
     };
     std::thread::Builder::new().spawn(watcher)?;
-    // On a busy machine a library could be loaded, and hang, before these threads are fully started.
+    // On a busy machine a library could be loaded, and hang, before these threads are fully
+    // started.
     begun.iter().for_each(drop);
     Ok(())
 }

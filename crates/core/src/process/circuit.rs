@@ -1,5 +1,5 @@
-//! The tribological circuit of a run: assignment of grains to first bodies, ejection zones, the mass ledger,
-//! and debris as it detaches.
+//! The tribological circuit of a run: assignment of grains to first bodies, ejection zones, the
+//! mass ledger, and debris as it detaches.
 
 use super::{Process, ProcessError};
 use crate::bodies::Bodies;
@@ -33,8 +33,8 @@ pub struct Zone<S: Space> {
     pub low: S::Vector,
     /// Highest corner (m); infinity in unbounded directions.
     pub high: S::Vector,
-    /// The body that carries it; its corners are then in the frame of that body, which may move but not
-    /// rotate.
+    /// The body that carries it; its corners are then in the frame of that body, which may move but
+    /// not rotate.
     pub carrier: Option<u32>,
     /// Fate of the grains in it.
     pub fate: Fate,
@@ -46,8 +46,8 @@ impl<S: Space> Zone<S> {
         let origin = self.carrier.map(|b| bodies.position[b as usize]);
         let x = origin.map_or(*at, |o| *at - o);
         (0..S::D).all(|k| match periodic.period[k] {
-            // The first image above the low side; a zone that is unbounded along a period contains all of
-            // it.
+            // The first image above the low side; a zone that is unbounded along a period contains
+            // all of it.
             Some(period) if self.low[k].is_finite() && self.high[k].is_finite() => {
                 (x[k] - self.low[k]).rem_euclid(period) < self.high[k] - self.low[k]
             }
@@ -216,7 +216,8 @@ impl<S: Space> Circuit<S> {
         self.cost += clock.elapsed();
     }
 
-    /// Updates connections, zones and ledger to the current state, and removes lost grains from the scene.
+    /// Updates connections, zones and ledger to the current state, and removes lost grains from the
+    /// scene.
     pub fn update(&mut self, s: &mut Simulation<S>) {
         let clock = Instant::now();
         let change = if self.made.is_empty() && self.cuts.is_empty() {
@@ -292,7 +293,8 @@ impl<S: Space> Circuit<S> {
             mass += m;
             moment += s.shapes.periodic.shortest(at - first) * m;
         }
-        // The bonds between the piece and other bodies, broken at any time since its grains were connected.
+        // The bonds between the piece and other bodies, broken at any time since its grains were
+        // connected.
         let of = |b: u32| piece.binary_search(&b).is_ok();
         let past = piece.iter().filter_map(|b| self.past.get(b)).flatten();
         let cuts = past.filter(|c| of(c.bodies[0]) != of(c.bodies[1]));
@@ -331,7 +333,8 @@ pub struct Intervals {
     pub rows: Option<u64>,
 }
 
-/// The circuit as a process: the account begins at its time, takes in every step, and takes lost grains out between steps.
+/// The circuit as a process: the account begins at its time, takes in every step, and takes lost
+/// grains out between steps.
 #[derive(Clone, Debug)]
 pub struct CircuitProcess<S: Space> {
     spec: Spec<S>,
@@ -346,7 +349,8 @@ pub struct CircuitProcess<S: Space> {
 struct CircuitState<S: Space> {
     /// None before it begins.
     circuit: Option<Circuit<S>>,
-    /// Number of the last step that it took in, and of the last after which it was brought up to date.
+    /// Number of the last step that it took in, and of the last after which it was brought up to
+    /// date.
     noted: u64,
     updated: u64,
 }
@@ -455,8 +459,8 @@ impl<S: Space> Process<S> for CircuitProcess<S> {
     }
 }
 
-/// Whether a body's bonds tie: a grain's and a base's. Another first body is no debris, and nothing belongs to a base
-/// through it.
+/// Whether a body's bonds tie: a grain's and a base's. Another first body is no debris, and nothing
+/// belongs to a base through it.
 fn counts<S: Space>(body: u32, number: &[Option<u32>], spec: &Spec<S>) -> bool {
     number[body as usize].is_some() || spec.bases.contains(&body)
 }

@@ -14,7 +14,8 @@ pub struct CycleClock {
 }
 
 impl CycleClock {
-    /// Cycles of a length (s) from `start` on; without one the second half of what remains until `end` is one cycle (s).
+    /// Cycles of a length (s) from `start` on; without one the second half of what remains until
+    /// `end` is one cycle (s).
     pub fn new(start: f64, period: Option<f64>, end: f64) -> Self {
         let start = if period.is_some() {
             start
@@ -77,8 +78,8 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Work over the step (J; J/m in 2D) with the force at its middle, which lies between this and that of the step before (N; N/m):
-    /// the sum over a loop is its area.
+    /// Work over the step (J; J/m in 2D) with the force at its middle, which lies between this and
+    /// that of the step before (N; N/m): the sum over a loop is its area.
     pub fn work(&self, before: f64) -> f64 {
         if self.at == 0.5 {
             return self.force * self.slide;
@@ -120,7 +121,8 @@ impl RubbedBody {
         }
     }
 
-    /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in compression.
+    /// Normal force of its contacts, the mean over the last step (N; N/m in 2D), positive in
+    /// compression.
     pub fn normal_force<S: Space>(&self, s: &Simulation<S>) -> f64 {
         let pushed = match self.rubbed {
             Rubbed::Driven(place) => s.state.received[place].0[self.normal],

@@ -39,9 +39,9 @@ pub struct ThermalExpansion<S: Space> {
 }
 
 impl<S: Space> ThermalExpansion<S> {
-    /// Has rigid bodies expand from here on, by coefficients of linear expansion (1/K) of each, from
-    /// the temperatures that they have now, and bodies of finite elements. Without heat, which is
-    /// added before, nothing expands.
+    /// Has rigid bodies expand from here on, by coefficients of linear expansion (1/K) of each,
+    /// from the temperatures that they have now, and bodies of finite elements. Without heat, which
+    /// is added before, nothing expands.
     pub fn add_to(s: &mut Simulation<S>, coefficient: Vec<f64>, systems: Vec<ExpandingSystem>) {
         let Some(heat) = s.heat.clone() else {
             return;
@@ -73,8 +73,8 @@ impl<S: Space> ThermalExpansion<S> {
         Some(&s.process::<Self>()?.expansion)
     }
 
-    /// The velocities of the surfaces of a contact on their bodies (m/s): of balls that are bodies of
-    /// their own along its normal.
+    /// The velocities of the surfaces of a contact on their bodies (m/s): of balls that are bodies
+    /// of their own along its normal.
     fn surface_velocities(&self, s: &Simulation<S>, contact: &Contact<S>) -> [S::Vector; 2] {
         std::array::from_fn(|side| {
             let body = contact.bodies[side] as usize;
@@ -169,9 +169,9 @@ impl<S: Space> Process<S> for ThermalExpansion<S> {
         "thermal expansion"
     }
 
-    /// Gives bodies of finite elements the free strain of the step: that of their temperatures at its
-    /// start, or where heat makes one step for several of the mechanics the same part of the way
-    /// there in each of them.
+    /// Gives bodies of finite elements the free strain of the step: that of their temperatures at
+    /// its start, or where heat makes one step for several of the mechanics the same part of the
+    /// way there in each of them.
     fn before_detection(&mut self, s: &mut Simulation<S>) -> Result<(), ProcessError> {
         let begun = has_begun(&self.heat, s);
         let Some(state) = s.state.heat.as_mut().filter(|_| begun) else {

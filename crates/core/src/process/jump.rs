@@ -1,4 +1,5 @@
-//! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of each jump.
+//! Cycle jumps in a run: how many cycles each computed cycle represents, and the error control of
+//! each jump.
 
 use super::cycle::{CycleClock, RubbedBody};
 pub use super::jump_summary::{Jump, JumpSummary, Point};
@@ -12,7 +13,8 @@ use crate::step::{Simulation, StepReport};
 use crate::wear::jump::{Amounts, carried, error, growth, left, misplaced, next_length, parts};
 use serde::{Deserialize, Serialize};
 
-/// Jumps over the cycles of a friction test: some computed cycles stand for many, see [`crate::wear::jump`].
+/// Jumps over the cycles of a friction test: some computed cycles stand for many, see
+/// [`crate::wear::jump`].
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct JumpSpec {
@@ -20,16 +22,16 @@ pub struct JumpSpec {
     pub after: u32,
     /// Maximum number of cycles that one computed cycle represents.
     pub at_most: u32,
-    /// Target error of a jump, from which the length of the next one follows: relative to what the jump
-    /// adds, and for misplaced volume relative to the scar after `cycles` (without `cycles`, to the current
-    /// scar).
+    /// Target error of a jump, from which the length of the next one follows: relative to what the
+    /// jump adds, and for misplaced volume relative to the scar after `cycles` (without `cycles`,
+    /// to the current scar).
     pub tolerance: f64,
     /// Number of cycles computed one by one after each jump, which check it.
     pub control: u32,
     /// Largest increase of the damage of a bond in a jump.
     pub growth: f64,
-    /// Number of cycles after which the run ends, including those jumped over; by default it ends at
-    /// `time.end`.
+    /// Number of cycles after which the run ends, including those jumped over; by default it ends
+    /// at `time.end`.
     pub cycles: Option<u32>,
 }
 
@@ -49,9 +51,9 @@ impl Default for JumpSpec {
 /// Fraction of the remaining run that a jump may take.
 const TAPER: f64 = 1.0 / 3.0;
 
-/// Safety factor on the sum of the estimated errors: the parabola underestimates the error of growth that
-/// accelerates within a jump. For the fatigue bond the error of whole runs was up to 1.47 times the sum
-/// (docs/wear.md).
+/// Safety factor on the sum of the estimated errors: the parabola underestimates the error of
+/// growth that accelerates within a jump. For the fatigue bond the error of whole runs was up to
+/// 1.47 times the sum (docs/wear.md).
 const SAFETY: f64 = 1.5;
 
 /// A jump that waits for its control cycles.
@@ -75,7 +77,8 @@ pub struct Jumps {
     test: RubbedBody,
     /// Volume worn off first bodies and off grains (m^3; m^3/m).
     worn: (f64, f64),
-    /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far (J; J/m).
+    /// Number of the cycle whose work is summed up, and the work of the rubbed body in it so far
+    /// (J; J/m).
     current: (u32, f64),
     /// Its tangential force in the last step (N; N/m).
     force: f64,
@@ -112,8 +115,8 @@ pub struct Jumps {
 }
 
 impl Jumps {
-    /// Begins at the current state: with the cycles of the test, the body that is rubbed, and the steps of a cycle and of the whole
-    /// run.
+    /// Begins at the current state: with the cycles of the test, the body that is rubbed, and the
+    /// steps of a cycle and of the whole run.
     pub fn new<S: Space>(
         spec: JumpSpec,
         clock: CycleClock,
@@ -179,7 +182,8 @@ impl Jumps {
         self.clock.period.unwrap_or(0.0)
     }
 
-    /// Share of the current cycle that is done. A cycle that was closed with the last step is among those represented.
+    /// Share of the current cycle that is done. A cycle that was closed with the last step is among
+    /// those represented.
     fn open_share(&self, time: f64) -> f64 {
         let share = self.clock.share(time);
         if share < 1.0 { share } else { 0.0 }
@@ -252,8 +256,8 @@ impl Jumps {
     /// Compares a jump with the adjacent cycles, and computes the length of the next.
     fn judge<S: Space>(&mut self, s: &Simulation<S>, now: &Amounts, pending: &Pending) {
         let n = f64::from(pending.cycles);
-        // Cycles are counted from the one before the jump; the mean of those after it represents their
-        // midpoint.
+        // Cycles are counted from the one before the jump; the mean of those after it represents
+        // their midpoint.
         let control = f64::from(pending.computed);
         let middle = 0.5 * (control - 1.0);
         let after = n + 1.0 + middle;
@@ -308,8 +312,8 @@ impl Jumps {
         self.length = next_length(n, worst, self.spec.tolerance);
     }
 
-    /// Returns the number of cycles that the next cycle represents, limited by the error, the growth of
-    /// damage, and the remaining run.
+    /// Returns the number of cycles that the next cycle represents, limited by the error, the
+    /// growth of damage, and the remaining run.
     fn next<S: Space>(&mut self, s: &Simulation<S>) -> u32 {
         // A jump and its control cycles must fit before the end.
         let [cycle, run] = self.steps;
@@ -327,8 +331,8 @@ impl Jumps {
         };
         let mut most = self.length.min(by_damage);
         if let Some(cycles) = self.spec.cycles {
-            // The last jumps become shorter and shorter, since each corrects the volume misplaced by the one
-            // before it.
+            // The last jumps become shorter and shorter, since each corrects the volume misplaced
+            // by the one before it.
             let still = cycles.saturating_sub(self.represented + self.spec.control);
             most = most.min(f64::from(still) * TAPER);
         }
@@ -416,8 +420,8 @@ impl<S: Space> Process<S> for Jumps {
     }
 }
 
-/// What cycles change: volumes worn at the places of each scar, what was worn off grains, and the damage of the bonds, interface
-/// by interface.
+/// What cycles change: volumes worn at the places of each scar, what was worn off grains, and the
+/// damage of the bonds, interface by interface.
 fn amounts<S: Space>(s: &Simulation<S>, worn_third: f64) -> Amounts {
     let mut all: Amounts = Vec::new();
     for scar in &s.state.scars {

@@ -9,8 +9,8 @@ pub struct Jump {
     pub after: u32,
     /// Number of cycles that its computed cycle represents.
     pub cycles: u32,
-    /// Its error: the maximum over volumes and damage, relative to what it added, and over misplaced volume,
-    /// relative to the scar at the end of the run. See [`crate::wear::jump`].
+    /// Its error: the maximum over volumes and damage, relative to what it added, and over
+    /// misplaced volume, relative to the scar at the end of the run. See [`crate::wear::jump`].
     pub error: f64,
     /// Relative difference between the work of the cycles after it and that of the cycle before it.
     pub work_change: f64,
@@ -40,8 +40,9 @@ pub struct JumpSummary {
     pub asked_cycles: Option<u32>,
     /// Target error of a jump.
     pub tolerance: f64,
-    /// Estimated total error of all jumps plus the misplaced volume at the end, relative to the total wear
-    /// or growth of damage, whichever is worse; `None` where there is no reference value.
+    /// Estimated total error of all jumps plus the misplaced volume at the end, relative to the
+    /// total wear or growth of damage, whichever is worse; `None` where there is no reference
+    /// value.
     pub error_estimate: Option<f64>,
     /// Number of cycles of a jump that the run ended before it was checked.
     pub unchecked_cycles: u32,

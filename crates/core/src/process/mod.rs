@@ -7,8 +7,8 @@
 //!        ─► laws, solve, commit ─► after_solve ─► ledger, move ─► after_move
 //! then:  (observers look at the step) ─► between_steps ─► the next step
 //! ```
-//! Phases, imposed motion, servo pressures and gravity belong to [`crate::step::control`]: they set velocities and forces whose
-//! work the step itself books.
+//! Phases, imposed motion, servo pressures and gravity belong to [`crate::step::control`]: they set
+//! velocities and forces whose work the step itself books.
 
 pub mod circuit;
 pub mod cycle;

@@ -1,17 +1,18 @@
 //! Recession: worn surfaces are lowered by the depth of their scars.
 //!
-//! What a step wears off is put on the scars with the closest points of its contacts, at q_m; that of a contact on a mean place on all vertices below
-//! the facets of its point ([`crate::geometry::mortar`]). The surfaces fall after the step's
-//! motion: the gap that opens is met by the next step's detection. Nobody does work in between: a load that
-//! sinks into the gap gives its potential energy in the next step, as it does over any open gap.
+//! What a step wears off is put on the scars with the closest points of its contacts, at q_m; that
+//! of a contact on a mean place on all vertices below the facets of its point
+//! ([`crate::geometry::mortar`]). The surfaces fall after the step's motion: the gap that opens is
+//! met by the next step's detection. Nobody does work in between: a load that sinks into the gap
+//! gives its potential energy in the next step, as it does over any open gap.
 
 use super::{Process, ProcessError};
 use crate::geometry::space::Space;
 use crate::step::{Simulation, StepError, StepReport};
 use crate::wear::scar::{Scar, closest_point};
 
-/// Puts what contacts wear off on the scars of a simulation, and lowers its surfaces. It carries nothing: the scars are part of
-/// the state of the simulation.
+/// Puts what contacts wear off on the scars of a simulation, and lowers its surfaces. It carries
+/// nothing: the scars are part of the state of the simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Recession;
 

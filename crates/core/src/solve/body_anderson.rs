@@ -1,7 +1,7 @@
-//! Anderson acceleration of the Gauss-Seidel iteration over bodies, between convergence tests. At each failed test the
-//! impulses are extrapolated and the velocities recomputed. The iterations between two tests count as one
-//! application of the fixed-point map, so that the cost of an extrapolation, about three iterations, is
-//! spread over ten.
+//! Anderson acceleration of the Gauss-Seidel iteration over bodies, between convergence tests. At
+//! each failed test the impulses are extrapolated and the velocities recomputed. The iterations
+//! between two tests count as one application of the fixed-point map, so that the cost of an
+//! extrapolation, about three iterations, is spread over ten.
 
 use super::extrapolation::{Extrapolation, Safeguard};
 use super::form::Problem;
@@ -39,7 +39,8 @@ impl Default for BodyAnderson {
 }
 
 impl BodyAnderson {
-    /// Extrapolates after a failed test with the given squared residual; returns whether it changed the impulses.
+    /// Extrapolates after a failed test with the given squared residual; returns whether it changed
+    /// the impulses.
     pub fn extrapolate<S: Space>(&mut self, problem: &mut Problem<S>, residual: f64) -> bool {
         if self.paused > 0 {
             self.paused -= 1;
@@ -85,7 +86,8 @@ mod tests {
     use crate::solve::form::ContactForm;
     use nalgebra::{Matrix1, Vector1, Vector2};
 
-    /// It begins with the second call, is patient for ten tests without progress, and then rests for six.
+    /// It begins with the second call, is patient for ten tests without progress, and then rests
+    /// for six.
     #[test]
     fn it_rests_where_it_does_not_help() {
         let mut problem = Problem::<Dim2>::default();

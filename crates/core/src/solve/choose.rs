@@ -1,12 +1,13 @@
 //! Choice of the method that solves a step.
 //!
-//! The Gauss-Seidel iteration over bodies is matrix-free and almost always sufficient. [`Method::Auto`] runs
-//! it for the estimated cost of twenty factorisations of W (forty at a loose tolerance), then tries Newton
-//! on the assembled W, then once the interior point if Newton failed and the contact set is not hyperstatic,
-//! and then alternates longer runs of Gauss-Seidel with Newton until one of them converges. For a
-//! hyperstatic set Newton starts ten times later. If neither helped, they start later in the following
-//! steps, until one of them helps again. All lengths follow from problem sizes, not from timings, so that a
-//! case takes the same path on any machine.
+//! The Gauss-Seidel iteration over bodies is matrix-free and almost always sufficient.
+//! [`Method::Auto`] runs it for the estimated cost of twenty factorisations of W (forty at a loose
+//! tolerance), then tries Newton on the assembled W, then once the interior point if Newton failed
+//! and the contact set is not hyperstatic, and then alternates longer runs of Gauss-Seidel with
+//! Newton until one of them converges. For a hyperstatic set Newton starts ten times later. If
+//! neither helped, they start later in the following steps, until one of them helps again. All
+//! lengths follow from problem sizes, not from timings, so that a case takes the same path on any
+//! machine.
 
 use super::chosen::{Attempt, SolvePath, hyperstaticity};
 use super::form::{ContactForm, Problem};
@@ -22,31 +23,34 @@ use crate::geometry::space::{Space, VectorLike};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Contacts of a problem whose start is judged before the first iteration, which costs about one more: of fewer, what is undetermined is sought
-/// in every step ([`super::sticking`]), and an iteration is often exact.
+/// Contacts of a problem whose start is judged before the first iteration, which costs about one
+/// more: of fewer, what is undetermined is sought in every step ([`super::sticking`]), and an
+/// iteration is often exact.
 const JUDGED_FIRST: RangeInclusive<usize> = sticking::SMALL + 1..=sticking::MOST;
 
-/// Share of the tolerance up to which a start is left as it is. Iterations in one order may not contract: what is left of rounding in a body that
-/// rests would grow from step to step, up to the tolerance.
+/// Share of the tolerance up to which a start is left as it is. Iterations in one order may not
+/// contract: what is left of rounding in a body that rests would grow from step to step, up to the
+/// tolerance.
 const AT_REST: f64 = 1e-3;
 
 /// Cost of Gauss-Seidel before Newton in factorisations, at a loose and at a tight tolerance.
 const LOOSE: f64 = 40.0;
 const TIGHT: f64 = 20.0;
-/// Time of a dense factorisation as a share of a sparse one of as many entries: measured on `cases/cylinder_on_flat_fretting.ron`, some 80
-/// contacts of two systems.
+/// Time of a dense factorisation as a share of a sparse one of as many entries: measured on
+/// `cases/cylinder_on_flat_fretting.ron`, some 80 contacts of two systems.
 const DENSE: f64 = 1.0 / 6.0;
-/// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one case of
-/// three.
+/// Factor on the iterations for a hyperstatic set, where Newton takes more steps and fails in one
+/// case of three.
 const HYPERSTATIC: u32 = 10;
 /// Maximum number of unknowns to factorise.
 const MAX_FACTORISED: usize = 60_000;
 /// Number of Newton steps of the first attempt.
 const NEWTON: u32 = 40;
-/// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as in a
-/// column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
+/// Below this hyperstaticity Newton fails not for lack of rank but because of slow propagation, as
+/// in a column, and the interior point is tried. Above it, that failed in 7 attempts of 8.
 const DETERMINED: f64 = 0.95;
-/// How often a method that factorises is asked for a smaller error, and where contacts act on systems.
+/// How often a method that factorises is asked for a smaller error, and where contacts act on
+/// systems.
 const ATTEMPTS: [u32; 2] = [4, 20];
 /// Maximum number of interior-point steps.
 const INTERIOR: u32 = 120;
@@ -56,9 +60,11 @@ const INTERIOR: u32 = 120;
 pub struct AutoState {
     /// Factor on the number of iterations before Newton.
     patience: f64,
-    /// Whether the interior point converged in the last step in which Newton failed; it is then tried first.
+    /// Whether the interior point converged in the last step in which Newton failed; it is then
+    /// tried first.
     interior_first: bool,
-    /// How often the interior point is still to be skipped, and was to be skipped after its last failure.
+    /// How often the interior point is still to be skipped, and was to be skipped after its last
+    /// failure.
     passed_over: [u32; 2],
     /// When another solution is sought.
     pub(super) search: Search,
@@ -86,8 +92,8 @@ impl AutoState {
         self.search.begin_step();
     }
 
-    /// Returns whether to try the interior point: after each failure it is skipped twice as often, at most
-    /// 64 times.
+    /// Returns whether to try the interior point: after each failure it is skipped twice as often,
+    /// at most 64 times.
     fn interior_is_due(&mut self) -> bool {
         let due = self.passed_over[0] == 0;
         self.passed_over[0] = self.passed_over[0].saturating_sub(1);
@@ -195,8 +201,8 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance, the method
-    /// continues.
+    /// Solves by one method. If the error recomputed over bodies is slightly above the tolerance,
+    /// the method continues.
     fn solve_by(&self, problem: &mut Problem<S>, method: Method) -> Report {
         let mut report = nlgs::arrange(problem, self.options);
         let (tolerance, most) = (self.options.tolerance, self.options.max_iterations);
@@ -208,8 +214,9 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Improves the solution until its error over bodies is within the tolerance, each time by that much more in the measure of the
-    /// method, which has not the tractions of systems in it; in some iterations and attempts at most.
+    /// Improves the solution until its error over bodies is within the tolerance, each time by that
+    /// much more in the measure of the method, which has not the tractions of systems in it; in
+    /// some iterations and attempts at most.
     fn improve_until(
         &self,
         problem: &mut Problem<S>,
@@ -217,8 +224,9 @@ impl<S: Space> SolveContext<'_, S> {
         method: Method,
         (mut tolerance, most, attempts): (f64, u32, u32),
     ) {
-        // Error that an attempt must leave at most, over that before; attempts in a row that may fail to; and the least factor on the
-        // tolerance: one that falls faster is below rounding before the method has answered to it.
+        // Error that an attempt must leave at most, over that before; attempts in a row that may
+        // fail to; and the least factor on the tolerance: one that falls faster is below rounding
+        // before the method has answered to it.
         const LESS: f64 = 0.9;
         const STALLED: u32 = 2;
         const FALLS: f64 = 1e-2;
@@ -231,15 +239,16 @@ impl<S: Space> SolveContext<'_, S> {
             let next = self.improve(problem, method, tolerance, left);
             left = left.saturating_sub(next.iterations);
             report.add(&next);
-            // One that had nothing to do is not at its end: its own measure lacks a part of the error.
+            // One that had nothing to do is not at its end: its own measure lacks a part of the
+            // error.
             let less = report.error < LESS * before || next.iterations == 0;
             stalled = if less { 0 } else { stalled + 1 };
             tolerance *= 0.3 * (self.options.tolerance / report.error).clamp(FALLS, 1.0);
         }
     }
 
-    /// Whether the impulses grew in this solve, beyond what shifts of velocities and bonds explain. Otherwise bodies hold each other: at rest
-    /// velocities are rounding errors.
+    /// Whether the impulses grew in this solve, beyond what shifts of velocities and bonds explain.
+    /// Otherwise bodies hold each other: at rest velocities are rounding errors.
     fn grew(&self, problem: &Problem<S>) -> bool {
         /// Growth, squared: a load that comes in one step, by whatever wedges, is far below it.
         const GROWTH: f64 = 1e12;
@@ -264,8 +273,8 @@ impl<S: Space> SolveContext<'_, S> {
         now > GROWTH * explained
     }
 
-    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from nothing: they are finite, say where bodies close
-    /// in, and do not grow from step to step.
+    /// Ends a solve whose impulses grew without bound, with those of a few sweeps from nothing:
+    /// they are finite, say where bodies close in, and do not grow from step to step.
     fn give_up(&self, problem: &mut Problem<S>, so_far: &Report) -> Report {
         const SWEEPS: u32 = 10;
         let impulses = vec![Some(S::Vector::zero()); self.forms.len()];
@@ -288,7 +297,8 @@ impl<S: Space> SolveContext<'_, S> {
         problem.adopt(&impulses, &moments);
     }
 
-    /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they cost.
+    /// Solves by Gauss-Seidel, and by the methods that factorise where it takes longer than they
+    /// cost.
     fn auto(&self, problem: &mut Problem<S>, auto_state: &mut AutoState) -> Report {
         let options = self.options;
         if JUDGED_FIRST.contains(&problem.contacts()) {
@@ -358,14 +368,16 @@ impl<S: Space> SolveContext<'_, S> {
         report
     }
 
-    /// Returns the number of iterations of Gauss-Seidel before Newton, whose cost is that of some factorisations.
+    /// Returns the number of iterations of Gauss-Seidel before Newton, whose cost is that of some
+    /// factorisations.
     fn sweeps_before_newton(&self, problem: &Problem<S>, auto_state: &AutoState) -> u32 {
         // Estimate: a contact between balls shares a body with about eight others.
         let unknowns = problem.contacts() * S::D;
         let (sparse, dense) = ((9 * S::D * unknowns) as f64, problem.coupled_by_systems());
         let mut per = sweeps_per_factorisation(sparse + dense, problem.contacts() as f64);
         if dense > 0.0 {
-            // The blocks of a system are dense: their factorisation costs a sixth of that of as many sparse entries.
+            // The blocks of a system are dense: their factorisation costs a sixth of that of as
+            // many sparse entries.
             let parts = sparse.powf(1.5) + DENSE * dense.powf(1.5);
             per *= parts / (sparse + dense).powf(1.5);
         }
@@ -378,8 +390,8 @@ impl<S: Space> SolveContext<'_, S> {
         sweeps.clamp(200.0, f64::from(u32::MAX / 2)) as u32
     }
 
-    /// Alternates attempts of Newton, of the interior point once if it is due, and longer runs of Gauss-Seidel, until
-    /// one of them converges.
+    /// Alternates attempts of Newton, of the interior point once if it is due, and longer runs of
+    /// Gauss-Seidel, until one of them converges.
     fn alternate(
         &self,
         problem: &mut Problem<S>,
@@ -403,8 +415,8 @@ impl<S: Space> SolveContext<'_, S> {
                 interior = false;
             }
             let steps = NEWTON << round.min(16);
-            // The iterate of Gauss-Seidel may be a poor start for Newton: every other attempt starts from
-            // the initial impulses.
+            // The iterate of Gauss-Seidel may be a poor start for Newton: every other attempt
+            // starts from the initial impulses.
             let anew = round % 2 == 1;
             if !ended(report) {
                 newton = self.attempt(problem, report, Method::Newton, steps, anew);
@@ -443,8 +455,8 @@ impl<S: Space> SolveContext<'_, S> {
         tried
     }
 
-    /// Tries a method that factorises, from the current impulses or from those of the forms; keeps the
-    /// solution with the smaller error.
+    /// Tries a method that factorises, from the current impulses or from those of the forms; keeps
+    /// the solution with the smaller error.
     fn attempt(
         &self,
         problem: &mut Problem<S>,
@@ -489,8 +501,8 @@ impl<S: Space> SolveContext<'_, S> {
     }
 }
 
-/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work, or where W cannot be had as a
-/// matrix.
+/// The local form of a problem of Coulomb contacts: W, q, mu; none where another law is at work, or
+/// where W cannot be had as a matrix.
 pub fn coulomb<S: Space>(
     problem: &Problem<S>,
     forms: &[ContactForm<S>],

@@ -52,12 +52,14 @@ impl SolvePath {
     }
 }
 
-/// Returns the number of unknown impulses of active contacts divided by the number of degrees of freedom of
-/// the bodies they act on. Above 1 the set is hyperstatic: the motion does not determine the impulses.
+/// Returns the number of unknown impulses of active contacts divided by the number of degrees of
+/// freedom of the bodies they act on. Above 1 the set is hyperstatic: the motion does not determine
+/// the impulses.
 ///
-/// A frictionless contact has one unknown. Rotations count where a contact can rotate the body, by friction
-/// or by a lever arm. The impulse of a bond follows from its opening and is no unknown. Of a dynamical system the motions of the
-/// nodes count that contacts act on. The result is 0 without active contacts.
+/// A frictionless contact has one unknown. Rotations count where a contact can rotate the body, by
+/// friction or by a lever arm. The impulse of a bond follows from its opening and is no unknown. Of
+/// a dynamical system the motions of the nodes count that contacts act on. The result is 0 without
+/// active contacts.
 pub fn hyperstaticity<S: Space>(problem: &Problem<S>, forms: &[ContactForm<S>]) -> f64 {
     /// Flags of a body with a contact, and of one that contacts can rotate.
     const TOUCHED: u8 = 1;

@@ -1,5 +1,5 @@
-//! Anderson extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011), with a
-//! safeguard against extrapolated points that increase the residual; see [`Safeguard`].
+//! Anderson extrapolation of a fixed-point iteration p -> g(p) (type II: Walker and Ni 2011), with
+//! a safeguard against extrapolated points that increase the residual; see [`Safeguard`].
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -63,8 +63,8 @@ impl Memory {
                 gram[j] += d * df[j];
                 along[j] += f * df[j];
             }
-            // Written last, to avoid a store-forwarding stall: a vector load just after a scalar store waits
-            // for it.
+            // Written last, to avoid a store-forwarding stall: a vector load just after a scalar
+            // store waits for it.
             dg[k] = g - g0;
             df[k] = d;
             own.0 += d * d;
@@ -145,8 +145,9 @@ pub enum Safeguard {
     /// Go back to the point before the extrapolation, and drop the oldest difference when full: for
     /// expensive maps, where no application should be wasted.
     Back,
-    /// Restart with an empty memory from the result of the map: one application damps most of the error of a
-    /// bad extrapolation, and differences across changes of contact status do not persist.
+    /// Restart with an empty memory from the result of the map: one application damps most of the
+    /// error of a bad extrapolation, and differences across changes of contact status do not
+    /// persist.
     Anew,
 }
 

@@ -1,10 +1,12 @@
 //! The points of a large system that carry impulses.
 //!
-//! An impulse on a node changes the velocities of all nodes of its system, and its column of the compliance would be read from memory in
-//! each update of a contact. Contacts act on points, weighted sums of nodes. Between two tests of convergence sweeps update the velocities of
-//! loaded points alone, by blocks of their own compliance that fit in a cache; those of the others stay as they were at the last test, and are
-//! found exactly where a point is loaded for the first time and for all nodes at the next test. Where contacts act on more points than nodes,
-//! it is the nodes that sweeps follow, so that the blocks never have more columns than there are nodes.
+//! An impulse on a node changes the velocities of all nodes of its system, and its column of the
+//! compliance would be read from memory in each update of a contact. Contacts act on points,
+//! weighted sums of nodes. Between two tests of convergence sweeps update the velocities of loaded
+//! points alone, by blocks of their own compliance that fit in a cache; those of the others stay as
+//! they were at the last test, and are found exactly where a point is loaded for the first time and
+//! for all nodes at the next test. Where contacts act on more points than nodes, it is the nodes
+//! that sweeps follow, so that the blocks never have more columns than there are nodes.
 
 use crate::geometry::space::{Space, VectorLike};
 use pulp::Arch;
@@ -15,15 +17,16 @@ const NONE: u32 = u32::MAX;
 /// Points for which columns have place beyond those that are loaded when they are found.
 const SPARE: usize = 16;
 
-/// Adds what an impulse does to velocities: `rows` has one row for each axis of the impulse (1/kg), `velocities` are those of nodes one after
-/// the other (m/s).
+/// Adds what an impulse does to velocities: `rows` has one row for each axis of the impulse (1/kg),
+/// `velocities` are those of nodes one after the other (m/s).
 pub(super) fn add_response<'a, S: Space>(
     velocities: &mut [f64],
     rows: impl Fn(usize) -> &'a [f64],
     impulse: &S::Vector,
 ) {
     let ([a, b], [p, q]) = ([rows(0), rows(1)], [impulse[0], impulse[1]]);
-    // Compiled for wide registers where the processor has them; products and sums are rounded one by one all the same.
+    // Compiled for wide registers where the processor has them; products and sums are rounded one
+    // by one all the same.
     if S::D == 2 {
         Arch::new().dispatch(|| {
             for ((v, a), b) in velocities.iter_mut().zip(a).zip(b) {
@@ -40,7 +43,8 @@ pub(super) fn add_response<'a, S: Space>(
     }
 }
 
-/// Weighted sums of the nodes of a system, told by their index: first each node alone, then those that are added.
+/// Weighted sums of the nodes of a system, told by their index: first each node alone, then those
+/// that are added.
 #[derive(Clone, Debug)]
 pub(super) struct Points {
     /// Where the terms of each point end.
@@ -122,7 +126,8 @@ impl Points {
     }
 }
 
-/// See the module. `column` gives the compliance of all nodes for an impulse on the node at a place, see [`crate::bodies::Compliance`].
+/// See the module. `column` gives the compliance of all nodes for an impulse on the node at a
+/// place, see [`crate::bodies::Compliance`].
 #[derive(Clone, Debug)]
 pub(super) struct Loaded<S: Space> {
     points: Vec<u32>,
@@ -130,8 +135,9 @@ pub(super) struct Loaded<S: Space> {
     index: Vec<u32>,
     /// Velocities of loaded points, one after the other (m/s).
     velocity: Vec<f64>,
-    /// Compliance between loaded points, column by column and in it by axis of the impulse; a column is completed when an impulse needs it.
-    /// Columns beyond those of loaded points are memory of earlier steps.
+    /// Compliance between loaded points, column by column and in it by axis of the impulse; a
+    /// column is completed when an impulse needs it. Columns beyond those of loaded points are
+    /// memory of earlier steps.
     blocks: Vec<[Vec<f64>; 3]>,
     /// Impulses since the velocities of all nodes were found (N s).
     since: Vec<S::Vector>,
@@ -196,7 +202,8 @@ impl<S: Space> Loaded<S> {
         self.since[k] += *impulse;
     }
 
-    /// Adds an impulse (N s) and what it does to loaded points; `all` are the velocities of all nodes at the last test (m/s).
+    /// Adds an impulse (N s) and what it does to loaded points; `all` are the velocities of all
+    /// nodes at the last test (m/s).
     pub fn push<'a>(
         &mut self,
         point: u32,
@@ -218,8 +225,9 @@ impl<S: Space> Loaded<S> {
         self.since[k] += *impulse;
     }
 
-    /// Completes the column of a loaded point. One that just joined the others also gets the velocity that impulses since the last test give
-    /// it: the compliance is symmetric, so that its response to an impulse on another point is the response of that to one on it.
+    /// Completes the column of a loaded point. One that just joined the others also gets the
+    /// velocity that impulses since the last test give it: the compliance is symmetric, so that its
+    /// response to an impulse on another point is the response of that to one on it.
     fn complete<'a>(
         &mut self,
         k: usize,

@@ -2,8 +2,8 @@
 //!
 //! For every contact, with u = W p + u_free, p = p_sc + p_el:
 //! * p_el = -(a + B u), the single-valued part (bond stiffness and damping over the step);
-//! * 0 <= u_n + s_n perpendicular to p_sc,n + h c_n >= 0, with |p_sc,t| <= mu (p_sc,n + h c_n) + h c_t
-//!   opposite to the sliding velocity u_t + s_t.
+//! * 0 <= u_n + s_n perpendicular to p_sc,n + h c_n >= 0, with |p_sc,t| <= mu (p_sc,n + h c_n) + h
+//!   c_t opposite to the sliding velocity u_t + s_t.
 //!
 //! Body velocities are updated in place, so that applying an impulse costs O(1) per contact.
 pub mod accelerate;

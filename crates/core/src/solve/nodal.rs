@@ -1,4 +1,5 @@
-//! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and their compliance.
+//! Dynamical systems in the contact problem: the velocities of the nodes that contacts act on, and
+//! their compliance.
 
 use super::form::{ContactForm, Mobility, Place, Problem};
 use super::loaded::{Loaded, Points, add_response, vector};
@@ -8,10 +9,12 @@ use crate::bodies::{Compliance, TurningNode, block_of};
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-/// The nodes of a system that contacts of the step act on. The solver knows nothing else of it; the system finds the rest
-/// of its velocities from the impulses on these nodes once the problem is solved.
+/// The nodes of a system that contacts of the step act on. The solver knows nothing else of it; the
+/// system finds the rest of its velocities from the impulses on these nodes once the problem is
+/// solved.
 ///
-/// Copies share the compliance: a step that is solved several times hands copies of one to the problem.
+/// Copies share the compliance: a step that is solved several times hands copies of one to the
+/// problem.
 #[derive(Clone, Debug)]
 pub struct NodalSystem<S: Space> {
     /// Ids of the nodes in the system, in increasing order.
@@ -19,7 +22,8 @@ pub struct NodalSystem<S: Space> {
     /// Their velocities without contacts (m/s).
     pub free: Vec<S::Vector>,
     compliance: Columns<S>,
-    /// Velocities of all nodes, one after the other (m/s); of a large system those at the last [`Self::settle`].
+    /// Velocities of all nodes, one after the other (m/s); of a large system those at the last
+    /// [`Self::settle`].
     velocity: Vec<f64>,
     /// What contacts act on.
     points: Points,
@@ -27,11 +31,12 @@ pub struct NodalSystem<S: Space> {
     loaded: Option<Loaded<S>>,
 }
 
-/// Fewest nodes of a large system, of which sweeps follow loaded points alone. Below that all columns fit in a cache.
+/// Fewest nodes of a large system, of which sweeps follow loaded points alone. Below that all
+/// columns fit in a cache.
 const LARGE: usize = 64;
 
-/// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an impulse on one are read in a row in each
-/// update of a contact.
+/// Compliance of the nodes, by columns as in [`Compliance`]: the responses of all nodes to an
+/// impulse on one are read in a row in each update of a contact.
 #[derive(Clone, Debug)]
 enum Columns<S: Space> {
     /// Of the step, one after the other.
@@ -51,14 +56,15 @@ impl<S: Space> Columns<S> {
 }
 
 impl<S: Space> NodalSystem<S> {
-    /// Of all nodes of a compliance that the system keeps, with their free velocities (m/s). Contacts act on nodes whose columns are
-    /// there.
+    /// Of all nodes of a compliance that the system keeps, with their free velocities (m/s).
+    /// Contacts act on nodes whose columns are there.
     pub fn kept(compliance: Arc<Compliance<S>>, free: Vec<S::Vector>) -> Self {
         let nodes = compliance.nodes().to_vec();
         Self::with(nodes, free, Columns::Kept(compliance))
     }
 
-    /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by row (1/kg).
+    /// Of nodes in increasing order, with their free velocities (m/s) and their compliance, row by
+    /// row (1/kg).
     pub fn new(nodes: Vec<u32>, free: Vec<S::Vector>, compliance: &[S::Matrix]) -> Self {
         debug_assert!(nodes.is_sorted() && free.len() == nodes.len());
         debug_assert!(compliance.len() == nodes.len() * nodes.len());
@@ -114,18 +120,20 @@ impl<S: Space> NodalSystem<S> {
         all.map(S::Vector::from_slice).collect()
     }
 
-    /// Adds a weighted sum of its nodes, by their places in the list; gives the index of the point. A node alone is a point with its place.
+    /// Adds a weighted sum of its nodes, by their places in the list; gives the index of the point.
+    /// A node alone is a point with its place.
     pub(super) fn add_point(&mut self, terms: &[(u32, f64)]) -> u32 {
         self.points.add(terms)
     }
 
-    /// Whether sweeps follow loaded points alone, so that velocities are those of the last [`Self::settle`] elsewhere.
+    /// Whether sweeps follow loaded points alone, so that velocities are those of the last
+    /// [`Self::settle`] elsewhere.
     pub(super) fn is_large(&self) -> bool {
         self.loaded.is_some()
     }
 
-    /// The current velocity of a point (m/s). Of a large system it is exact for loaded points, and for the others after
-    /// [`Self::settle`].
+    /// The current velocity of a point (m/s). Of a large system it is exact for loaded points, and
+    /// for the others after [`Self::settle`].
     #[inline]
     pub(super) fn velocity(&self, point: u32) -> S::Vector {
         let Some(loaded) = &self.loaded else {
@@ -144,7 +152,8 @@ impl<S: Space> NodalSystem<S> {
         })
     }
 
-    /// Whether sweeps follow nodes and not points, of a large system on which contacts act on more points than nodes.
+    /// Whether sweeps follow nodes and not points, of a large system on which contacts act on more
+    /// points than nodes.
     pub(super) fn follows_nodes(&self) -> bool {
         self.points.outnumber_nodes()
     }
@@ -213,7 +222,8 @@ impl<S: Space> NodalSystem<S> {
 }
 
 impl<S: Space> Problem<S> {
-    /// Adds a dynamical system, before the contacts with it; systems are counted in the order in which they are added.
+    /// Adds a dynamical system, before the contacts with it; systems are counted in the order in
+    /// which they are added.
     pub fn push_system(&mut self, mut system: NodalSystem<S>) {
         if let (Some(loaded), Some(memory)) = (&mut system.loaded, self.loaded.pop()) {
             *loaded = memory;
@@ -231,8 +241,9 @@ impl<S: Space> Problem<S> {
         }
     }
 
-    /// Adds a contact of which a side is a dynamical system. The bodies of the form are those of detection; what the impulse
-    /// acts on is said by the sides. False, and nothing is added, where a side names a system or a node that was not pushed.
+    /// Adds a contact of which a side is a dynamical system. The bodies of the form are those of
+    /// detection; what the impulse acts on is said by the sides. False, and nothing is added, where
+    /// a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_between(&mut self, contact: &ContactForm<S>, sides: &[Side<S>; 2]) -> bool {
         let (mut rigid, mut points) = ([None; 2], [None; 2]);
@@ -289,8 +300,9 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by side of a system that turns the node that
-    /// turns with it. False, and nothing is added, where a side names a system or a node that was not pushed.
+    /// Adds the moments of a contact with a dynamical system, which was pushed with its nodes: by
+    /// side of a system that turns the node that turns with it. False, and nothing is added, where
+    /// a side names a system or a node that was not pushed.
     #[must_use]
     pub fn push_moment_between(
         &mut self,
@@ -318,7 +330,8 @@ impl<S: Space> Problem<S> {
         true
     }
 
-    /// The impulses that contacts have on the nodes of the systems (N s), by system, in the order of its nodes.
+    /// The impulses that contacts have on the nodes of the systems (N s), by system, in the order
+    /// of its nodes.
     pub fn node_impulses(&self) -> Vec<Vec<S::Vector>> {
         let rest = |system: &NodalSystem<S>| vec![S::Vector::zero(); system.nodes.len()];
         let mut impulses: Vec<Vec<S::Vector>> = self.systems.iter().map(rest).collect();

@@ -1,5 +1,5 @@
-//! What each method needs of a problem, and what a problem has: a method that cannot serve a problem is refused with a
-//! sentence, and `auto` passes it over.
+//! What each method needs of a problem, and what a problem has: a method that cannot serve a
+//! problem is refused with a sentence, and `auto` passes it over.
 
 use super::form::Problem;
 use super::local::solver::Method;
@@ -49,8 +49,8 @@ impl Method {
 }
 
 impl<S: Space> Problem<S> {
-    /// The most of W that can be had. The contacts of a dynamical system are all coupled: where there are too many of them for a
-    /// matrix, products are left.
+    /// The most of W that can be had. The contacts of a dynamical system are all coupled: where
+    /// there are too many of them for a matrix, products are left.
     pub fn operator(&self) -> Operator {
         if self.coupled_by_systems() > MAX_COUPLED {
             Operator::Products
@@ -129,8 +129,8 @@ mod tests {
         }
     }
 
-    /// Two contacts that press on each other a little: methods that say that products are enough for them solve it without the
-    /// matrix, the others leave it as it is.
+    /// Two contacts that press on each other a little: methods that say that products are enough
+    /// for them solve it without the matrix, the others leave it as it is.
     #[test]
     fn methods_work_with_what_they_ask_for() {
         let mut matrix = BlockMatrix::new(vec![[[1.0, 0.1], [0.1, 2.0]]; 2]);

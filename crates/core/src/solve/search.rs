@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Largest number of steps that are passed over after those that had no other solution, while no loaded contact that held begins to slide; and
-/// of steps without sliding until this is forgotten.
+/// Largest number of steps that are passed over after those that had no other solution, while no
+/// loaded contact that held begins to slide; and of steps without sliding until this is forgotten.
 const PASSED: i32 = 8;
 
 /// When a second solution is sought.
@@ -65,7 +65,8 @@ impl Search {
 mod tests {
     use super::*;
 
-    /// Steps are counted, not solves: after 1, 2, 4, 8, 8 steps without a result, whatever is solved in between.
+    /// Steps are counted, not solves: after 1, 2, 4, 8, 8 steps without a result, whatever is
+    /// solved in between.
     #[test]
     fn searches_are_put_off_by_steps() {
         let mut search = Search::default();

@@ -1,20 +1,24 @@
 //! Which of several solutions: contacts that hold go on to hold, where a solution lets them.
 //!
-//! Where contacts are hyperstatic, Coulomb's law may have several solutions for one step. A block pinched at both ends by its friction may
-//! hang, or turn about one end that carries all of the load while the other slides. A sweep finds the one that the order of the contacts leads
-//! to: the first contact takes the load before the others are asked. Where contacts begin to slide, those that are connected with them through
-//! bodies that can move ([`super::connected`]) are solved a second time, as a problem of their own, from the impulses at the start of the step, by
-//! a gradient method, whose impulses follow from all contacts at once. It minimises the energy
+//! Where contacts are hyperstatic, Coulomb's law may have several solutions for one step. A block
+//! pinched at both ends by its friction may hang, or turn about one end that carries all of the
+//! load while the other slides. A sweep finds the one that the order of the contacts leads to: the
+//! first contact takes the load before the others are asked. Where contacts begin to slide, those
+//! that are connected with them through bodies that can move ([`super::connected`]) are solved a
+//! second time, as a problem of their own, from the impulses at the start of the step, by a
+//! gradient method, whose impulses follow from all contacts at once. It minimises the energy
 //!
 //! E = p.W p/2 + p.(q + s),   the kinetic energy of the step, seen from the imposed motions,
 //!
-//! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a solution that sticks have the least energy, where
-//! there is one. Of both solutions the one of less energy is taken; there may be others, which neither method finds.
+//! over impulses in the cones, less what sliding dilates; of all impulses in the cones those of a
+//! solution that sticks have the least energy, where there is one. Of both solutions the one of
+//! less energy is taken; there may be others, which neither method finds.
 //!
-//! A set of more than [`SMALL`] contacts is solved again after steps without a result ([`super::search`]) only, one of more than [`MOST`] where
-//! controlled bodies squeeze a body that begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not, nor
-//! those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide in a set of rigid contacts that is not solved again, it
-//! is told ([`Problem::is_not_searched`]).
+//! A set of more than [`SMALL`] contacts is solved again after steps without a result
+//! ([`super::search`]) only, one of more than [`MOST`] where controlled bodies squeeze a body that
+//! begins to slide, or that slides and touched nothing before. Larger ones than [`LARGE`] are not,
+//! nor those with bonds, compliances or dynamical systems. Where a loaded contact begins to slide
+//! in a set of rigid contacts that is not solved again, it is told ([`Problem::is_not_searched`]).
 
 use super::choose::{AutoState, SolveContext};
 use super::connected::{Connected, freedoms_of};
@@ -28,33 +32,39 @@ use crate::lanes::LaneVector;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
-/// Contacts of a set up to which a second solution is sought in each step in which a contact begins to slide, and up to which in some of these
-/// steps: a second solve costs more, and in a large set that flows some contacts begin to slide in every step.
+/// Contacts of a set up to which a second solution is sought in each step in which a contact begins
+/// to slide, and up to which in some of these steps: a second solve costs more, and in a large set
+/// that flows some contacts begin to slide in every step.
 pub(super) const SMALL: usize = 64;
 pub(super) const MOST: usize = 256;
-/// Contacts of a set in which it is sought where controlled bodies let a body go that they might hold.
+/// Contacts of a set in which it is sought where controlled bodies let a body go that they might
+/// hold.
 const LARGE: RangeInclusive<usize> = MOST + 1..=16_384;
-/// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of the set.
+/// Iterations of the gradient method, and sweeps from its end: at least, and for each contact of
+/// the set.
 const ITERATIONS: u32 = 300;
 const OF_CONTACT: u32 = 10;
-/// Tolerance of the solution of a set over that of the step, so that all sets together are within that.
+/// Tolerance of the solution of a set over that of the step, so that all sets together are within
+/// that.
 const FINER: f64 = 0.5;
-/// Relative velocity of a contact that slides, over the largest of its set without contacts; slower ones are the error of a solution.
+/// Relative velocity of a contact that slides, over the largest of its set without contacts; slower
+/// ones are the error of a solution.
 const SLIDES: f64 = 1e-3;
 /// Share of the friction bound from which a contact is at it.
 const AT_BOUND: f64 = 1.0 - 1e-6;
 /// Share of the friction bound up to which a contact held at the start of the step.
 const HELD: f64 = 1.0 - 1e-3;
-/// Share of the freedoms of bodies from which impulses of their contacts are taken to be undetermined: friction may be so beside freedoms that no
-/// contact holds.
+/// Share of the freedoms of bodies from which impulses of their contacts are taken to be
+/// undetermined: friction may be so beside freedoms that no contact holds.
 const DETERMINED: f64 = 0.75;
 /// Share of the largest normal impulse of a set from which a contact is loaded.
 const LOADED: f64 = 1e-3;
-/// Difference of the energies of two solutions, over the work of the step, from which the lower one is taken, and which their errors do
-/// not make.
+/// Difference of the energies of two solutions, over the work of the step, from which the lower one
+/// is taken, and which their errors do not make.
 const LOWER: f64 = 1e-6;
 const DIFFERS: f64 = 1e-3;
-/// The same where a loaded contact slides in one of both that holds in the other: one grain of many that slips has little energy.
+/// The same where a loaded contact slides in one of both that holds in the other: one grain of many
+/// that slips has little energy.
 const LOWER_HOLDS: f64 = 1e-9;
 /// No place in a list.
 const NONE: u32 = u32::MAX;
@@ -131,7 +141,8 @@ fn parts<S: Space>(problem: &Problem<S>, form: &ContactForm<S>) -> [f64; 2] {
     [form.normal.dot(&u) + form.shift_n, slip.norm()]
 }
 
-/// Whether friction is at its bound; where nothing is carried, too: the others may have been given all of the load.
+/// Whether friction is at its bound; where nothing is carried, too: the others may have been given
+/// all of the load.
 fn at_bound<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>) -> bool {
     let p = problem.local_impulse(problem.places[k as usize]);
     form.friction > 0.0 && p.t.norm() >= AT_BOUND * bound(form, p.n)
@@ -156,7 +167,8 @@ fn does<S: Space>(problem: &Problem<S>, k: u32, form: &ContactForm<S>, least: f6
     }
 }
 
-/// Largest relative velocity of contacts without impulses (m/s), times the share from which one slides.
+/// Largest relative velocity of contacts without impulses (m/s), times the share from which one
+/// slides.
 fn least_slip<'a, S: Space>(
     problem: &Problem<S>,
     forms: impl Iterator<Item = &'a ContactForm<S>>,
@@ -172,7 +184,8 @@ fn is_undetermined(unknowns: usize, freedoms: usize) -> bool {
     unknowns as f64 >= DETERMINED * freedoms as f64
 }
 
-/// Whether impulses of contacts, D of each with friction and one of each without, may be more than the freedoms of their bodies determine.
+/// Whether impulses of contacts, D of each with friction and one of each without, may be more than
+/// the freedoms of their bodies determine.
 fn outnumber<'a, S: Space>(
     problem: &Problem<S>,
     forms: impl Iterator<Item = &'a ContactForm<S>>,
@@ -189,7 +202,8 @@ fn outnumber<'a, S: Space>(
     is_undetermined(unknowns, touched.values().sum())
 }
 
-/// Whether a contact at its friction bound begins to slide: it carries a load, carried one before by its impulse, and held.
+/// Whether a contact at its friction bound begins to slide: it carries a load, carried one before
+/// by its impulse, and held.
 pub fn begins_to_slide<S: Space>(
     form: &ContactForm<S>,
     before: &S::Vector,
@@ -206,9 +220,10 @@ fn held_by<S: Space>(form: &ContactForm<S>, impulse: &S::Vector, share: f64) -> 
 }
 
 impl<S: Space> Problem<S> {
-    /// Whether one of these contacts, at their friction bound since this step, slides and is of a set that is too large to search in every step and was not
-    /// searched in this one, and in which impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set, which determine
-    /// them. And whether one of them is of a body that controlled ones squeeze.
+    /// Whether one of these contacts, at their friction bound since this step, slides and is of a
+    /// set that is too large to search in every step and was not searched in this one, and in which
+    /// impulses outnumber the freedoms of bodies. Not where springs or bonds are in such a set,
+    /// which determine them. And whether one of them is of a body that controlled ones squeeze.
     pub fn is_not_searched(
         &mut self,
         forms: &[ContactForm<S>],
@@ -246,7 +261,8 @@ impl<S: Space> Problem<S> {
 }
 
 impl<S: Space> SolveContext<'_, S> {
-    /// Takes another solution than that of the sweeps in each connected set of which one of less energy is found.
+    /// Takes another solution than that of the sweeps in each connected set of which one of less
+    /// energy is found.
     pub(super) fn prefer_sticking(
         &self,
         problem: &mut Problem<S>,
@@ -281,7 +297,8 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Whether a contact may slide: told by its impulse first, which costs little, then by its velocities.
+    /// Whether a contact may slide: told by its impulse first, which costs little, then by its
+    /// velocities.
     fn may_slide(&self, problem: &Problem<S>, k: u32) -> bool {
         let form = &self.forms[k as usize];
         if !form.shift_n.is_finite() || !at_bound(problem, k, form) {
@@ -324,7 +341,8 @@ impl<S: Space> SolveContext<'_, S> {
         small
     }
 
-    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies squeeze, or slides and was not squeezed before.
+    /// The [`LARGE`] sets in which a body begins to slide that controlled bodies squeeze, or slides
+    /// and was not squeezed before.
     fn letting_go(&self, problem: &Problem<S>, sets: &Connected) -> BTreeSet<usize> {
         let is_large = |set: usize| LARGE.contains(&sets.contacts(set));
         let several = &sets.of_several_controlled;
@@ -342,8 +360,9 @@ impl<S: Space> SolveContext<'_, S> {
             .collect()
     }
 
-    /// Whether another solution of a set is to be sought: where a contact begins to slide, and in steps that are `due` where some slide while
-    /// others hold or are new. Where all that carry a load go on to slide, friction is used up.
+    /// Whether another solution of a set is to be sought: where a contact begins to slide, and in
+    /// steps that are `due` where some slide while others hold or are new. Where all that carry a
+    /// load go on to slide, friction is used up.
     fn is_sought(&self, problem: &Problem<S>, of: &[u32], due: bool) -> bool {
         let form = |k: &u32| &self.forms[*k as usize];
         let least = least_slip(problem, of.iter().map(form));
@@ -427,8 +446,8 @@ impl<S: Space> SolveContext<'_, S> {
         }
     }
 
-    /// Solves a set again from the start of the step. Whether that ended in a solution; and if it has less energy, whether a contact slides in one of
-    /// both that holds a load in the other.
+    /// Solves a set again from the start of the step. Whether that ended in a solution; and if it
+    /// has less energy, whether a contact slides in one of both that holds a load in the other.
     fn find_lower(&self, alone: &mut Problem<S>) -> (bool, Option<(Report, bool)>) {
         let before = self.energy(alone)[0];
         let least = least_slip(alone, self.forms.iter());

@@ -7,8 +7,9 @@ use crate::geometry::algebra::{MatrixLike, VectorLike};
 use crate::geometry::space::Space;
 
 impl<S: Space> Simulation<S> {
-    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and its ball, point or surface; gives its index. The
-    /// bodies are [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
+    /// Adds a dynamical system to a scene that has not stepped, with a body for each contactor and
+    /// its ball, point or surface; gives its index. The bodies are
+    /// [`crate::bodies::Systems::bodies`]: other shapes may be added to them.
     ///
     /// Energy that it holds counts as work done on it before the start.
     pub fn add_system(&mut self, system: Box<dyn DynamicalSystem<S>>) -> usize {
@@ -26,8 +27,8 @@ impl<S: Space> Simulation<S> {
         self.features.insert(0, Box::new(feature));
     }
 
-    /// Gives driven bodies their imposed velocities at time zero, for code that inspects the scene before
-    /// the first step. The drives of the first phase are included.
+    /// Gives driven bodies their imposed velocities at time zero, for code that inspects the scene
+    /// before the first step. The drives of the first phase are included.
     pub fn set_in_motion(&mut self) {
         control::set_in_motion(self);
     }
@@ -39,9 +40,9 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s in 2D), and books the work in
-    /// the energy ledger. Degrees of freedom whose motion is imposed take none, nor does a body that stands for a contactor of a
-    /// dynamical system.
+    /// Gives a body an impulse (N s; N s/m in 2D) at its centre and an angular impulse (N m s; N s
+    /// in 2D), and books the work in the energy ledger. Degrees of freedom whose motion is imposed
+    /// take none, nor does a body that stands for a contactor of a dynamical system.
     pub fn apply_impulse(&mut self, body: usize, impulse: &S::Vector, angular: &S::Spin) {
         let bodies = &mut self.state.bodies;
         let before = bodies.energy_of(body);
@@ -54,8 +55,8 @@ impl<S: Space> Simulation<S> {
         self.state.energy.external_work += work;
     }
 
-    /// Removes a grain for good: it is at rest, has no contacts, and its bonds break. Its kinetic energy
-    /// becomes an entry of the energy ledger.
+    /// Removes a grain for good: it is at rest, has no contacts, and its bonds break. Its kinetic
+    /// energy becomes an entry of the energy ledger.
     pub fn remove_body(&mut self, body: usize) {
         let energy = self.state.bodies.energy_of(body);
         self.state.energy.carried += energy;

@@ -8,7 +8,8 @@ use crate::geometry::space::{Space, VectorLike};
 pub struct ContactForces<S: Space>(pub(super) Vec<(Key, S::Vector)>);
 
 impl<S: Space> ContactForces<S> {
-    /// Root of the sum of squares of the differences, over that of the forces, the larger of the two; 0 where there is none.
+    /// Root of the sum of squares of the differences, over that of the forces, the larger of the
+    /// two; 0 where there is none.
     pub fn change(&self, after: &Self) -> f64 {
         let (mut old, mut new) = (self.0.iter().peekable(), after.0.iter().peekable());
         let (mut difference, mut sums) = (0.0, [0.0; 2]);

@@ -1,7 +1,7 @@
 //! Simulations whose dimension is found at run time.
 //!
-//! [`Simulation::step`] and [`Simulation::detect`] look it up, so that the step is compiled here, once for each dimension, and
-//! not again in every crate that makes steps.
+//! [`Simulation::step`] and [`Simulation::detect`] look it up, so that the step is compiled here,
+//! once for each dimension, and not again in every crate that makes steps.
 
 use super::one_step::one_step;
 use super::{Simulation, StepError, StepReport};
@@ -83,13 +83,15 @@ fn touching<S: Space>(s: &mut Simulation<S>) {
 }
 
 impl<S: Space> Simulation<S> {
-    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are due between the last step and
-    /// this one first, where [`Simulation::between_steps`] was not called.
+    /// One step of h. Processes act at its named moments, see [`crate::process`]; those that are
+    /// due between the last step and this one first, where [`Simulation::between_steps`] was not
+    /// called.
     ///
     /// # Errors
-    /// A law or a process failed, the method does not support what the laws require, or a velocity is not finite; the state is
-    /// then that of the failed step, or of the end of the previous one if a process failed between the two. A surface was worn
-    /// through in the previous step; the state is then that at its end.
+    /// A law or a process failed, the method does not support what the laws require, or a velocity
+    /// is not finite; the state is then that of the failed step, or of the end of the previous one
+    /// if a process failed between the two. A surface was worn through in the previous step; the
+    /// state is then that at its end.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         InDimensionMut::of(self).step()
     }

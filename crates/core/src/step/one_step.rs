@@ -1,7 +1,7 @@
 //! One time step: the list of its stages, in the order of the picture in [`super`].
 //!
-//! What a scene has beside bodies in contact acts at the named moments of [`Process`]; none of it is
-//! named here.
+//! What a scene has beside bodies in contact acts at the named moments of [`Process`]; none of it
+//! is named here.
 
 use super::motion::StepStart;
 use super::process::Process;

@@ -22,25 +22,26 @@ impl Default for Scheme {
     }
 }
 
-/// How a simulation is computed. No step changes it, and checkpoints do not hold it; a resumed simulation is given the same
-/// options by its case.
+/// How a simulation is computed. No step changes it, and checkpoints do not hold it; a resumed
+/// simulation is given the same options by its case.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
     /// The time scheme.
     pub scheme: Scheme,
     /// The solver. Phases may set another tolerance, see [`super::Simulation::solver_in_force`].
     pub solver: solve::Options,
-    /// Steps of the case that the step spans in addition to its own; 0 unless it has grown, see [`super::Simulation::span_steps`].
+    /// Steps of the case that the step spans in addition to its own; 0 unless it has grown, see
+    /// [`super::Simulation::span_steps`].
     pub grown: u32,
     /// Coupling of damage and opening within a step.
     pub coupling: Coupling,
     /// Fraction of a penetration removed per step, 0 to 1: `solver.correction` of a case.
     pub correction: f64,
-    /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved apart; 0 for
-    /// never. See `detection/projection.rs`.
+    /// Penetration, as a fraction of the smaller body's length, beyond which bodies are moved
+    /// apart; 0 for never. See `detection/projection.rs`.
     pub projection: f64,
-    /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact dissipated. Once there, the record is
-    /// continued until it is set to `None`.
+    /// Whether steps write into [`crate::contact::Network::dissipation`] what every contact
+    /// dissipated. Once there, the record is continued until it is set to `None`.
     pub record_dissipation: bool,
 }
 
@@ -56,13 +57,13 @@ impl Options {
 pub enum Coupling {
     /// The step is solved with the damage at its start; damage grows at its end. First order in h.
     Explicit,
-    /// The step is solved once, with the mean of the damage at its start and of the damage that the law gives for the
-    /// opening predicted from the velocity at its start; damage grows at its end. Second order in h where velocities are
-    /// smooth.
+    /// The step is solved once, with the mean of the damage at its start and of the damage that the
+    /// law gives for the opening predicted from the velocity at its start; damage grows at its end.
+    /// Second order in h where velocities are smooth.
     #[default]
     Midpoint,
-    /// The step is solved repeatedly until the damage used equals the damage that the resulting openings
-    /// give. Damage never decreases between iterations, so that the iteration ends.
+    /// The step is solved repeatedly until the damage used equals the damage that the resulting
+    /// openings give. Damage never decreases between iterations, so that the iteration ends.
     Implicit {
         /// Largest change of damage between two iterations at convergence.
         tolerance: f64,

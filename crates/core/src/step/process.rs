@@ -7,8 +7,9 @@ use crate::geometry::space::Space;
 use std::any::Any;
 use std::fmt::Debug;
 
-/// Something that acts on a simulation at the named moments of a step, see [`crate::process`]. All moments but those that it needs may be
-/// left out. While a process acts, [`Simulation::process`] finds no other.
+/// Something that acts on a simulation at the named moments of a step, see [`crate::process`]. All
+/// moments but those that it needs may be left out. While a process acts, [`Simulation::process`]
+/// finds no other.
 ///
 /// An error of a moment ends the step with [`super::StepError::Process`], unless it is a
 /// [`super::StepError`] itself; the state is then that of this moment.
@@ -34,8 +35,8 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     }
 
     /// When the contacts of the step are found, at q_m, before the laws see them: what laws are to
-    /// see of contacts is set here. Called again in the same step where its velocities close further
-    /// contacts.
+    /// see of contacts is set here. Called again in the same step where its velocities close
+    /// further contacts.
     ///
     /// # Errors
     /// Why it cannot go on.
@@ -43,7 +44,8 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
         Ok(())
     }
 
-    /// When impulses are known and the laws have committed their damage and wear; bodies are at q_m.
+    /// When impulses are known and the laws have committed their damage and wear; bodies are at
+    /// q_m.
     ///
     /// # Errors
     /// Why it cannot go on.
@@ -59,8 +61,8 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
         Ok(())
     }
 
-    /// After what looks at the step has seen it, and before the next one: where bodies are taken out, and where the next step is
-    /// prepared.
+    /// After what looks at the step has seen it, and before the next one: where bodies are taken
+    /// out, and where the next step is prepared.
     ///
     /// # Errors
     /// Why it cannot go on.
@@ -79,8 +81,8 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
     /// When a body has been removed from the scene.
     fn body_removed(&mut self, _: &mut Simulation<S>, _body: usize) {}
 
-    /// When the state has been replaced, see [`Simulation::restore`] and [`Simulation::repeat`]: what
-    /// follows the state elsewhere, such as the sizes of shapes, is brought up to date.
+    /// When the state has been replaced, see [`Simulation::restore`] and [`Simulation::repeat`]:
+    /// what follows the state elsewhere, such as the sizes of shapes, is brought up to date.
     fn follow_state(&mut self, _: &mut Simulation<S>) {}
 
     /// Whether what it was to reach is reached, so that the run may end.
@@ -88,13 +90,16 @@ pub trait Process<S: Space>: Any + Debug + Send + Sync {
         false
     }
 
-    /// Whether steps in which it acts may be repeated from a saved state, see [`Simulation::repeat`]: all that it does is undone by
-    /// restoring the simulation and by [`Process::restore`]. A run with a process that says no, as by default, does not estimate its error.
+    /// Whether steps in which it acts may be repeated from a saved state, see
+    /// [`Simulation::repeat`]: all that it does is undone by restoring the simulation and by
+    /// [`Process::restore`]. A run with a process that says no, as by default, does not estimate
+    /// its error.
     fn repeats(&self) -> bool {
         false
     }
 
-    /// What it carries from step to step, as bytes for a checkpoint ([`crate::code::encode`]); none where it carries nothing.
+    /// What it carries from step to step, as bytes for a checkpoint ([`crate::code::encode`]); none
+    /// where it carries nothing.
     ///
     /// # Errors
     /// It cannot be put into bytes.

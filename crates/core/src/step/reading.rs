@@ -1,4 +1,5 @@
-//! What a simulation holds at the end of a step, for those who read it: columns of bodies, rows of contacts.
+//! What a simulation holds at the end of a step, for those who read it: columns of bodies, rows of
+//! contacts.
 
 use super::Simulation;
 use super::change::{ContactForces, StepChange};
@@ -62,7 +63,8 @@ impl<S: Space> Simulation<S> {
         &self.state.bodies.spin
     }
 
-    /// The contacts of the last step, open ones within the alert distance too; empty before the first step.
+    /// The contacts of the last step, open ones within the alert distance too; empty before the
+    /// first step.
     pub fn contacts(&self) -> impl ExactSizeIterator<Item = ContactRow<S>> + '_ {
         let contacts = self.state.network.contacts.iter();
         contacts.map(|contact| self.row(contact))
@@ -83,8 +85,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its contacts on a first body;
-    /// none for a name that no first body has.
+    /// Mean force (N; 2D N/m) and moment about its centre (N m; 2D N) of the last step by its
+    /// contacts on a first body; none for a name that no first body has.
     pub fn contact_force_on(&self, name: &str) -> Option<(S::Vector, S::Spin)> {
         let place = self
             .state
@@ -97,8 +99,8 @@ impl<S: Space> Simulation<S> {
         Some((*impulse * rate, *moment * rate))
     }
 
-    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its mesh; `None` where it has none or no heat is
-    /// computed.
+    /// Temperature of a body (K): the mean over the nodes of its surface, or by capacity over its
+    /// mesh; `None` where it has none or no heat is computed.
     pub fn temperature(&self, body: usize) -> Option<f64> {
         self.mean_temperature(self.heat.as_ref()?.nodes.get(body)?.range())
     }
@@ -108,8 +110,8 @@ impl<S: Space> Simulation<S> {
         self.state.heat.as_ref()?.mean_temperature(nodes)
     }
 
-    /// The problem of the last step solved, in the form of the field's collection; none where a bond,
-    /// cohesion or friction against rotation was at work, which that form does not hold.
+    /// The problem of the last step solved, in the form of the field's collection; none where a
+    /// bond, cohesion or friction against rotation was at work, which that form does not hold.
     pub fn local_problem(&self) -> Option<LocalProblem> {
         let (forms, contacts) = (&self.workspace.forms, &self.state.network.contacts);
         let of_bodies = self.workspace.surfaces.forms_of_bodies(forms, contacts);
@@ -153,26 +155,28 @@ impl<S: Space> Simulation<S> {
         StepBounds::of(self)
     }
 
-    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place that its point faces, or of the contact
-    /// point. None where that side, 0 of the candidate or 1 of the antagonist, is rigid.
+    /// The nodes of a system that a contact acts on, where it stands now: those of the mean place
+    /// that its point faces, or of the contact point. None where that side, 0 of the candidate or 1
+    /// of the antagonist, is rigid.
     pub fn nodes_of_side(&self, contact: &Contact<S>, side: usize) -> Option<Nodes> {
         mean_places::nodes_of_side(self, contact, side)
     }
 
-    /// The vertices of the surface of the antagonist below the facets of a point, with their shares of what is worn off there; none of a contact on
-    /// the nearest place.
+    /// The vertices of the surface of the antagonist below the facets of a point, with their shares
+    /// of what is worn off there; none of a contact on the nearest place.
     pub(crate) fn worn_shares(&self, contact: &Contact<S>) -> Option<&[(u32, f64)]> {
         mean_places::worn_shares(self, contact)
     }
 
-    /// The contacts of points of deformable bodies with surfaces of others in the last step, no grains, and whether each acted on the place
-    /// that its point faces on average; the others acted on the nearest place.
+    /// The contacts of points of deformable bodies with surfaces of others in the last step, no
+    /// grains, and whether each acted on the place that its point faces on average; the others
+    /// acted on the nearest place.
     pub fn acted_on_mean_places(&self) -> impl Iterator<Item = (&Contact<S>, bool)> {
         mean_places::acted_on_mean_places(self)
     }
 
-    /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller body's
-    /// length (a grain's radius; walls do not count).
+    /// Returns the deepest penetration that a displacement can remove, as a fraction of the smaller
+    /// body's length (a grain's radius; walls do not count).
     pub fn deepest_overlap(&self) -> f64 {
         projection::deepest_overlap(self)
     }
@@ -185,9 +189,10 @@ impl<S: Space> Simulation<S> {
         ContactForces(carrying.map(|c| (c.key, c.impulse * per)).collect())
     }
 
-    /// The largest displacement of a point of a body in a step at the current velocities, over the length of the smallest
-    /// grain, or the alert distance without grains. Infinite where a surface turns into another place, since its extent is
-    /// not known. A ball that turns in its place does not move.
+    /// The largest displacement of a point of a body in a step at the current velocities, over the
+    /// length of the smallest grain, or the alert distance without grains. Infinite where a surface
+    /// turns into another place, since its extent is not known. A ball that turns in its place does
+    /// not move.
     pub fn largest_displacement(&self) -> f64 {
         let (bodies, network) = (&self.state.bodies, &self.state.network);
         let turning = self.shapes.surfaces.iter().any(|surface| {

@@ -34,9 +34,10 @@ pub struct Saved<S: Space> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Continues from the state of a simulation that was built from the same case. The next step gives the same bits as in that
-    /// simulation. Returns false, and changes nothing, if the state belongs to another case, or if this simulation has made steps
-    /// already: build it again then, since laws and surfaces follow the state. A decoded state is restored here, not assigned to
+    /// Continues from the state of a simulation that was built from the same case. The next step
+    /// gives the same bits as in that simulation. Returns false, and changes nothing, if the state
+    /// belongs to another case, or if this simulation has made steps already: build it again then,
+    /// since laws and surfaces follow the state. A decoded state is restored here, not assigned to
     /// `state`, which would leave dynamical systems without their data.
     #[must_use]
     pub fn restore(&mut self, mut state: State<S>) -> bool {
@@ -70,10 +71,12 @@ impl<S: Space> Simulation<S> {
         list.map(|p| Ok((p.name().to_owned(), p.save()?))).collect()
     }
 
-    /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with the same ones.
+    /// Has the processes go on from what [`Simulation::save_processes`] gave of a simulation with
+    /// the same ones.
     ///
     /// # Errors
-    /// The states are of other processes; where one cannot be read, those before it are restored already.
+    /// The states are of other processes; where one cannot be read, those before it are restored
+    /// already.
     pub fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError> {
         let names = self.processes.iter().map(|p| p.name());
         if !names.eq(from.iter().map(|(name, _)| name.as_str())) {
@@ -96,8 +99,8 @@ impl<S: Space> Simulation<S> {
         })
     }
 
-    /// Goes on with another step (s). Impulses of contacts, from which the solver starts and which laws see, are those of the same
-    /// forces.
+    /// Goes on with another step (s). Impulses of contacts, from which the solver starts and which
+    /// laws see, are those of the same forces.
     pub fn change_step(&mut self, h: f64) {
         let ratio = h / self.options.scheme.h;
         self.options.scheme.h = h;
@@ -107,8 +110,8 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events stay with the steps of the case, see
-    /// [`super::control::StepBounds`].
+    /// Goes on with steps that each span `count` steps of the case (at least 1) of `h` (s). Events
+    /// stay with the steps of the case, see [`super::control::StepBounds`].
     pub fn span_steps(&mut self, h: f64, count: u32) {
         let count = count.max(1);
         let spanned = h * f64::from(count);
@@ -118,8 +121,8 @@ impl<S: Space> Simulation<S> {
         self.options.grown = count - 1;
     }
 
-    /// Has `trial` make steps from the current state, with options that it may change, and then restores the state before it:
-    /// the next step gives the same bits as without the trial.
+    /// Has `trial` make steps from the current state, with options that it may change, and then
+    /// restores the state before it: the next step gives the same bits as without the trial.
     ///
     /// # Errors
     /// Steps cannot be repeated; nothing was done then, unless a process could not be restored.
@@ -174,8 +177,8 @@ impl<S: Space> Simulation<S> {
     }
 }
 
-/// Returns whether it is a state of this scene, in which a step can be made: its lists are as long as those of the scene, indices
-/// are in range, and numbers of motion are finite.
+/// Returns whether it is a state of this scene, in which a step can be made: its lists are as long
+/// as those of the scene, indices are in range, and numbers of motion are finite.
 fn fits<S: Space>(state: &State<S>, scene: &Simulation<S>) -> bool {
     let built = &scene.state;
     let scars = state.scars.iter().zip(&built.scars);

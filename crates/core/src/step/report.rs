@@ -30,13 +30,15 @@ pub struct StepReport {
     pub solves: u32,
     /// Number of contacts that carry an impulse.
     pub active: usize,
-    /// Number of contacts: those within the alert distance or bonded, and of the predicted ones those with an impulse.
+    /// Number of contacts: those within the alert distance or bonded, and of the predicted ones
+    /// those with an impulse.
     pub contacts: usize,
     /// Result of the projection of penetrations, if there was one.
     pub projected: Option<Projected>,
     /// Imposed motions that nothing could obey, if there were any.
     pub impossible: Option<Box<Impossible>>,
-    /// Deepest overlap at detection, after a projection, see [`super::Simulation::deepest_overlap`].
+    /// Deepest overlap at detection, after a projection, see
+    /// [`super::Simulation::deepest_overlap`].
     pub overlap: f64,
     /// Wall-clock time.
     pub timing: Timing,
@@ -58,10 +60,11 @@ pub struct CouplingReport {
 pub struct Agreement {
     /// Number of solves: more than 1 where friction depends on velocity, or attraction on the gap.
     pub solves: u32,
-    /// Sum over contacts of the difference between the friction used and that of the laws at the velocity of sliding reached, over
-    /// the sum of the friction.
+    /// Sum over contacts of the difference between the friction used and that of the laws at the
+    /// velocity of sliding reached, over the sum of the friction.
     pub friction: f64,
-    /// Sum over contacts of the difference between the attraction used and that over the gaps passed, over the sum of their loads.
+    /// Sum over contacts of the difference between the attraction used and that over the gaps
+    /// passed, over the sum of their loads.
     pub attraction: f64,
 }
 
@@ -81,10 +84,11 @@ pub struct Projected {
 /// What a step could not obey.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impossible {
-    /// Bodies that squeeze others without bound: those that do the work first, then those against which they press; empty where
-    /// none do.
+    /// Bodies that squeeze others without bound: those that do the work first, then those against
+    /// which they press; empty where none do.
     pub squeezing: Vec<u32>,
-    /// The deepest overlap of two bodies whose motions are both imposed, if there is one that grows.
+    /// The deepest overlap of two bodies whose motions are both imposed, if there is one that
+    /// grows.
     pub overlap: Option<DrivenOverlap>,
 }
 

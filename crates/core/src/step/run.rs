@@ -6,8 +6,10 @@ use crate::geometry::space::Space;
 use std::ops::ControlFlow;
 
 impl<S: Space> Simulation<S> {
-    /// Steps until a time (s) is reached, and hands the state and the report to `after` at the end of every step, which
-    /// stops the run by [`ControlFlow::Break`]; so does who wants to end with the phases of a case, see [`Simulation::finished`]. It comes back whether and why it was stopped; the simulation can go on.
+    /// Steps until a time (s) is reached, and hands the state and the report to `after` at the end
+    /// of every step, which stops the run by [`ControlFlow::Break`]; so does who wants to end with
+    /// the phases of a case, see [`Simulation::finished`]. It comes back whether and why it was
+    /// stopped; the simulation can go on.
     ///
     /// # Errors
     /// As [`Simulation::step`].
@@ -26,12 +28,12 @@ impl<S: Space> Simulation<S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Has the processes act on the state after a step, once a step. The next step does it first where this was not called; who
-    /// looks at each step calls it when that is done.
+    /// Has the processes act on the state after a step, once a step. The next step does it first
+    /// where this was not called; who looks at each step calls it when that is done.
     ///
     /// # Errors
-    /// Why a process cannot go on. The processes after it have not acted then, and do not act on this state any more: the
-    /// simulation has ended.
+    /// Why a process cannot go on. The processes after it have not acted then, and do not act on
+    /// this state any more: the simulation has ended.
     pub fn between_steps(&mut self) -> Result<(), StepError> {
         if std::mem::replace(&mut self.state.settled, true) {
             return Ok(());
@@ -39,7 +41,8 @@ impl<S: Space> Simulation<S> {
         self.act(Process::between_steps)
     }
 
-    /// Has the processes do after the last step what they do every so many steps, and first what is due between steps.
+    /// Has the processes do after the last step what they do every so many steps, and first what is
+    /// due between steps.
     ///
     /// # Errors
     /// Why a process cannot.
@@ -63,7 +66,8 @@ impl<S: Space> Simulation<S> {
         let acted = list
             .iter_mut()
             .try_for_each(|p| self.act_one(p, &mut moment));
-        // A process that was added acts after those that were there; while they acted it could not see them.
+        // A process that was added acts after those that were there; while they acted it could not
+        // see them.
         let added = std::mem::take(&mut self.processes);
         for process in added {
             if list.iter().all(|p| p.name() != process.name()) {

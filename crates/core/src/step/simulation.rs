@@ -19,7 +19,8 @@ use std::sync::Arc;
 /// About what a pass over contacts takes for each (ns).
 const EACH: f64 = 15.0;
 
-/// A scene that is advanced in time: what a case gives, the options of the computation, and the state.
+/// A scene that is advanced in time: what a case gives, the options of the computation, and the
+/// state.
 #[derive(Debug)]
 pub struct Simulation<S: Space> {
     /// What can touch. Worn surfaces follow their scars.
@@ -40,14 +41,15 @@ pub struct Simulation<S: Space> {
     pub fields: Fields<S>,
     /// What the core itself adds to the stages of a step, see [`Simulation::add_feature`].
     pub(super) features: Vec<Box<dyn Process<S>>>,
-    /// What acts at the named moments of a step, in this order; they save themselves, see [`Simulation::save_processes`].
+    /// What acts at the named moments of a step, in this order; they save themselves, see
+    /// [`Simulation::save_processes`].
     pub(super) processes: Vec<Box<dyn Process<S>>>,
     pub(crate) workspace: Workspace<S>,
 }
 
 impl<S: Space> Simulation<S> {
-    /// Bytes per contact in addition to the solver's rows and the bond: the contact, its pair in the neighbour list, its form, its
-    /// results, and its relative velocities before and after.
+    /// Bytes per contact in addition to the solver's rows and the bond: the contact, its pair in
+    /// the neighbour list, its form, its results, and its relative velocities before and after.
     pub const BYTES_A_CONTACT: usize = size_of::<Contact<S>>()
         + size_of::<(u32, u32)>()
         + size_of::<ContactForm<S>>()
@@ -157,7 +159,8 @@ impl Simulation<crate::geometry::space::Dim2> {
         self.state.started = self.state.bodies.motion_of_driven();
     }
 
-    /// Adds a fixed body that carries a surface at the origin, of the material 0; returns its index.
+    /// Adds a fixed body that carries a surface at the origin, of the material 0; returns its
+    /// index.
     pub(crate) fn add_surface(&mut self, shape: crate::geometry::polyline::Polyline) -> u32 {
         use crate::bodies::Dof;
         let zero = nalgebra::Vector2::zeros();

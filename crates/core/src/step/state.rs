@@ -1,9 +1,10 @@
 //! State of a simulation between two steps: the content of a checkpoint.
 //!
-//! All of it is saved, by its derived form: a new field is saved without being named anywhere else. What a case gives (shapes,
-//! laws, phases, options) is built again, and work arrays of a step (forms, columns, the solver's problem and its colouring)
-//! depend only on this state. Two things of the case follow the state while it changes: worn surfaces follow their scars, and
-//! parameters of laws what phases have set; [`super::Simulation::restore`] has them follow again.
+//! All of it is saved, by its derived form: a new field is saved without being named anywhere else.
+//! What a case gives (shapes, laws, phases, options) is built again, and work arrays of a step
+//! (forms, columns, the solver's problem and its colouring) depend only on this state. Two things
+//! of the case follow the state while it changes: worn surfaces follow their scars, and parameters
+//! of laws what phases have set; [`super::Simulation::restore`] has them follow again.
 
 use super::control::schedule::Control;
 use crate::bodies::{Bodies, Systems};
@@ -43,7 +44,8 @@ pub struct State<S: Space> {
     pub(super) time_excess: f64,
     /// Steps completed.
     pub steps: u64,
-    /// Whether the processes have acted on the state since the last step, see [`super::Simulation::between_steps`].
+    /// Whether the processes have acted on the state since the last step, see
+    /// [`super::Simulation::between_steps`].
     pub(super) settled: bool,
     /// Grains and first bodies.
     pub bodies: Bodies<S>,
@@ -59,7 +61,8 @@ pub struct State<S: Space> {
     pub control: Control<S>,
     /// Contact impulses and moments on the driven bodies in the last step, in their order.
     pub received: Vec<(S::Vector, S::Spin)>,
-    /// Velocities and spins of the driven bodies at the start of the last step, after the jumps of imposed motion.
+    /// Velocities and spins of the driven bodies at the start of the last step, after the jumps of
+    /// imposed motion.
     pub started: Vec<(S::Vector, S::Spin)>,
     /// The energy ledger.
     pub energy: Energy,

@@ -21,7 +21,8 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * a.abs().max(b.abs()).max(1.0)
 }
 
-/// A disk that does not turn lies on a chain of 20 m, and slides at 3 m/s; index 0, and 1 of the body of the chain.
+/// A disk that does not turn lies on a chain of 20 m, and slides at 3 m/s; index 0, and 1 of the
+/// body of the chain.
 fn slider() -> Simulation<Dim2> {
     slider_of(interface([]))
 }
@@ -38,8 +39,9 @@ fn slider_of(law: Interface) -> Simulation<Dim2> {
     s
 }
 
-/// Under g = 10 m/s^2 with friction of 0.5 it slows down by 5 m/s^2: v = 3 - 5 t and x = 3 t - 5 t^2/2, exactly at theta = 1/2, and stops; its
-/// energy goes into friction. The chain gets the weight and the friction, and the moment of the weight about its origin.
+/// Under g = 10 m/s^2 with friction of 0.5 it slows down by 5 m/s^2: v = 3 - 5 t and x = 3 t - 5
+/// t^2/2, exactly at theta = 1/2, and stops; its energy goes into friction. The chain gets the
+/// weight and the friction, and the moment of the weight about its origin.
 #[test]
 fn a_disk_slides_and_stops() {
     let mut s = slider();
@@ -74,7 +76,8 @@ fn a_disk_slides_and_stops() {
     assert!(same(energy.friction, before) && energy.impact.abs() < 1e-12);
 }
 
-/// A shear cohesion of 3 Pa over the area of the contact stops it earlier: v = 3 - (5 + 3 A/m) t, and friction takes that energy too.
+/// A shear cohesion of 3 Pa over the area of the contact stops it earlier: v = 3 - (5 + 3 A/m) t,
+/// and friction takes that energy too.
 #[test]
 fn shear_cohesion_acts_beside_friction() {
     let law = interface([sticky()]);
@@ -97,8 +100,8 @@ fn shear_cohesion_acts_beside_friction() {
     assert!(s.state.bodies.velocity[0].norm() < 1e-12);
 }
 
-/// A disk that falls is exact at any theta in its velocity, and at theta = 1/2 in its place; the scheme takes (theta - 1/2) m (g h)^2 in each
-/// step.
+/// A disk that falls is exact at any theta in its velocity, and at theta = 1/2 in its place; the
+/// scheme takes (theta - 1/2) m (g h)^2 in each step.
 #[test]
 fn a_disk_falls() {
     for theta in [0.5, 0.75, 1.0] {
@@ -124,8 +127,9 @@ fn a_disk_falls() {
     }
 }
 
-/// Two disks that a bond of k A = 0.5 N/m holds fly apart at v: by the midpoint rule the opening is v/w sin(n phi) after n steps and its rate
-/// v cos(n phi), with tan(phi/2) = w h/2 and w^2 = 2 k A/m, and no energy is lost.
+/// Two disks that a bond of k A = 0.5 N/m holds fly apart at v: by the midpoint rule the opening is
+/// v/w sin(n phi) after n steps and its rate v cos(n phi), with tan(phi/2) = w h/2 and w^2 = 2 k
+/// A/m, and no energy is lost.
 #[test]
 fn a_bond_swings_as_the_midpoint_rule_says() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);
@@ -161,8 +165,8 @@ fn a_bond_swings_as_the_midpoint_rule_says() {
     }
 }
 
-/// Phases of 8, 4 and 2 steps: friction of 0.5, then none, then 0.25 under twice the weight, which is the same force as at first. The run has
-/// ended with the last.
+/// Phases of 8, 4 and 2 steps: friction of 0.5, then none, then 0.25 under twice the weight, which
+/// is the same force as at first. The run has ended with the last.
 #[test]
 fn phases_change_gravity_and_friction() {
     let mut s = slider();
@@ -234,9 +238,10 @@ fn nodes(list: [(f64, f64); 2]) -> HeatState {
     HeatState::new(list.map(node).to_vec(), 1)
 }
 
-/// Two disks of 1 and 2 J/K at 400 and 300 K, joined by 3 W/K, of which the first is heated by 5 W: with implicit Euler over a time t the
-/// difference d goes to (d + 5 t/1)/(1 + 3 t (1/1 + 1/2)), and 3 W/K times it goes over. A step of the heat is of so many steps of the mechanics,
-/// each of the clock times h. Heat begins to flow at its time.
+/// Two disks of 1 and 2 J/K at 400 and 300 K, joined by 3 W/K, of which the first is heated by 5 W:
+/// with implicit Euler over a time t the difference d goes to (d + 5 t/1)/(1 + 3 t (1/1 + 1/2)),
+/// and 3 W/K times it goes over. A step of the heat is of so many steps of the mechanics, each of
+/// the clock times h. Heat begins to flow at its time.
 #[test]
 fn two_disks_come_to_one_temperature() {
     for (every, clock, start) in [
@@ -287,8 +292,9 @@ fn two_disks_come_to_one_temperature() {
     }
 }
 
-/// The friction of a disk that slides warms it and the chain by half each, since they are of one material; or by the shares of the case, all of
-/// it on one side where the other is insulated, and into nothing where both are.
+/// The friction of a disk that slides warms it and the chain by half each, since they are of one
+/// material; or by the shares of the case, all of it on one side where the other is insulated, and
+/// into nothing where both are.
 #[test]
 fn friction_warms_both_sides() {
     let (one, two) = (BodyNodes::One(0), BodyNodes::One(1));
@@ -328,8 +334,8 @@ fn friction_warms_both_sides() {
     }
 }
 
-/// Where a hardness is given a contact is warmer than its bodies by the rise that its force, speed and friction give, in thermal time, from the
-/// second step on.
+/// Where a hardness is given a contact is warmer than its bodies by the rise that its force, speed
+/// and friction give, in thermal time, from the second step on.
 #[test]
 fn a_sliding_contact_flashes() {
     for clock in [1.0, 4.0] {
@@ -365,8 +371,8 @@ fn a_sliding_contact_flashes() {
     }
 }
 
-/// A disk of mass m and inertia m r^2/2 at 2 m/s and 3 rad/s: an impulse p along its way and L about it do the work p v + p^2/(2 m) and
-/// L w + L^2/(m r^2).
+/// A disk of mass m and inertia m r^2/2 at 2 m/s and 3 rad/s: an impulse p along its way and L
+/// about it do the work p v + p^2/(2 m) and L w + L^2/(m r^2).
 #[test]
 fn the_work_of_an_impulse_is_that_of_the_mean_velocity() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5)]);
@@ -398,8 +404,8 @@ fn spots_rise_where_a_sliding_contact_is_heated() {
     );
 }
 
-/// A disk grows by 5 mm in each step, far more than the skin of the neighbour list, until it is half the alert distance from one that was not in
-/// its reach: their contact is there.
+/// A disk grows by 5 mm in each step, far more than the skin of the neighbour list, until it is
+/// half the alert distance from one that was not in its reach: their contact is there.
 #[test]
 fn a_disk_that_grows_meets_its_neighbour() {
     let disks = [([0.0, 0.0], 0.5), ([1.1, 0.0], 0.5)];

@@ -9,7 +9,8 @@ use crate::laws::evaluator::LawEvaluator;
 use crate::laws::{ContactStep, MomentStep, SolvedStep, SpringForm, SpringStep, Velocities};
 use crate::solve::{ContactForm, MomentForm, NodalSystem, Problem, Side};
 
-/// What a step makes for itself and throws away; its memory is kept from step to step, nothing else.
+/// What a step makes for itself and throws away; its memory is kept from step to step, nothing
+/// else.
 #[derive(Debug)]
 pub(crate) struct Workspace<S: Space> {
     /// Calls the laws.
@@ -18,7 +19,8 @@ pub(crate) struct Workspace<S: Space> {
     pub problem: Problem<S>,
     /// Its contacts in the standard form, in the network's order.
     pub forms: Vec<ContactForm<S>>,
-    /// What the motion closes of each gap beyond its velocity (m), in the same order; empty where nothing does.
+    /// What the motion closes of each gap beyond its velocity (m), in the same order; empty where
+    /// nothing does.
     pub swerves: Vec<f64>,
     /// What the laws of compliant contacts gave, in the same order; empty without one.
     pub springs: Vec<Option<SpringForm<S>>>,
@@ -34,7 +36,8 @@ pub(crate) struct Workspace<S: Space> {
     pub surfaces: Surfaces<S>,
     /// What contacts did in the step.
     pub solved: Solved<S>,
-    /// Whether a process has given a body an impulse in the step, see [`super::Simulation::apply_impulse`].
+    /// Whether a process has given a body an impulse in the step, see
+    /// [`super::Simulation::apply_impulse`].
     pub pushed: bool,
 }
 
@@ -57,8 +60,8 @@ impl<S: Space> Default for Workspace<S> {
     }
 }
 
-/// Results of the contacts in a solved step. The buffers are reused from step to step, because allocating
-/// new ones for many contacts costs more than filling them.
+/// Results of the contacts in a solved step. The buffers are reused from step to step, because
+/// allocating new ones for many contacts costs more than filling them.
 #[derive(Debug)]
 pub(crate) struct Solved<S: Space> {
     pub before: Velocities<S>,
@@ -101,12 +104,14 @@ impl<S: Space> Default for Solved<S> {
     }
 }
 
-/// What the contacts of a step act on where dynamical systems take part, found once for the current contacts.
+/// What the contacts of a step act on where dynamical systems take part, found once for the current
+/// contacts.
 #[derive(Debug)]
 pub(crate) struct SystemContacts<S: Space> {
     /// The sides of the contacts with systems, in the network's order.
     pub sides: Vec<[Side<S>; 2]>,
-    /// Where each contact of the network stands among them, [`RIGID`] where both sides are rigid; empty without systems.
+    /// Where each contact of the network stands among them, [`RIGID`] where both sides are rigid;
+    /// empty without systems.
     pub places: Vec<u32>,
     /// The nodes of each system that are touched, in increasing order.
     pub touched: Vec<Vec<u32>>,
@@ -132,7 +137,8 @@ impl<S: Space> Default for SystemContacts<S> {
 }
 
 impl<S: Space> SystemContacts<S> {
-    /// A point as the solver knows it: its place among the points of the system where there are any, or itself.
+    /// A point as the solver knows it: its place among the points of the system where there are
+    /// any, or itself.
     pub fn place_among(points: &[Nodes], point: &Nodes) -> Nodes {
         let at = points.binary_search_by(|other| other.order(point));
         at.map_or_else(|_| point.clone(), |at| Nodes::one(at as u32))
@@ -146,8 +152,8 @@ pub(crate) enum Reach<S: Space> {
     Mean(Box<MeanPlace<S>>),
     /// The nearest place, because the mean one is not to be found.
     Nearest,
-    /// The nearest place, of a contact that is none of a point of a deformable body with the surface of another, or of one on an equal grid,
-    /// where that carries a uniform pressure.
+    /// The nearest place, of a contact that is none of a point of a deformable body with the
+    /// surface of another, or of one on an equal grid, where that carries a uniform pressure.
     Other,
 }
 

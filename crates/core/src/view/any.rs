@@ -6,8 +6,8 @@ use crate::step::{InDimension, Simulation};
 use std::any::Any;
 use std::ops::{Deref, DerefMut};
 
-/// A simulation of either dimension. It dereferences to [`RunControl`], by which it is stepped, and [`RunView`], by which it is
-/// read; [`AnySimulation::get`] gives the simulation in its dimension.
+/// A simulation of either dimension. It dereferences to [`RunControl`], by which it is stepped, and
+/// [`RunView`], by which it is read; [`AnySimulation::get`] gives the simulation in its dimension.
 #[derive(Debug)]
 pub enum AnySimulation {
     /// Two dimensions.
@@ -16,8 +16,9 @@ pub enum AnySimulation {
     Space(Box<Simulation<Dim3>>),
 }
 
-/// Evaluates an expression with the simulation in its dimension: `in_dimension!(simulation, |s| f(s))`, where `simulation` is an
-/// [`AnySimulation`](crate::view::AnySimulation), or a reference to one. The expression is compiled for both dimensions.
+/// Evaluates an expression with the simulation in its dimension: `in_dimension!(simulation, |s|
+/// f(s))`, where `simulation` is an [`AnySimulation`](crate::view::AnySimulation), or a reference
+/// to one. The expression is compiled for both dimensions.
 #[macro_export]
 macro_rules! in_dimension {
     ($simulation:expr, |$s:ident| $body:expr) => {

@@ -6,7 +6,8 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::solve::local::LocalProblem;
 use crate::step::{Options, ProcessState, RepeatError, Simulation, StepError, StepReport};
 
-/// A simulation that is stepped. Its methods are those of [`Simulation`], where their errors are described.
+/// A simulation that is stepped. Its methods are those of [`Simulation`], where their errors are
+/// described.
 pub trait RunControl: RunView + Send {
     /// One step; see [`Simulation::step`].
     ///
@@ -38,7 +39,8 @@ pub trait RunControl: RunView + Send {
     fn options_mut(&mut self) -> &mut Options;
     /// Goes on with another step (s); see [`Simulation::change_step`].
     fn change_step(&mut self, h: f64);
-    /// Applies an impulse to a body and adds its work to the ledger; see [`Simulation::apply_impulse`].
+    /// Applies an impulse to a body and adds its work to the ledger; see
+    /// [`Simulation::apply_impulse`].
     fn apply_impulse(&mut self, body: usize, impulse: [f64; 3], angular: [f64; 3]);
     /// The problem of the last step, solved; see [`Simulation::local_problem`].
     fn local_problem(&self) -> Option<LocalProblem>;
@@ -48,8 +50,8 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// It cannot be put into bytes.
     fn save(&self) -> Result<Vec<u8>, CodeError>;
-    /// Goes on from the state that [`RunControl::save`] put at the start of the bytes; returns the bytes after it, or `None` if
-    /// the state belongs to another case. See [`Simulation::restore`].
+    /// Goes on from the state that [`RunControl::save`] put at the start of the bytes; returns the
+    /// bytes after it, or `None` if the state belongs to another case. See [`Simulation::restore`].
     ///
     /// # Errors
     /// The bytes are of no state.
@@ -64,7 +66,8 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// They are of other processes.
     fn restore_processes(&mut self, from: &[ProcessState]) -> Result<(), CodeError>;
-    /// Has `trial` make steps, with options that it may change, and restores the state before it; see [`Simulation::repeat`].
+    /// Has `trial` make steps, with options that it may change, and restores the state before it;
+    /// see [`Simulation::repeat`].
     ///
     /// # Errors
     /// As [`Simulation::repeat`].

@@ -6,8 +6,9 @@
 //! Simulation<Dim3> ─┘
 //! ```
 //!
-//! Positions, velocities and forces are `[f64; 3]` in world axes. In the plane the third component is zero, angular velocities
-//! and moments are about the third axis, and extensive quantities are those of a depth of 1 m.
+//! Positions, velocities and forces are `[f64; 3]` in world axes. In the plane the third component
+//! is zero, angular velocities and moments are about the third axis, and extensive quantities are
+//! those of a depth of 1 m.
 //!
 //! ```
 //! use fretwork_core::bodies::Bodies;

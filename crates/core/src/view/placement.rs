@@ -33,8 +33,8 @@ pub fn bond_state<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> BondStat
     s.state.network.bond_state(contact)
 }
 
-/// End points of a contact: the candidate's centre, and the antagonist's centre or the closest point on its
-/// surface.
+/// End points of a contact: the candidate's centre, and the antagonist's centre or the closest
+/// point on its surface.
 pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let key = &contact.key;
     let (Some(candidate), 0) = (key.ball(), key.antagonist & Key::PIECE) else {
@@ -52,7 +52,8 @@ pub fn ends<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S:
     (a, a - contact.normal * length)
 }
 
-/// End points of a contact with a convex part: via the contact point, which is the end at a first body.
+/// End points of a contact with a convex part: via the contact point, which is the end at a first
+/// body.
 fn ends_of_piece<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> (S::Vector, S::Vector) {
     let centre = s.state.bodies.position[contact.bodies[0] as usize];
     let at = centre + contact.arms[0];

@@ -72,7 +72,8 @@ pub struct BallView {
     pub centre: [f64; 3],
     /// Centre in the frame of the body (m).
     pub offset: [f64; 3],
-    /// The piece of a surface that a point stands for, along its outward normal (m^2; m in 2D); zero for balls.
+    /// The piece of a surface that a point stands for, along its outward normal (m^2; m in 2D);
+    /// zero for balls.
     pub area: [f64; 3],
 }
 
@@ -153,7 +154,8 @@ pub struct ContactView {
     pub gap: f64,
     /// Reduced radius (m); zero where it is not known.
     pub radius: f64,
-    /// Mean force of the last step on the candidate (N; N/m in 2D); the antagonist has its opposite.
+    /// Mean force of the last step on the candidate (N; N/m in 2D); the antagonist has its
+    /// opposite.
     pub force: [f64; 3],
     /// Its part along the normal (N; N/m in 2D), positive in compression.
     pub normal_force: f64,

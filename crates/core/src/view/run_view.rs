@@ -22,7 +22,8 @@ use crate::step::fields::GrainPart;
 use crate::step::{Options, Simulation};
 use std::fmt::Debug;
 
-/// A simulation for reading, between two steps; see the [module](super) for what stands in the third component.
+/// A simulation for reading, between two steps; see the [module](super) for what stands in the
+/// third component.
 ///
 /// Bodies are counted as in [`RunView::bodies`], surfaces as in [`RunView::surfaces`].
 pub trait RunView: Debug {
@@ -69,8 +70,8 @@ pub trait RunView: Debug {
     fn kinetic_energy(&self, body: usize) -> f64;
     /// Name of a body in messages: a first body's name, a grain's identity.
     fn body_name(&self, body: u32) -> String;
-    /// Mean force (N; N/m in 2D) and moment about its centre (N m; N in 2D) of the last step by its contacts on a first body;
-    /// `None` for a name that no first body has.
+    /// Mean force (N; N/m in 2D) and moment about its centre (N m; N in 2D) of the last step by its
+    /// contacts on a first body; `None` for a name that no first body has.
     fn contact_force_on(&self, name: &str) -> Option<[[f64; 3]; 2]>;
 
     /// The balls of all bodies, and the points of those that deform.
@@ -96,8 +97,9 @@ pub trait RunView: Debug {
     fn contact_count(&self) -> usize;
     /// Hands each contact of the last step to a function, in the order of their keys.
     fn visit_contacts(&self, visit: &mut dyn FnMut(&ContactView));
-    /// End points of the contacts that [count](ContactView::counts): the candidate's centre, and the antagonist's centre or
-    /// the closest point on its surface (m), the first in the periodic cell.
+    /// End points of the contacts that [count](ContactView::counts): the candidate's centre, and
+    /// the antagonist's centre or the closest point on its surface (m), the first in the periodic
+    /// cell.
     fn contact_ends(&self) -> Vec<[[f64; 3]; 2]>;
     /// Bonds made so far.
     fn bonds_made(&self) -> u64;
@@ -116,8 +118,8 @@ pub trait RunView: Debug {
     fn heat(&self) -> Option<&Heat>;
     /// Temperatures and the account of heat.
     fn heat_state(&self) -> Option<&HeatState>;
-    /// Coefficient of thermal expansion of each body (1/K), zero where it keeps its size, and the dynamical systems that
-    /// expand; `None` where no body expands.
+    /// Coefficient of thermal expansion of each body (1/K), zero where it keeps its size, and the
+    /// dynamical systems that expand; `None` where no body expands.
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)>;
 
     /// Centres of the parts of grains and first bodies that carry fields, in the periodic cell (m).
@@ -130,7 +132,8 @@ pub trait RunView: Debug {
     fn grain_field(&self, name: &str) -> Option<FieldValues>;
     /// The fields of contacts, in the order in which they are written.
     fn contact_fields(&self) -> Vec<FieldInfo>;
-    /// Their values at all contacts, or at those that [count](ContactView::counts), in the same order.
+    /// Their values at all contacts, or at those that [count](ContactView::counts), in the same
+    /// order.
     fn contact_values(&self, counted: bool) -> Vec<FieldValues>;
     /// The values of one of them.
     fn contact_field(&self, name: &str, counted: bool) -> Option<FieldValues>;

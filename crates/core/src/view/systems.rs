@@ -3,7 +3,8 @@
 use crate::bodies::{Contactor, DynamicalSystem, Holder, SystemSize};
 use crate::geometry::space::Space;
 
-/// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the same names.
+/// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
+/// same names.
 pub trait SystemView {
     /// What a user calls it.
     fn name(&self) -> &str;

@@ -1,28 +1,30 @@
 //! Cycle jumps: one computed cycle represents many, with an estimate of the error.
 //!
-//! In a jump of N cycles one cycle is computed in which each step wears and damages N times the amounts that
-//! the laws give: depths and damage advance as over N cycles, step by step, and contacts and bodies respond
-//! within the cycle. This is the method of J. J. Madge, S. B. Leen, I. R. McColl, P. H. Shipway, Wear 262
-//! (2007) 1159, who scale the wear of each increment. It differs from extrapolating a field of depths, z + N
-//! dz: rigid bodies touch only at protruding places, so that after an extrapolation the next cycle wears
-//! exactly what the extrapolation missed, and the scar never widens.
+//! In a jump of N cycles one cycle is computed in which each step wears and damages N times the
+//! amounts that the laws give: depths and damage advance as over N cycles, step by step, and
+//! contacts and bodies respond within the cycle. This is the method of J. J. Madge, S. B. Leen, I.
+//! R. McColl, P. H. Shipway, Wear 262 (2007) 1159, who scale the wear of each increment. It differs
+//! from extrapolating a field of depths, z + N dz: rigid bodies touch only at protruding places, so
+//! that after an extrapolation the next cycle wears exactly what the extrapolation missed, and the
+//! scar never widens.
 //!
-//! Quantities that accumulate from cycle to cycle (the volume of a scar, the damage of a bond) are checked
-//! by the cycles next to the jump, which are computed one by one: a parabola through the increments of the
-//! cycles before the last jump, before this one and after it is summed over the cycles of the jump. The
-//! difference is the error of the jump. The trapezium of the two adjacent increments would miss the
-//! curvature of the growth. For z' = f(z) an error of z grows like f(z), so that the errors of earlier jumps
-//! are multiplied by r'/r where increments grow.
+//! Quantities that accumulate from cycle to cycle (the volume of a scar, the damage of a bond) are
+//! checked by the cycles next to the jump, which are computed one by one: a parabola through the
+//! increments of the cycles before the last jump, before this one and after it is summed over the
+//! cycles of the jump. The difference is the error of the jump. The trapezium of the two adjacent
+//! increments would miss the curvature of the growth. For z' = f(z) an error of z grows like f(z),
+//! so that the errors of earlier jumps are multiplied by r'/r where increments grow.
 //!
-//! The shape of a scar does not accumulate: material misplaced by a jump is worn off where it protrudes. A
-//! single cycle between rigid bodies says nothing about it, since they touch at only some of the places; a
-//! jump is long enough. Therefore jumps check each other: with a and b the volumes that the last jump and
-//! this one wore off at each place, A and B their sums, and e_0, e_1, e_2 the misplaced volumes before,
-//! between and after them, b - a B/A is about e_2 - (1 + B/A) e_1 + e_0 B/A. For independent errors its
-//! magnitude is sqrt(1 + (1 + B/A)^2 + (B/A)^2) times that of one of them, sqrt(6) for jumps of equal
-//! length. Real changes of the scar's shape are included in the estimate. Protruding material is worn off
-//! later: a misplaced volume S, as a sum of differences, is reduced to at most S exp(-W/(2 S)) after a
-//! further wear volume W. This is an assumption, compared with complete runs in `docs/wear.md`.
+//! The shape of a scar does not accumulate: material misplaced by a jump is worn off where it
+//! protrudes. A single cycle between rigid bodies says nothing about it, since they touch at only
+//! some of the places; a jump is long enough. Therefore jumps check each other: with a and b the
+//! volumes that the last jump and this one wore off at each place, A and B their sums, and e_0,
+//! e_1, e_2 the misplaced volumes before, between and after them, b - a B/A is about e_2 - (1 +
+//! B/A) e_1 + e_0 B/A. For independent errors its magnitude is sqrt(1 + (1 + B/A)^2 + (B/A)^2)
+//! times that of one of them, sqrt(6) for jumps of equal length. Real changes of the scar's shape
+//! are included in the estimate. Protruding material is worn off later: a misplaced volume S, as a
+//! sum of differences, is reduced to at most S exp(-W/(2 S)) after a further wear volume W. This is
+//! an assumption, compared with complete runs in `docs/wear.md`.
 
 /// Accumulated quantities, or their increments: one list of values per quantity.
 pub type Amounts = Vec<Vec<f64>>;
@@ -37,8 +39,8 @@ pub fn growth(now: &Amounts, before: &Amounts) -> Amounts {
     now.iter().zip(before).map(list).collect()
 }
 
-/// Returns the weights of increments at three cycles in the sum over the cycles 1 to n of the parabola
-/// through them.
+/// Returns the weights of increments at three cycles in the sum over the cycles 1 to n of the
+/// parabola through them.
 pub fn parts(n: u32, at: [f64; 3]) -> [f64; 3] {
     let part = |k: usize| {
         let [i, j] = [(k + 1) % 3, (k + 2) % 3];
@@ -58,8 +60,8 @@ pub fn error(jumped: f64, rates: [f64; 3], parts: &[f64; 3]) -> f64 {
 /// Largest growth of an increment over a jump for which errors are propagated.
 const MAX_CARRIED: f64 = 10.0;
 
-/// Returns the growth of an error while the increment of a cycle changes from one value to another: for z' =
-/// f(z) the error of z grows like f. Decreasing increments give no reduction.
+/// Returns the growth of an error while the increment of a cycle changes from one value to another:
+/// for z' = f(z) the error of z grows like f. Decreasing increments give no reduction.
 pub fn carried(from: f64, to: f64) -> f64 {
     if from > 0.0 {
         (to / from).clamp(1.0, MAX_CARRIED)
@@ -68,8 +70,8 @@ pub fn carried(from: f64, to: f64) -> f64 {
     }
 }
 
-/// Returns the misplaced volume after a jump, as a sum of differences over the places, from the volumes that
-/// it and the jump `before` wore off.
+/// Returns the misplaced volume after a jump, as a sum of differences over the places, from the
+/// volumes that it and the jump `before` wore off.
 pub fn misplaced(now: &[f64], before: &[f64]) -> f64 {
     let (all, then): (f64, f64) = (now.iter().sum(), before.iter().sum());
     if then <= 0.0 {
@@ -90,8 +92,8 @@ pub fn left(misplaced: f64, worn: f64) -> f64 {
     }
 }
 
-/// Returns the length of the next jump after one of `n` cycles with a given error; error and tolerance are
-/// relative to the same quantity.
+/// Returns the length of the next jump after one of `n` cycles with a given error; error and
+/// tolerance are relative to the same quantity.
 pub fn next_length(n: f64, error: f64, tolerance: f64) -> f64 {
     let factor = if error > 0.0 {
         (tolerance / error).sqrt()
@@ -116,8 +118,8 @@ mod tests {
         }
     }
 
-    /// For increments c^3 with c = 0, 1 and n + 1 the parabola is (n + 2) c^2 - (n + 1) c, and sums of
-    /// powers give the remainder.
+    /// For increments c^3 with c = 0, 1 and n + 1 the parabola is (n + 2) c^2 - (n + 1) c, and sums
+    /// of powers give the remainder.
     #[test]
     fn growth_of_fourth_order_is_off_by_its_remainder() {
         for n in [3u32, 7, 50] {
@@ -137,8 +139,9 @@ mod tests {
         assert!(misplaced(&[10.0, 20.0, 30.0], &before) < 1e-12);
     }
 
-    /// Jumps that wear evenly apart from independent errors, each corrected by the next jump: the estimate
-    /// finds the remaining error. Errors are uniform in +-1, so that the mean of |e| is 1/2.
+    /// Jumps that wear evenly apart from independent errors, each corrected by the next jump: the
+    /// estimate finds the remaining error. Errors are uniform in +-1, so that the mean of |e| is
+    /// 1/2.
     #[test]
     fn errors_of_jumps_are_found_from_the_next() {
         let mut seed = 12345u64;
@@ -157,8 +160,8 @@ mod tests {
             pairs.map(|(e, before)| 10.0 + e - before).collect()
         };
         let found = misplaced(&worn(1), &worn(0)) / f64::from(places);
-        // 1/2 times a factor for the distribution: a sum of three is nearer to a Gaussian, whose mean |e|
-        // relative to its deviation is sqrt(2/pi) instead of sqrt(3)/2.
+        // 1/2 times a factor for the distribution: a sum of three is nearer to a Gaussian, whose
+        // mean |e| relative to its deviation is sqrt(2/pi) instead of sqrt(3)/2.
         assert!((found / 0.5 - 0.93).abs() < 0.05, "{found}");
     }
 

@@ -1,15 +1,16 @@
-//! The mass ledger of the tribological circuit: the place of each grain, and the flows between the places.
+//! The mass ledger of the tribological circuit: the place of each grain, and the flows between the
+//! places.
 //!
-//! A grain is tied to a first body, in the contact, ejected, or lost. With M the mass in the contact, E that
-//! in the ejection zones, T that of the first bodies' grains and W the lost mass, over any interval
-//! dM = Qs - Qa + Qr - Qe, dE = Qe - Qr - Qw, dT = Qa - Qs, dW = Qw:
-//! source flow Qs, reattachment Qa, ejection Qe, recirculation Qr, wear flow Qw. The flows follow N. Fillot,
-//! I. Iordanoff, Y. Berthier, "Modelling third body flows with a discrete element method: a tool for
-//! understanding wear with adhesive particles", Tribol. Int. 40 (2007) 973; Qa is added here for bonds that
-//! heal.
+//! A grain is tied to a first body, in the contact, ejected, or lost. With M the mass in the
+//! contact, E that in the ejection zones, T that of the first bodies' grains and W the lost mass,
+//! over any interval dM = Qs - Qa + Qr - Qe, dE = Qe - Qr - Qw, dT = Qa - Qs, dW = Qw: source flow
+//! Qs, reattachment Qa, ejection Qe, recirculation Qr, wear flow Qw. The flows follow N. Fillot, I.
+//! Iordanoff, Y. Berthier, "Modelling third body flows with a discrete element method: a tool for
+//! understanding wear with adhesive particles", Tribol. Int. 40 (2007) 973; Qa is added here for
+//! bonds that heal.
 //!
-//! Flows are counted when grains change place, contents from the current places. The two are compared each
-//! time, exactly in grains and to rounding in mass.
+//! Flows are counted when grains change place, contents from the current places. The two are
+//! compared each time, exactly in grains and to rounding in mass.
 
 use serde::{Deserialize, Serialize};
 
@@ -241,8 +242,8 @@ mod tests {
         assert_eq!([f.attached, f.recirculated], [Amount::default(); 2]);
     }
 
-    /// Qs = Cs (Mmax - M) and Qe = Qw = Ce M, the linear closure: M tends to Cs Mmax/(Cs + Ce) with the time
-    /// constant 1/(Cs + Ce), and Qw to Cs Ce Mmax/(Cs + Ce).
+    /// Qs = Cs (Mmax - M) and Qe = Qw = Ce M, the linear closure: M tends to Cs Mmax/(Cs + Ce) with
+    /// the time constant 1/(Cs + Ce), and Qw to Cs Ce Mmax/(Cs + Ce).
     #[test]
     fn imposed_linear_flows_give_their_closed_form() {
         let (cs, ce, most, dt) = (3.0, 2.0, 4_000usize, 1e-3);
@@ -268,7 +269,8 @@ mod tests {
             due = due.map(f64::fract);
             ledger.book(&places);
             let exact = level * (1.0 - (-(step as f64) * dt / tau).exp());
-            // The error of Euler's method is dt/2 in the exponent, and counting whole grains adds a few.
+            // The error of Euler's method is dt/2 in the exponent, and counting whole grains adds a
+            // few.
             let off = (ledger.contents.contact.mass - exact).abs();
             assert!(off < 0.5 * dt / tau * level + 4.0, "step {step}: {off}");
             let worn = ce * level * (step as f64 * dt - tau * exact / level);

@@ -1,9 +1,9 @@
 //! The scar of a surface: worn depth of each vertex, from the volumes worn at contacts.
 //!
-//! A volume dV worn at a contact point on a segment (triangle) is distributed to its ends (corners) by their
-//! linear shape functions N_i there, and lowers vertex i by N_i dV/A_i, where A_i is the integral of N_i
-//! over the surface. The integral of the depth is then the sum of all dV, and equals the volume between the
-//! initial and the current surface ([`crate::geometry::recede`]).
+//! A volume dV worn at a contact point on a segment (triangle) is distributed to its ends (corners)
+//! by their linear shape functions N_i there, and lowers vertex i by N_i dV/A_i, where A_i is the
+//! integral of N_i over the surface. The integral of the depth is then the sum of all dV, and
+//! equals the volume between the initial and the current surface ([`crate::geometry::recede`]).
 
 use crate::geometry::recede::Vertex;
 use crate::geometry::shape::{Carried, Shapes};
@@ -87,7 +87,8 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Has its places shifted (m): the frame of a surface that deforms has its origin at one of its points.
+    /// Has its places shifted (m): the frame of a surface that deforms has its origin at one of its
+    /// points.
     #[must_use]
     pub fn shifted(mut self, by: S::Vector) -> Self {
         self.vertices.iter_mut().for_each(|v| v.at += by);
@@ -147,8 +148,8 @@ impl<S: Space> Scar<S> {
         })
     }
 
-    /// Applies the depth to the surface. Returns whether the displacement since the last `true` exceeds a
-    /// bound (m).
+    /// Applies the depth to the surface. Returns whether the displacement since the last `true`
+    /// exceeds a bound (m).
     pub fn show(&mut self, shapes: &mut Shapes<S>, bound: f64) -> bool {
         if self.pending.is_empty() {
             return false;
@@ -228,8 +229,8 @@ impl<S: Space> Scar<S> {
     }
 }
 
-/// Returns the contact point in the frame of its surface, from the lever arm of the body that carries it
-/// (m).
+/// Returns the contact point in the frame of its surface, from the lever arm of the body that
+/// carries it (m).
 pub fn closest_point<S: Space>(
     carried: &Carried<S>,
     rotation: &S::Rotation,
@@ -264,8 +265,8 @@ mod tests {
         }
     }
 
-    /// Integral of height along the chain by the trapezoidal rule; it decreases where solid is removed, for
-    /// either orientation.
+    /// Integral of height along the chain by the trapezoidal rule; it decreases where solid is
+    /// removed, for either orientation.
     fn under(shapes: &Shapes<Dim2>) -> f64 {
         let chain = shapes.surfaces[0].shape.outline().remove(0);
         let trapezium = |w: &[Vector2<f64>]| 0.5 * (w[1].x - w[0].x) * (w[0].y + w[1].y);
@@ -338,7 +339,8 @@ mod tests {
         }
     }
 
-    /// The displacement of the surface adds up until the neighbour list is built again, and then from zero.
+    /// The displacement of the surface adds up until the neighbour list is built again, and then
+    /// from zero.
     #[test]
     fn displacements_add_up_between_two_lists() {
         let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
@@ -355,7 +357,8 @@ mod tests {
         assert!(!scar.show(&mut shapes, 0.0), "nothing is worn since");
     }
 
-    /// Two states have the surface at the same depths as long as what was worn since was not applied to it.
+    /// Two states have the surface at the same depths as long as what was worn since was not
+    /// applied to it.
     #[test]
     fn states_of_a_scar_are_told_apart_by_the_depths_of_the_surface() {
         let mut shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
@@ -370,7 +373,8 @@ mod tests {
         assert!((under(&shapes) - before - 0.1).abs() < 1e-15);
     }
 
-    /// A chain of 1 m pieces: a vertex at an end has half a piece of its own, and one on which a volume of 0.09 m^2 is put is as many m deep.
+    /// A chain of 1 m pieces: a vertex at an end has half a piece of its own, and one on which a
+    /// volume of 0.09 m^2 is put is as many m deep.
     #[test]
     fn depths_along_the_chain_are_those_of_its_vertices() {
         let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)], None);
@@ -382,7 +386,8 @@ mod tests {
         );
     }
 
-    /// A flank: vertices of one place along the sliding direction have the mean of their depths, by their lengths.
+    /// A flank: vertices of one place along the sliding direction have the mean of their depths, by
+    /// their lengths.
     #[test]
     fn depths_of_one_place_are_averaged() {
         let shapes = scene(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (2.0, 1.0)], None);

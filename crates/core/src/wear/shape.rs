@@ -1,9 +1,10 @@
 //! The shape of a scar: U or W.
 //!
-//! The scar extends from the first to the last place deeper than a twentieth of its largest depth. It is
-//! divided into twenty slices of equal width. The depth of its middle is the mean of the two central slices,
-//! that of its sides the deepest slice of each half. The scar is a W where the middle is below 0.9 of both
-//! sides, otherwise a U. Averaging over slices suppresses the dents of single contacts.
+//! The scar extends from the first to the last place deeper than a twentieth of its largest depth.
+//! It is divided into twenty slices of equal width. The depth of its middle is the mean of the two
+//! central slices, that of its sides the deepest slice of each half. The scar is a W where the
+//! middle is below 0.9 of both sides, otherwise a U. Averaging over slices suppresses the dents of
+//! single contacts.
 
 use serde::Serialize;
 
@@ -40,8 +41,8 @@ pub struct Outline {
     pub sides: [f64; 2],
 }
 
-/// Returns extent and shape from depths in order of position; each row holds position (m), tributary length,
-/// and depth (m).
+/// Returns extent and shape from depths in order of position; each row holds position (m),
+/// tributary length, and depth (m).
 pub fn outline(rows: &[[f64; 3]]) -> Outline {
     let none = Outline {
         form: Form::None,

@@ -1,9 +1,10 @@
-//! Assignment of grains to first bodies: a grain belongs to the first body to whose base it is connected by
-//! a path of intact bonds.
+//! Assignment of grains to first bodies: a grain belongs to the first body to whose base it is
+//! connected by a path of intact bonds.
 //!
-//! A spanning forest grows from the bases along bonds. A broken bond outside the forest changes nothing; one
-//! of the forest disconnects a branch, which searches for another bond to a connected grain: only the branch
-//! is traversed. If there is none, the branch is loose and divided into connected pieces.
+//! A spanning forest grows from the bases along bonds. A broken bond outside the forest changes
+//! nothing; one of the forest disconnects a branch, which searches for another bond to a connected
+//! grain: only the branch is traversed. If there is none, the branch is loose and divided into
+//! connected pieces.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -63,8 +64,8 @@ impl Ties {
         self.bonds[body as usize].len()
     }
 
-    /// Returns the connected piece of a body, in order; for a loose body the search does not enter bases or
-    /// connected bodies, since no path leads there.
+    /// Returns the connected piece of a body, in order; for a loose body the search does not enter
+    /// bases or connected bodies, since no path leads there.
     pub fn piece(&self, body: u32) -> Vec<u32> {
         let mut piece = BTreeSet::from([body]);
         let mut open = vec![body];
@@ -125,7 +126,8 @@ impl Ties {
             (self.base[*b as usize], self.parent[*b as usize]) = (NONE, NONE);
         }
         let tied_still = |ties: &Self, b: u32| ties.base[b as usize] != NONE;
-        // Search from the bodies that remain connected next to the branch, along the remaining bonds.
+        // Search from the bodies that remain connected next to the branch, along the remaining
+        // bonds.
         let mut seeds: Vec<u32> = branch
             .iter()
             .flat_map(|b| self.bonds[*b as usize].iter().copied())

@@ -55,8 +55,9 @@ mod tests {
         (found, flow)
     }
 
-    /// Patch test: a temperature that is linear in space leaves a point inside in balance, also with obtuse elements around it, and what flows
-    /// through a face is k times the gradient times its area.
+    /// Patch test: a temperature that is linear in space leaves a point inside in balance, also
+    /// with obtuse elements around it, and what flows through a face is k times the gradient times
+    /// its area.
     #[test]
     fn a_linear_temperature_is_kept() {
         let points = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0], [0.4, 0.2]];

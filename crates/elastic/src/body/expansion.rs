@@ -1,16 +1,18 @@
 //! Thermal expansion of a body of finite elements.
 //!
-//! A point at a temperature T has the free strain e = alpha (T - T_0), and an element the mean of its points. In small strain the stress is
-//! that of what free strain leaves,
+//! A point at a temperature T has the free strain e = alpha (T - T_0), and an element the mean of
+//! its points. In small strain the stress is that of what free strain leaves,
 //!
 //! ```text
 //! sigma = C : (epsilon - e 1),   f_a = V (3 lambda + 2 G) e grad N_a
 //! ```
 //!
-//! with f_a the force of the free strain on a corner, and in large strain the energy is (1 + e)^3 W(F/(1 + e)), see [`crate::strain`]. In
-//! plane strain the depth stays, so that a free body expands by (1 + nu) e in the plane.
+//! with f_a the force of the free strain on a corner, and in large strain the energy is (1 + e)^3
+//! W(F/(1 + e)), see [`crate::strain`]. In plane strain the depth stays, so that a free body
+//! expands by (1 + nu) e in the plane.
 //!
-//! The free strain changes at the start of a step, where the displacement does not. What the stored energy gains by that is the work of expansion.
+//! The free strain changes at the start of a step, where the displacement does not. What the stored
+//! energy gains by that is the work of expansion.
 //!
 //! Source: B. A. Boley, J. H. Weiner, "Theory of Thermal Stresses" (1960), chapter 3.
 
@@ -105,7 +107,8 @@ impl<S: Deformable> ElasticBody<S> {
         self.free_strain.work = work;
     }
 
-    /// Takes the free strains of the elements that a body was saved with; false where they are not its own.
+    /// Takes the free strains of the elements that a body was saved with; false where they are not
+    /// its own.
     pub(super) fn restore_free_strain(&mut self, of_elements: Vec<f64>) -> bool {
         if !of_elements.is_empty() && of_elements.len() != self.model.mesh.elements().count() {
             return false;
@@ -148,7 +151,8 @@ impl<S: Deformable> ElasticBody<S> {
         force
     }
 
-    /// What an element in small strain stores more (J; J/m in 2D) with one free strain than with another.
+    /// What an element in small strain stores more (J; J/m in 2D) with one free strain than with
+    /// another.
     fn energy_gained(&self, e: usize, points: &[u32], [from, to]: [f64; 2]) -> f64 {
         let Some((simplex, strain)) = self.strain_of(e, points) else {
             return 0.0;

@@ -1,4 +1,5 @@
-//! What a body of finite elements tells of itself: stress, forces of its holders, its mesh and the surface that touches.
+//! What a body of finite elements tells of itself: stress, forces of its holders, its mesh and the
+//! surface that touches.
 
 use super::ElasticBody;
 use crate::compiled::Deformable;
@@ -27,8 +28,8 @@ impl<S: Deformable> ElasticBody<S> {
         mesh.elements().enumerate().map(stress).collect()
     }
 
-    /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N; N/m in 2D): what the support
-    /// needs to impose the motion, without contacts at its own points.
+    /// Sum of the forces of the holder of each imposed axis over the last step, by coordinate (N;
+    /// N/m in 2D): what the support needs to impose the motion, without contacts at its own points.
     pub(super) fn reactions(&self, step: &SystemStep<S>) -> Vec<f64> {
         let model = &self.model;
         let (average, theta_point) = self.average(step);

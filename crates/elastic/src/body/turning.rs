@@ -1,7 +1,9 @@
-//! Moments of contacts on a body of finite elements: what touches turns as its facet there, see [`crate::facet_spin`].
+//! Moments of contacts on a body of finite elements: what touches turns as its facet there, see
+//! [`crate::facet_spin`].
 //!
-//! The nodes that turn come after the points of the mesh: one for each facet of the part that touches, then one for each point of the mesh,
-//! which turns as the mean of the facets at it, and in space one for each edge of each facet, which turns as the mean of the two at it.
+//! The nodes that turn come after the points of the mesh: one for each facet of the part that
+//! touches, then one for each point of the mesh, which turns as the mean of the facets at it, and
+//! in space one for each edge of each facet, which turns as the mean of the two at it.
 
 use super::ElasticBody;
 use crate::compiled::Deformable;
@@ -51,7 +53,8 @@ impl<S: Deformable> ElasticBody<S> {
         Some((node, self.facet_spin(node)?.length))
     }
 
-    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; none where these are not kept.
+    /// Compliance of nodes of which some turn, by the kept columns of the points that touch; none
+    /// where these are not kept.
     pub(super) fn compliance_with_turning(&self, nodes: &[u32]) -> Option<Vec<S::Matrix>> {
         let formed = self.formed.as_ref()?;
         let kept = formed.surface.as_ref()?;

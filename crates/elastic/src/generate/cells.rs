@@ -2,7 +2,8 @@
 
 use super::grid::{Grid, Place};
 
-/// A cell: its lowest and highest place, and the number of its column along each axis and of its row.
+/// A cell: its lowest and highest place, and the number of its column along each axis and of its
+/// row.
 pub(super) struct Cell {
     pub(super) low: Place,
     pub(super) high: Place,
@@ -21,7 +22,8 @@ impl Cell {
     }
 }
 
-/// The elements of a cell: whole ones by the places of their D + 1 corners, or around the centre of the cell by the D others.
+/// The elements of a cell: whole ones by the places of their D + 1 corners, or around the centre of
+/// the cell by the D others.
 pub(super) enum Cut {
     Whole(Vec<Vec<Place>>),
     Around(Vec<Vec<Place>>),
@@ -73,7 +75,8 @@ pub(super) fn cut(grid: &Grid, cell: &Cell) -> Cut {
     Cut::Around(facets)
 }
 
-/// Whether a cell in space has no points but its corners, and the diagonals of its faces are those of [`paths`].
+/// Whether a cell in space has no points but its corners, and the diagonals of its faces are those
+/// of [`paths`].
 fn is_plain(grid: &Grid, cell: &Cell) -> bool {
     let row = cell.at[grid.axis()];
     let others = (0..3).filter(|k| *k != grid.axis());
@@ -85,8 +88,9 @@ fn is_plain(grid: &Grid, cell: &Cell) -> bool {
     })
 }
 
-/// Tetrahedra of a cell along the paths from one corner to the opposite one, along one axis after the other (Kuhn). Paths begin
-/// where all numbers are even, so that the diagonal of a face goes from its corner with even to that with odd numbers.
+/// Tetrahedra of a cell along the paths from one corner to the opposite one, along one axis after
+/// the other (Kuhn). Paths begin where all numbers are even, so that the diagonal of a face goes
+/// from its corner with even to that with odd numbers.
 fn paths(cell: &Cell) -> Vec<Vec<Place>> {
     let orders = [
         [0, 1, 2],
@@ -184,7 +188,8 @@ fn others(axis: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][axis]
 }
 
-/// A rectangle along two axes cut along a diagonal, from the corner with even to that with odd numbers; `sum` is that of the numbers of its low ends.
+/// A rectangle along two axes cut along a diagonal, from the corner with even to that with odd
+/// numbers; `sum` is that of the numbers of its low ends.
 fn halves(
     place: Place,
     [a, b]: [usize; 2],
@@ -207,7 +212,8 @@ fn halves(
     })
 }
 
-/// Swaps the first two corners of an element that is turned inside out; the centre of a cell is its last corner if it has one.
+/// Swaps the first two corners of an element that is turned inside out; the centre of a cell is its
+/// last corner if it has one.
 fn orient(corners: &mut [Place], around: Option<&Cell>, d: usize) {
     // Twice the places, so that a centre has whole numbers.
     let doubled = corners.iter().map(|p| p.map(|k| 2 * k as i64));

@@ -8,8 +8,9 @@ const ROUNDING: f64 = 1e-9;
 /// A place in the grid: which of the coordinates along each axis. In 2D the last is none.
 pub(super) type Place = [usize; 3];
 
-/// Cells of a box in rows along one axis. All cells of a row have the same columns; those of the next row are the same, or pairs
-/// of them are joined. Of two rows, the points between them are those of the row with more columns.
+/// Cells of a box in rows along one axis. All cells of a row have the same columns; those of the
+/// next row are the same, or pairs of them are joined. Of two rows, the points between them are
+/// those of the row with more columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// Coordinates along each axis (m), rising.
@@ -82,7 +83,8 @@ pub enum GridError {
 }
 
 impl Grid {
-    /// A grid with the same columns in all rows, between the given coordinates along two or three axes (m), which must rise.
+    /// A grid with the same columns in all rows, between the given coordinates along two or three
+    /// axes (m), which must rise.
     ///
     /// # Errors
     /// Fewer than two coordinates along an axis, or another number of axes.
@@ -100,13 +102,15 @@ impl Grid {
         })
     }
 
-    /// The given coordinates along each axis (m), with columns that join with the distance from a side: from the second row on,
-    /// neighbours join in pairs, from both ends of each axis to its middle, where the pair is no wider than `ratio` times the
-    /// height of the row. One that is left over, of an odd number, joins in the next row in which it and its neighbour are narrow enough.
+    /// The given coordinates along each axis (m), with columns that join with the distance from a
+    /// side: from the second row on, neighbours join in pairs, from both ends of each axis to its
+    /// middle, where the pair is no wider than `ratio` times the height of the row. One that is
+    /// left over, of an odd number, joins in the next row in which it and its neighbour are narrow
+    /// enough.
     ///
     /// # Errors
-    /// Fewer than two coordinates along an axis, or another number of axes; an unknown side; no row that is high enough;
-    /// more than `most` points of cells.
+    /// Fewer than two coordinates along an axis, or another number of axes; an unknown side; no row
+    /// that is high enough; more than `most` points of cells.
     pub fn coarsened(
         lines: &[Vec<f64>],
         coarsening: &Coarsening,
@@ -233,7 +237,8 @@ impl Grid {
         &self.sets[self.rows[row]]
     }
 
-    /// Where the columns of the points between rows k - 1 and k end, along each axis but that of the rows.
+    /// Where the columns of the points between rows k - 1 and k end, along each axis but that of
+    /// the rows.
     pub(super) fn plane(&self, k: usize) -> &[Vec<usize>] {
         let below = self.rows.get(k.wrapping_sub(1));
         let around = below.into_iter().chain(self.rows.get(k));
@@ -241,7 +246,8 @@ impl Grid {
         &self.sets[around.copied().min().unwrap_or(0)]
     }
 
-    /// The coordinates of the points in plane k from one end of a column to the other along an axis, and the number of the first.
+    /// The coordinates of the points in plane k from one end of a column to the other along an
+    /// axis, and the number of the first.
     pub(super) fn between(
         &self,
         k: usize,

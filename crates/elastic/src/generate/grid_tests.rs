@@ -27,8 +27,8 @@ fn sides(d: usize) -> Vec<(usize, usize, &'static str)> {
         .collect()
 }
 
-/// Coordinates along each axis for a side of small cells: even ones with these numbers, and rows that grow away from the side, from
-/// the narrowest columns on.
+/// Coordinates along each axis for a side of small cells: even ones with these numbers, and rows
+/// that grow away from the side, from the narrowest columns on.
 fn lines(counts: &[usize], axis: usize, end: usize) -> Vec<Vec<f64>> {
     let length = |k: usize| 1.0 + 0.25 * k as f64;
     let width = |k: usize| length(k) / counts[k] as f64;
@@ -56,7 +56,8 @@ fn boxes(counts: &[usize]) -> Vec<(Grid, &'static str)> {
     sides(counts.len()).into_iter().map(one).collect()
 }
 
-/// Every facet that one element alone has is on exactly one side of the box: a crack between cells would have facets on none.
+/// Every facet that one element alone has is on exactly one side of the box: a crack between cells
+/// would have facets on none.
 fn is_conforming<S: Space>(mesh: &Mesh<S>) {
     let mut named = vec![0; mesh.facets()];
     for (_, _, name) in sides(S::D) {
@@ -72,7 +73,8 @@ fn volumes<S: Space>(mesh: &Mesh<S>) -> Vec<f64> {
     mesh.elements().map(volume).collect()
 }
 
-/// The volume within the boundary (Gauss; m^3, m^2 in 2D), which sees nothing of the elements inside.
+/// The volume within the boundary (Gauss; m^3, m^2 in 2D), which sees nothing of the elements
+/// inside.
 fn enclosed<S: Space>(mesh: &Mesh<S>) -> f64 {
     let one = |f: usize| {
         let c: Vec<_> = mesh
@@ -101,7 +103,8 @@ fn pairs_join_where_rows_are_high_enough() {
         columns
     };
     assert_eq!(columns(8, 1.0), [8, 8, 4, 2, 2]);
-    // One of seven is left over, between pairs; with a pair it is 3 wide and joins where rows are 4 high.
+    // One of seven is left over, between pairs; with a pair it is 3 wide and joins where rows are 4
+    // high.
     assert_eq!(columns(7, 1.0), [7, 7, 4, 2, 2]);
     // 5: 2 1 2, then 3 2; these are 5 wide.
     assert_eq!(columns(5, 1.0), [5, 5, 3, 2, 2]);
@@ -237,7 +240,8 @@ fn a_uniform_strain_is_reproduced() {
     patch::<Dim3>(&[9, 6, 7]);
 }
 
-/// Columns that grow along the surface join where they are narrow, and a side that is round or wavy keeps a mesh that fits.
+/// Columns that grow along the surface join where they are narrow, and a side that is round or wavy
+/// keeps a mesh that fits.
 #[test]
 fn graded_columns_and_sides_that_are_not_flat() {
     let across = |n: usize| -> Vec<f64> {

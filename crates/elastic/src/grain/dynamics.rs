@@ -1,4 +1,5 @@
-//! A step of a grain that deforms: its frame as a rigid body, its modes as oscillators, both by the theta scheme.
+//! A step of a grain that deforms: its frame as a rigid body, its modes as oscillators, both by the
+//! theta scheme.
 
 use super::shape::stresses;
 use super::{ElasticGrain, Formed, Middle, State};
@@ -21,7 +22,8 @@ impl<S: Deformable> ElasticGrain<S> {
         1.0 / (1.0 + h * theta * self.model.damping.mass)
     }
 
-    /// The elastic compliance of the surface for an impulse along an axis of a vertex, in the frame.
+    /// The elastic compliance of the surface for an impulse along an axis of a vertex, in the
+    /// frame.
     fn column<'a>(&self, formed: &'a Formed, vertex: usize, axis: usize) -> &'a [f64] {
         formed.columns[vertex * S::D + axis].get_or_init(|| {
             let (shape, scale) = (&self.model.shape, self.model.scale);
@@ -30,7 +32,8 @@ impl<S: Deformable> ElasticGrain<S> {
         })
     }
 
-    /// Arm of a vertex from the origin of the frame, in world axes (m); of the node that turns none.
+    /// Arm of a vertex from the origin of the frame, in world axes (m); of the node that turns
+    /// none.
     fn arm(&self, node: u32) -> S::Vector {
         let vertex = self.vertices.get(node as usize);
         vertex.map_or(S::Vector::zero(), |at| S::rotate(&self.state.rotation, at))

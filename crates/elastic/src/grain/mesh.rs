@@ -1,7 +1,8 @@
-//! Meshes of grains: rings of triangles around the centre of a polygon, shells of tetrahedra around that of a polyhedron.
+//! Meshes of grains: rings of triangles around the centre of a polygon, shells of tetrahedra around
+//! that of a polyhedron.
 //!
-//! The outer ring or shell is the boundary of the grain, cut into edges of equal length; those within are smaller copies of it, in
-//! the plane with fewer points, so that elements stay alike.
+//! The outer ring or shell is the boundary of the grain, cut into edges of equal length; those
+//! within are smaller copies of it, in the plane with fewer points, so that elements stay alike.
 
 use crate::mesh::{Mesh, MeshError};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -12,7 +13,8 @@ const ROUNDING: f64 = 1e-9;
 /// Least number of points of a ring.
 const LEAST: usize = 6;
 
-/// The corners of a disk's polygon on the unit circle, anticlockwise: six for each of the elements along its radius.
+/// The corners of a disk's polygon on the unit circle, anticlockwise: six for each of the elements
+/// along its radius.
 pub fn disk<S: Space>(elements: usize) -> Vec<S::Vector> {
     let count = 6 * elements.max(1);
     let corner = |k: usize| {
@@ -22,7 +24,8 @@ pub fn disk<S: Space>(elements: usize) -> Vec<S::Vector> {
     (0..count).map(corner).collect()
 }
 
-/// A polygon with its corners (m) anticlockwise, whose elements have edges of about `size` (m), around a centre within (2D).
+/// A polygon with its corners (m) anticlockwise, whose elements have edges of about `size` (m),
+/// around a centre within (2D).
 ///
 /// # Errors
 /// Corners that enclose no area around the centre.
@@ -252,7 +255,8 @@ pub fn shells<S: Space>(
         let at = |shell: usize, k: usize| (1 + shell * count) as u32 + t[k];
         elements.push([0, at(0, 0), at(0, 1), at(0, 2)]);
         for shell in 1..shells {
-            // Sides of prisms are cut from the inner point of lower index, in both prisms that share one.
+            // Sides of prisms are cut from the inner point of lower index, in both prisms that
+            // share one.
             let (i, o) = (shell - 1, shell);
             elements.push([at(i, 0), at(i, 1), at(i, 2), at(o, 2)]);
             elements.push([at(i, 0), at(i, 1), at(o, 1), at(o, 2)]);

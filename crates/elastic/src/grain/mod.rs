@@ -1,18 +1,22 @@
 //! A grain that deforms: a rigid body with elastic modes about it, the floating frame of reference.
 //!
-//! With the place c of its frame, its orientation R and the amplitudes eta of its modes, the point X of the grain is at and moves as
+//! With the place c of its frame, its orientation R and the amplitudes eta of its modes, the point
+//! X of the grain is at and moves as
 //!
 //! ```text
 //! x = c + R (X + u),  u = sum_k phi_k(X) eta_k
 //! dx/dt = V + w x R (X + u) + R sum_k phi_k(X) deta_k/dt
 //! ```
 //!
-//! Frame and modes have the energies M V^2/2 + w . J w/2 + sum (deta_k^2 + lambda_k eta_k^2)/2 with the inertia J of the grain without load:
-//! what rotation and modes do to each other through inertia is left out, strains of the size rho w^2 R^2/E. Momentum and energy of this
-//! system are conserved to rounding as those of rigid bodies are. Strain in the frame is small; rotations are not.
+//! Frame and modes have the energies M V^2/2 + w . J w/2 + sum (deta_k^2 + lambda_k eta_k^2)/2 with
+//! the inertia J of the grain without load: what rotation and modes do to each other through
+//! inertia is left out, strains of the size rho w^2 R^2/E. Momentum and energy of this system are
+//! conserved to rounding as those of rigid bodies are. Strain in the frame is small; rotations are
+//! not.
 //!
-//! Source: A. A. Shabana, Dynamics of Multibody Systems, 4th ed. (2013), chapters 5 and 6; for modes of free bodies section 6.1 of
-//! T. J. R. Hughes, The Finite Element Method (1987), chapter 9.
+//! Source: A. A. Shabana, Dynamics of Multibody Systems, 4th ed. (2013), chapters 5 and 6; for
+//! modes of free bodies section 6.1 of T. J. R. Hughes, The Finite Element Method (1987), chapter
+//! 9.
 
 mod dynamics;
 pub mod mesh;
@@ -38,7 +42,8 @@ pub struct ElasticGrainSpec<S: Space> {
     pub shape: Arc<GrainShape<S>>,
     /// Length of the unit of its shape (m).
     pub size: f64,
-    /// Radius of the ball (2D: disk) whose mass it has (m): of a ball that of it, of others the radius of the same volume.
+    /// Radius of the ball (2D: disk) whose mass it has (m): of a ball that of it, of others the
+    /// radius of the same volume.
     pub radius: f64,
     /// Its material.
     pub material: Elasticity,
@@ -54,7 +59,8 @@ pub struct ElasticGrainSpec<S: Space> {
     pub velocity: S::Vector,
     /// Its angular velocity (rad/s).
     pub spin: S::Spin,
-    /// Displacements of the points of its mesh in the frame (m), and their rates (m/s); empty of a grain without strain.
+    /// Displacements of the points of its mesh in the frame (m), and their rates (m/s); empty of a
+    /// grain without strain.
     pub displacement: [Vec<S::Vector>; 2],
 }
 
@@ -65,7 +71,8 @@ struct Formed {
     of: [f64; 2],
     /// 1/(1 + h theta c_k + h^2 theta^2 lambda_k) of each mode.
     over: Vec<f64>,
-    /// The elastic compliance of the coordinates of the surface in the frame (1/kg), column by column as they are touched.
+    /// The elastic compliance of the coordinates of the surface in the frame (1/kg), column by
+    /// column as they are touched.
     columns: Vec<OnceLock<Vec<f64>>>,
 }
 

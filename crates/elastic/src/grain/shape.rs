@@ -1,7 +1,8 @@
 //! What grains of one shape share: their mesh, and how it vibrates.
 //!
-//! The modes of a free mesh, K phi = lambda M phi, turn its elastic motion into oscillators that know nothing of each other: a step
-//! of any length needs no factor, and grains of one shape and different sizes, stiffnesses and densities have the same modes.
+//! The modes of a free mesh, K phi = lambda M phi, turn its elastic motion into oscillators that
+//! know nothing of each other: a step of any length needs no factor, and grains of one shape and
+//! different sizes, stiffnesses and densities have the same modes.
 
 use crate::element::Simplex;
 use crate::freedom::Freedoms;
@@ -12,11 +13,13 @@ use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::DMatrix;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The shape of grains with their mesh, about its centre of mass, and its modes at unit density and unit Young's modulus.
+/// The shape of grains with their mesh, about its centre of mass, and its modes at unit density and
+/// unit Young's modulus.
 #[derive(Debug)]
 pub struct GrainShape<S: Space> {
     mesh: Mesh<S>,
-    /// Points of the mesh that are on its boundary, in the order of the vertices of the surface: clockwise in the plane.
+    /// Points of the mesh that are on its boundary, in the order of the vertices of the surface:
+    /// clockwise in the plane.
     vertices: Vec<u32>,
     /// The D vertices of each facet; outside is where they are anticlockwise (3D).
     facets: Vec<[u32; 3]>,
@@ -145,7 +148,8 @@ impl<S: Space> GrainShape<S> {
         out
     }
 
-    /// Length or area of the surface that belongs to each vertex, along the outward normals of its facets.
+    /// Length or area of the surface that belongs to each vertex, along the outward normals of its
+    /// facets.
     pub fn tributary(&self) -> Vec<S::Vector> {
         let at: Vec<S::Vector> = self.vertices().collect();
         let mut out = vec![S::Vector::zero(); at.len()];
@@ -169,8 +173,9 @@ impl<S: Space> GrainShape<S> {
         sum::<S>(&self.modes, amplitudes, self.mesh.points().len())
     }
 
-    /// The amplitudes of the modes of displacements of all points, as many as the mesh has: what [`Self::displacements`] gives, less any rigid
-    /// motion. Modes are orthogonal by the masses of the points.
+    /// The amplitudes of the modes of displacements of all points, as many as the mesh has: what
+    /// [`Self::displacements`] gives, less any rigid motion. Modes are orthogonal by the masses of
+    /// the points.
     pub fn amplitudes(&self, displacements: &[S::Vector]) -> Vec<f64> {
         let masses = self.masses();
         let weighed: Vec<f64> = displacements
@@ -219,7 +224,8 @@ fn sum<S: Space>(modes: &[f64], amplitudes: &[f64], points: usize) -> Vec<S::Vec
     out.chunks_exact(S::D).map(S::Vector::from_slice).collect()
 }
 
-/// The points of the boundary, in the plane clockwise along it, and its facets by their places among these.
+/// The points of the boundary, in the plane clockwise along it, and its facets by their places
+/// among these.
 fn boundary<S: Space>(mesh: &Mesh<S>) -> Result<(Vec<u32>, Vec<[u32; 3]>), String> {
     let facets: Vec<&[u32]> = (0..mesh.facets()).map(|f| mesh.facet(f)).collect();
     if S::D == 2 {
@@ -271,8 +277,9 @@ mod tests {
     use fretwork_core::geometry::space::{Dim2, Dim3};
     use nalgebra::{Vector2, Vector3};
 
-    /// Free vibration of a disk in plane strain: the lowest mode turns the circle into an ellipse. A. E. H. Love, A Treatise on the Mathematical
-    /// Theory of Elasticity, art. 200; for n = 2 the frequency equation in Bessel functions is solved here by bisection.
+    /// Free vibration of a disk in plane strain: the lowest mode turns the circle into an ellipse.
+    /// A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, art. 200; for n = 2 the
+    /// frequency equation in Bessel functions is solved here by bisection.
     #[test]
     fn a_disk_vibrates_as_love_says() {
         let nu: f64 = 0.3;
@@ -288,8 +295,9 @@ mod tests {
             let inner: f64 = (1..parts).map(f).sum();
             (inner + 0.5 * (f(0) + f(parts))) / f64::from(parts)
         };
-        // Displacements u = grad phi + rot psi with phi = J_2(h r) cos 2 t, psi = J_2(k r) sin 2 t; tractions at r = 1 vanish:
-        //   sigma_rr/G: (2 n(n-1)... written with J_n and its derivative, x J_n' = n J_n - x J_(n+1).
+        // Displacements u = grad phi + rot psi with phi = J_2(h r) cos 2 t, psi = J_2(k r) sin 2 t;
+        // tractions at r = 1 vanish: sigma_rr/G: (2 n(n-1)... written with J_n and its derivative,
+        // x J_n' = n J_n - x J_(n+1).
         let frequency = |w: f64| {
             let (h, k) = (w / (lambda + 2.0 * shear).sqrt(), w / shear.sqrt());
             let n = 2.0;

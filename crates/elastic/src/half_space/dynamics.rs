@@ -59,7 +59,8 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         self.start[0].copy_from_slice(&self.displacement);
         self.start[1].copy_from_slice(&self.velocity);
         self.force.fill(0.0);
-        // Which axes yield to forces stays as it is over a run: phases that would change it are refused.
+        // Which axes yield to forces stays as it is over a run: phases that would change it are
+        // refused.
         let of = |s: &SystemStep<S>| [s.h, s.theta];
         if self.held() <= MAX_KEPT && self.step.as_ref().map(of) != Some(of(step)) {
             let cells = (0..self.fixed.grid.len() as u32).collect();
@@ -229,7 +230,8 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
         let cells = self.fixed.grid.len();
         let base = self.fixed.places[origin as usize];
         let middle = self.fixed.grid.middle(origin as usize);
-        // The place without load of what is there now: displacements are small against cells, so that three times are enough.
+        // The place without load of what is there now: displacements are small against cells, so
+        // that three times are enough.
         let mut at = self.node_position(origin) + *arm - self.entries(&self.displacement, cells);
         for (axis, x) in middle.iter().enumerate().take(S::D - 1) {
             at[axis] += x - base[axis];

@@ -70,8 +70,8 @@ impl Grid {
         out
     }
 
-    /// The cells around a place and their weights, by the shape functions of the facets; clamped to the grid, or along x wrapped into it
-    /// where it repeats (2D).
+    /// The cells around a place and their weights, by the shape functions of the facets; clamped to
+    /// the grid, or along x wrapped into it where it repeats (2D).
     pub fn weights<S: Space>(&self, at: &S::Vector, repeats: bool) -> Vec<(u32, f64)> {
         if repeats {
             let s = (at[0] - self.from[0]) / self.size[0] - 0.5;

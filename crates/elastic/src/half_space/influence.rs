@@ -1,11 +1,14 @@
-//! Displacement of the surface of an elastic half-space by a uniform load on one cell of it, in closed form.
+//! Displacement of the surface of an elastic half-space by a uniform load on one cell of it, in
+//! closed form.
 //!
-//! The axes are those of the surface, x and, in space, y, and the inward normal n, last. `[a][b]` of what is returned is the
-//! displacement along a by a force on the cell along b (m/N; m per N/m in the plane).
+//! The axes are those of the surface, x and, in space, y, and the inward normal n, last. `[a][b]`
+//! of what is returned is the displacement along a by a force on the cell along b (m/N; m per N/m
+//! in the plane).
 //!
-//! Sources: K. L. Johnson, "Contact Mechanics" (1985), sections 2.2 to 2.5, 3.2 and 3.6; A. E. H. Love, "The stress produced in a
-//! semi-infinite solid by pressure on part of the boundary", Phil. Trans. R. Soc. A 228 (1929); J. J. Kalker, "Three-dimensional
-//! elastic bodies in rolling contact" (1990), appendix C.
+//! Sources: K. L. Johnson, "Contact Mechanics" (1985), sections 2.2 to 2.5, 3.2 and 3.6; A. E. H.
+//! Love, "The stress produced in a semi-infinite solid by pressure on part of the boundary", Phil.
+//! Trans. R. Soc. A 228 (1929); J. J. Kalker, "Three-dimensional elastic bodies in rolling contact"
+//! (1990), appendix C.
 
 use crate::material::Elasticity;
 use std::f64::consts::PI;
@@ -13,11 +16,13 @@ use std::f64::consts::PI;
 /// Displacements by forces, by axis; two of each in the plane.
 pub type Influence = [[f64; 3]; 3];
 
-/// Plane strain: the displacement at `x` from the middle of a strip of width `size` (m), relative to the points at `depth` (m) below
-/// the strip.
+/// Plane strain: the displacement at `x` from the middle of a strip of width `size` (m), relative
+/// to the points at `depth` (m) below the strip.
 ///
-/// Of a force P per depth far from the strip the displacement along P is (2 (1 - nu^2) P/(pi E)) (ln(depth/|x|) -+ 1/(2 (1 - nu))), with
-/// - along the normal and + along the surface (Flamant's solution with its constant such that it vanishes at that depth).
+/// Of a force P per depth far from the strip the displacement along P is (2 (1 - nu^2) P/(pi E))
+/// (ln(depth/|x|) -+ 1/(2 (1 - nu))), with
+/// - along the normal and + along the surface (Flamant's solution with its constant such that it
+///   vanishes at that depth).
 pub fn strip(material: &Elasticity, size: f64, depth: f64, x: f64) -> Influence {
     let nu = material.poisson;
     let own = 2.0 / (PI * material.plane_strain());
@@ -52,7 +57,8 @@ pub fn rectangle(material: &Elasticity, size: [f64; 2], x: f64, y: f64) -> Influ
         let [y0, y1] = [y - 0.5 * size[1], y + 0.5 * size[1]];
         (f(x1, y1) - f(x0, y1) - f(x1, y0) + f(x0, y0)) / (size[0] * size[1])
     };
-    // Integrals of x^2/r^3, y^2/r^3, x y/r^3, x/r^2 and y/r^2, whose sum of the first two is that of 1/r.
+    // Integrals of x^2/r^3, y^2/r^3, x y/r^3, x/r^2 and y/r^2, whose sum of the first two is that
+    // of 1/r.
     let xx = sum(|x, y| times(y, log_of_sum(x, y)));
     let yy = sum(|x, y| times(x, log_of_sum(y, x)));
     let xy = sum(|x, y| -x.hypot(y));
@@ -91,8 +97,9 @@ fn log_of_sum(x: f64, y: f64) -> f64 {
     }
 }
 
-/// The displacement of a wave of traction exp(i k x) of unit amplitude (m/Pa): its real part, and the part that is a quarter of a
-/// wave ahead (imaginary). `k` has one wave number in the plane and two in space (1/m); not all may be zero.
+/// The displacement of a wave of traction exp(i k x) of unit amplitude (m/Pa): its real part, and
+/// the part that is a quarter of a wave ahead (imaginary). `k` has one wave number in the plane and
+/// two in space (1/m); not all may be zero.
 pub fn wave(material: &Elasticity, k: [f64; 2], dimension: usize) -> [Influence; 2] {
     let nu = material.poisson;
     let (mut real, mut imaginary) = (Influence::default(), Influence::default());
@@ -116,7 +123,8 @@ pub fn wave(material: &Elasticity, k: [f64; 2], dimension: usize) -> [Influence;
     [real, imaginary]
 }
 
-/// The displacement by a uniform traction (m/Pa), relative to points at `depth` (m): pure shear, and compression without lateral strain.
+/// The displacement by a uniform traction (m/Pa), relative to points at `depth` (m): pure shear,
+/// and compression without lateral strain.
 pub fn uniform(material: &Elasticity, depth: f64, dimension: usize) -> Influence {
     let mut out = Influence::default();
     let n = dimension - 1;
@@ -160,8 +168,8 @@ mod tests {
         near(of * (1.0 - 2.0 * nu) * y, found[2][1], 1e-5);
     }
 
-    /// Love: the middle of a square of side 2 a under p sinks by (8/pi) ln(1 + sqrt 2) p a (1 - nu^2)/E, a corner by half of that
-    /// (Johnson, equation 3.26).
+    /// Love: the middle of a square of side 2 a under p sinks by (8/pi) ln(1 + sqrt 2) p a (1 -
+    /// nu^2)/E, a corner by half of that (Johnson, equation 3.26).
     #[test]
     fn a_square_sinks_as_loves() {
         let a = 0.5;
@@ -185,8 +193,9 @@ mod tests {
         }
     }
 
-    /// The middle of a strip of width 2 a: the approach of Johnson's equation 5.55 has the same constant, -nu/(1 - nu), with the mean
-    /// of the logarithm over an ellipse in place of that of a strip.
+    /// The middle of a strip of width 2 a: the approach of Johnson's equation 5.55 has the same
+    /// constant, -nu/(1 - nu), with the mean of the logarithm over an ellipse in place of that of a
+    /// strip.
     #[test]
     fn a_strip_sinks_relative_to_its_depth() {
         let (a, d, nu) = (1e-3, 0.5, RUBBER.poisson);
@@ -217,7 +226,8 @@ mod tests {
         }
         let [real, imaginary] = wave(&RUBBER, [k, 0.0], 2);
         near(real[1][1], sum[0], 3e-3);
-        // u(0) by a load p(x) = sin(k x) is the sum of the influence at -x, which is odd, and Re(i imaginary (-i)).
+        // u(0) by a load p(x) = sin(k x) is the sum of the influence at -x, which is odd, and Re(i
+        // imaginary (-i)).
         near(imaginary[0][1], -sum[1], 3e-3);
     }
 }

@@ -1,5 +1,6 @@
-//! The influence of loads on a regular grid of cells: it depends on the distance of two cells alone, so that one number a distance is
-//! kept, and the displacement by many loads is a convolution.
+//! The influence of loads on a regular grid of cells: it depends on the distance of two cells
+//! alone, so that one number a distance is kept, and the displacement by many loads is a
+//! convolution.
 
 use super::grid::Grid;
 use super::influence::{Influence, rectangle, strip, uniform, wave};
@@ -11,7 +12,8 @@ use std::sync::{Arc, OnceLock};
 /// How far a half-space reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
-    /// To infinity, free of load outside its cells. In the plane displacements are relative to this depth (m); in space to infinity.
+    /// To infinity, free of load outside its cells. In the plane displacements are relative to this
+    /// depth (m); in space to infinity.
     Infinite(f64),
     /// The cells repeat with their extent; displacements are relative to this depth (m).
     Periodic(f64),
@@ -31,7 +33,8 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// The kernel of a grid, with the displacement at places that lie `shift` (m) along x from the middles of cells.
+    /// The kernel of a grid, with the displacement at places that lie `shift` (m) along x from the
+    /// middles of cells.
     pub fn new(
         grid: &Grid,
         material: &Elasticity,
@@ -60,7 +63,8 @@ impl Kernel {
         }
     }
 
-    /// The displacement in a cell by a force on another (m/N; m per N/m in the plane), with the inward normal as last axis.
+    /// The displacement in a cell by a force on another (m/N; m per N/m in the plane), with the
+    /// inward normal as last axis.
     pub fn between(&self, at: usize, load: usize) -> &Influence {
         let columns = self.cells[0];
         let place = |cell: usize| [cell % columns, cell / columns];
@@ -74,7 +78,8 @@ impl Kernel {
         let loaded: Vec<usize> = (0..forces[0].len())
             .filter(|c| forces.iter().any(|f| f[*c] != 0.0))
             .collect();
-        // Measured: a pair of cells takes five times as long as a place and bit of a transform, of which there are 2 D.
+        // Measured: a pair of cells takes five times as long as a place and bit of a transform, of
+        // which there are 2 D.
         let size = self.table[0] * self.table[1];
         let bits = usize::BITS - size.leading_zeros();
         if 5 * loaded.len() * forces[0].len() < 2 * self.dimension * size * bits as usize {
@@ -185,7 +190,8 @@ fn closed_forms(
     table: [usize; 2],
     shift: f64,
 ) -> Vec<Influence> {
-    // Distances beyond the middle of the table stand for negative ones; those between the two are met by no pair of cells.
+    // Distances beyond the middle of the table stand for negative ones; those between the two are
+    // met by no pair of cells.
     let distance = |k: usize, of: usize| match k {
         k if k < grid.cells[of] => k as f64 * grid.size[of],
         k => (k as f64 - table[of] as f64) * grid.size[of],
@@ -202,7 +208,8 @@ fn closed_forms(
         .collect()
 }
 
-/// The table of a half-space with a period, from the waves that fit in it and are longer than two cells.
+/// The table of a half-space with a period, from the waves that fit in it and are longer than two
+/// cells.
 fn waves(
     grid: &Grid,
     material: &Elasticity,

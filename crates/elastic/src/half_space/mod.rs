@@ -1,20 +1,22 @@
-//! A body that is large against what touches it, as an elastic half-space: its surface gives way to loads by the closed forms of
-//! Boussinesq, Cerruti and Flamant, at once and without inertia.
+//! A body that is large against what touches it, as an elastic half-space: its surface gives way to
+//! loads by the closed forms of Boussinesq, Cerruti and Flamant, at once and without inertia.
 //!
-//! The displacement of its cells is u = F f, f the forces of contacts on them over the step, so that with q = u at the point of the
-//! step where contacts are found
+//! The displacement of its cells is u = F f, f the forces of contacts on them over the step, so
+//! that with q = u at the point of the step where contacts are found
 //!
 //! ```text
 //! v_free = -q/(h theta)        v+ = v_free + F p/(h^2 theta)        q + h theta v+ = F p/h
 //! ```
 //!
-//! On top of that the half-space moves with its holder far away, with a mass where it moves under forces. Where the surface rolls
-//! through the contact, the cells stay and material passes them: along the surface a step begins with u(x - V h), the displacement
-//! of what has come there, from the forces of the step before. Along the normal it begins with u(x): a gap is that of the place. The
-//! work of normal forces on what passes, f_n (u_n(x) - u_n(x - V h)), is that of what makes the surface roll.
+//! On top of that the half-space moves with its holder far away, with a mass where it moves under
+//! forces. Where the surface rolls through the contact, the cells stay and material passes them:
+//! along the surface a step begins with u(x - V h), the displacement of what has come there, from
+//! the forces of the step before. Along the normal it begins with u(x): a gap is that of the place.
+//! The work of normal forces on what passes, f_n (u_n(x) - u_n(x - V h)), is that of what makes the
+//! surface roll.
 //!
-//! Sources: K. L. Johnson, "Contact Mechanics" (1985), chapters 2, 3 and 8; J. J. Kalker, "Three-dimensional elastic bodies in
-//! rolling contact" (1990), chapter 4.
+//! Sources: K. L. Johnson, "Contact Mechanics" (1985), chapters 2, 3 and 8; J. J. Kalker,
+//! "Three-dimensional elastic bodies in rolling contact" (1990), chapter 4.
 
 mod dynamics;
 mod error;
@@ -51,12 +53,14 @@ pub enum Fills {
     Above,
 }
 
-/// How the cells of a half-space touch. Where two meet one touches by its points and the other by its surface.
+/// How the cells of a half-space touch. Where two meet one touches by its points and the other by
+/// its surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
     /// The middle of each cell touches balls, pieces and surfaces.
     Points,
-    /// The surface between the middles of cells touches grains, points, and corners and edges of pieces.
+    /// The surface between the middles of cells touches grains, points, and corners and edges of
+    /// pieces.
     Surface,
 }
 
@@ -75,7 +79,8 @@ pub struct HalfSpaceSpec<'a, S: Space> {
     pub grid: Grid,
     /// How far it reaches.
     pub reach: Reach,
-    /// Whether the surface repeats along x with the extent of its cells (2D), in a scene with that period.
+    /// Whether the surface repeats along x with the extent of its cells (2D), in a scene with that
+    /// period.
     pub repeats: bool,
     /// Shape of its surface.
     pub profile: Profile,
@@ -111,15 +116,16 @@ struct Fixed<S: Space> {
     touching: Cells,
     surface_material: u16,
     repeats: bool,
-    /// Cells in the order of the vertices of the surface, and its facets. Where the surface repeats, one past the last cell stands for the
-    /// image of the first.
+    /// Cells in the order of the vertices of the surface, and its facets. Where the surface
+    /// repeats, one past the last cell stands for the image of the first.
     vertices: Vec<u32>,
     facets: Vec<[u32; 3]>,
 }
 
 /// An elastic half-space.
 ///
-/// Its coordinates are the displacements of its cells along each axis, those of its holder, and the distance rolled.
+/// Its coordinates are the displacements of its cells along each axis, those of its holder, and the
+/// distance rolled.
 #[derive(Clone, Debug)]
 pub struct HalfSpace<S: Space> {
     fixed: Arc<Fixed<S>>,
@@ -131,7 +137,8 @@ pub struct HalfSpace<S: Space> {
     force: Vec<f64>,
     /// Displacements and velocities at the start of the step.
     start: [Vec<f64>; 2],
-    /// Strain energy at the start of the step, and kinetic energy that a jump of imposed velocities brought there (J).
+    /// Strain energy at the start of the step, and kinetic energy that a jump of imposed velocities
+    /// brought there (J).
     stored: f64,
     jump: f64,
     step: Option<SystemStep<S>>,
@@ -280,7 +287,8 @@ impl<S: Deformable> HalfSpace<S> {
             .collect()
     }
 
-    /// Blocks of the compliance of two cells in the last step (1/kg), with the inertia of the holder; zero before the first.
+    /// Blocks of the compliance of two cells in the last step (1/kg), with the inertia of the
+    /// holder; zero before the first.
     fn blocks(&self) -> impl Fn(u32, u32) -> S::Matrix {
         let scale = self.step.map(|s| 1.0 / (s.h * s.h * s.theta));
         let mut inertia = S::Vector::zero();
@@ -313,7 +321,8 @@ impl<S: Deformable> HalfSpace<S> {
         self.entries(&self.displacement, cell as usize)
     }
 
-    /// The entries of a vector of coordinates at a cell; at the holder where the cell is one past the last.
+    /// The entries of a vector of coordinates at a cell; at the holder where the cell is one past
+    /// the last.
     fn entries(&self, values: &[f64], cell: usize) -> S::Vector {
         let mut out = S::Vector::zero();
         for axis in 0..S::D {
@@ -339,7 +348,8 @@ impl<S: Deformable> HalfSpace<S> {
         v + theta * (w - v)
     }
 
-    /// Velocities that are imposed along the holder's axes and by rolling, at the start and the end of a step.
+    /// Velocities that are imposed along the holder's axes and by rolling, at the start and the end
+    /// of a step.
     fn imposed(&self, step: &SystemStep<S>) -> Vec<(usize, [f64; 2])> {
         let SystemStep { time, h, theta, .. } = *step;
         let held = self.held();
@@ -355,8 +365,8 @@ impl<S: Deformable> HalfSpace<S> {
         axes.chain(rolling).collect()
     }
 
-    /// Has the displacement along the surface of the material that is in each cell now, where the surface rolls: what lay a distance (m)
-    /// behind has come.
+    /// Has the displacement along the surface of the material that is in each cell now, where the
+    /// surface rolls: what lay a distance (m) behind has come.
     fn roll(&mut self, distance: f64) {
         if self.behind.as_ref().is_none_or(|b| b.0 != distance) {
             let Fixed {

@@ -73,7 +73,8 @@ fn free<S: Space>(sample: &Sample<S>) -> Vec<f64> {
     elements.map(|(e, _)| 0.02 * (e as f64).sin()).collect()
 }
 
-/// Largest difference of the tangent from central differences of the force, as a share of it, along some direction.
+/// Largest difference of the tangent from central differences of the force, as a share of it, along
+/// some direction.
 fn tangent_error<S: Space>(strain: Strain, theta: f64, moved: f64) -> f64 {
     let sample = sample::<S>(strain, 1e-3);
     let [start, to] = [0.0, moved].map(|m| sample.displaced(waves(0.2, m)));
@@ -121,7 +122,8 @@ fn tangents_are_derivatives_of_the_force() {
     }
 }
 
-/// A body that turns feels nothing, whatever the angle of a step; in one of small strain that would be half of it.
+/// A body that turns feels nothing, whatever the angle of a step; in one of small strain that would
+/// be half of it.
 fn turns_freely<S: Space>(strain: Strain) {
     let sample = sample::<S>(strain, 1e-3);
     for [from, to] in [[0.0, 1e-3], [0.2, 1.2], [0.0, 1.57], [1.0, 4.14]] {
@@ -155,7 +157,8 @@ fn rotations_strain_nothing() {
     }
 }
 
-/// A uniform strain leaves no force at points inside, all elements have its stress, and no force or moment is left on the body.
+/// A uniform strain leaves no force at points inside, all elements have its stress, and no force or
+/// moment is left on the body.
 fn patch<S: Space>(strain: Strain) {
     let sample = sample::<S>(strain, 0.0);
     let f = Matrix3::new(1.2, 0.3, 0.0, -0.2, 0.8, 0.0, 0.0, 0.0, 1.0);
@@ -201,7 +204,8 @@ fn elements_that_turn_inside_out_are_found() {
     assert!(inverted(&vec![f64::NAN; sample.freedoms.total()]).is_some());
 }
 
-/// A body of uniform free strain that has it, turned by any angle, is without force, stress and energy.
+/// A body of uniform free strain that has it, turned by any angle, is without force, stress and
+/// energy.
 #[test]
 fn what_expands_freely_is_without_stress() {
     for strain in BOTH {
@@ -228,7 +232,8 @@ fn what_expands_freely_is_without_stress() {
     }
 }
 
-/// Forces are derivatives of the stored energy with any free strains, in the plane where the depth stays too.
+/// Forces are derivatives of the stored energy with any free strains, in the plane where the depth
+/// stays too.
 #[test]
 fn forces_with_free_strains_are_derivatives_of_the_energy() {
     fn error<S: Space>(strain: Strain) -> f64 {

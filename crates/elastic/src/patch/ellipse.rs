@@ -2,10 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-/// K and D = (K - E)/m of the parameter m = 1 - k², for an ellipse with the ratio k of its axes, above 0 and at most 1.
+/// K and D = (K - E)/m of the parameter m = 1 - k², for an ellipse with the ratio k of its axes,
+/// above 0 and at most 1.
 ///
-/// The differences that Hertz' theory needs are taken from the series of the mean (M. Abramowitz, I. A. Stegun, 17.6), not as
-/// differences of K and E, which cancel in a nearly circular patch.
+/// The differences that Hertz' theory needs are taken from the series of the mean (M. Abramowitz,
+/// I. A. Stegun, 17.6), not as differences of K and E, which cancel in a nearly circular patch.
 pub(super) fn integrals(k: f64) -> (f64, f64) {
     if k >= 1.0 {
         return (FRAC_PI_2, FRAC_PI_4);

@@ -32,9 +32,11 @@ impl PointPatch {
     }
 }
 
-/// Line contact: load (N/m), relative curvature 1/R1 + 1/R2 (1/m) and effective modulus (Pa), all positive.
+/// Line contact: load (N/m), relative curvature 1/R1 + 1/R2 (1/m) and effective modulus (Pa), all
+/// positive.
 ///
-/// The approach of the bodies depends on their form at a distance, and is not given. Johnson, 4.43 to 4.45.
+/// The approach of the bodies depends on their form at a distance, and is not given. Johnson, 4.43
+/// to 4.45.
 pub fn line(load: f64, curvature: f64, modulus: f64) -> LinePatch {
     let half_width = (4.0 * load / (PI * modulus * curvature)).sqrt();
     LinePatch {
@@ -43,7 +45,8 @@ pub fn line(load: f64, curvature: f64, modulus: f64) -> LinePatch {
     }
 }
 
-/// Point contact: load (N), relative curvatures (1/m) in two directions across each other and effective modulus (Pa), all positive.
+/// Point contact: load (N), relative curvatures (1/m) in two directions across each other and
+/// effective modulus (Pa), all positive.
 ///
 /// Exact for any ratio of curvatures, which must lie within 1e-12 and 1e12: Johnson, 4.24 to 4.32.
 pub fn point(load: f64, [along, across]: [f64; 2], modulus: f64) -> PointPatch {
@@ -106,8 +109,9 @@ mod tests {
         near(got.pressure, p0, 1e-14);
     }
 
-    /// The solution is put back: the surface under a semi-ellipsoidal pressure, integrated over chords through a point (Johnson, 3.7.2),
-    /// sinks by the approach minus half the relative curvature times the square of the distance.
+    /// The solution is put back: the surface under a semi-ellipsoidal pressure, integrated over
+    /// chords through a point (Johnson, 3.7.2), sinks by the approach minus half the relative
+    /// curvature times the square of the distance.
     #[test]
     fn an_ellipse_has_the_surface_of_the_bodies() {
         for ratio in [1.01, 1.5, 4.0, 30.0, 1e3] {
@@ -135,8 +139,8 @@ mod tests {
         }
     }
 
-    /// B. J. Hamrock, D. Dowson, Ball Bearing Lubrication (1981): k = 1.0339 (Ry/Rx)^0.636, with an error below 5 % for ratios from 1
-    /// to 31, as an independent statement of the axes.
+    /// B. J. Hamrock, D. Dowson, Ball Bearing Lubrication (1981): k = 1.0339 (Ry/Rx)^0.636, with an
+    /// error below 5 % for ratios from 1 to 31, as an independent statement of the axes.
     #[test]
     fn axes_agree_with_the_formula_of_hamrock_and_brewe() {
         for ratio in [1.2, 2.0, 5.0, 10.0, 20.0, 31.0] {
@@ -145,7 +149,8 @@ mod tests {
         }
     }
 
-    /// A long ellipse is a line contact in its middle: p0 and half-width of the load per metre that stands there, 3 P/(4 a).
+    /// A long ellipse is a line contact in its middle: p0 and half-width of the load per metre that
+    /// stands there, 3 P/(4 a).
     #[test]
     fn a_long_ellipse_becomes_a_line() {
         let got = point(1e3, [1e-5, 10.0], MODULUS);

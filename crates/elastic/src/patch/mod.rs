@@ -1,7 +1,9 @@
-//! Contact patches in closed form: Hertz' pressure and size, where gross slip begins, and friction against creepage.
+//! Contact patches in closed form: Hertz' pressure and size, where gross slip begins, and friction
+//! against creepage.
 //!
-//! Two smooth elastic bodies touch over a patch that is small against their radii. K. L. Johnson, Contact Mechanics (1985), has all
-//! of it but Kalker's coefficients: chapter 4 (Hertz), 7.2 (Cattaneo, Mindlin), 8.3 (Carter).
+//! Two smooth elastic bodies touch over a patch that is small against their radii. K. L. Johnson,
+//! Contact Mechanics (1985), has all of it but Kalker's coefficients: chapter 4 (Hertz), 7.2
+//! (Cattaneo, Mindlin), 8.3 (Carter).
 
 mod ellipse;
 mod hertz;
@@ -36,8 +38,9 @@ pub fn effective_modulus(bodies: &[Solid; 2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Shear modulus (Pa) and Poisson's ratio of the two like bodies that are as compliant in shear as these two: 2/G = 1/G1 + 1/G2,
-/// 2 nu/G = nu1/G1 + nu2/G2 (J. J. Kalker, Three-dimensional elastic bodies in rolling contact, 1990, 1.1).
+/// Shear modulus (Pa) and Poisson's ratio of the two like bodies that are as compliant in shear as
+/// these two: 2/G = 1/G1 + 1/G2, 2 nu/G = nu1/G1 + nu2/G2 (J. J. Kalker, Three-dimensional elastic
+/// bodies in rolling contact, 1990, 1.1).
 pub fn like_bodies(bodies: &[Solid; 2]) -> Solid {
     let compliance = bodies.iter().map(|s| 1.0 / s.shear()).sum::<f64>() / 2.0;
     let poisson = bodies.iter().map(|s| s.poisson / s.shear()).sum::<f64>() / (2.0 * compliance);

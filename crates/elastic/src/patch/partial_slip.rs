@@ -1,4 +1,5 @@
-//! Partial slip under a tangential force (C. Cattaneo 1938, R. D. Mindlin 1949): where gross slip begins, and what sticks before it.
+//! Partial slip under a tangential force (C. Cattaneo 1938, R. D. Mindlin 1949): where gross slip
+//! begins, and what sticks before it.
 
 use super::PointPatch;
 use super::Solid;
@@ -7,8 +8,9 @@ use std::f64::consts::PI;
 
 /// A point contact that is pushed along `along`, towards gross slip.
 ///
-/// Q is below mu P as long as distant points of the bodies are displaced by less than `displacement` relative to each other. Bodies of
-/// unlike steels, the traction across the push and its coupling with the pressure are left out, as in Mindlin's theory.
+/// Q is below mu P as long as distant points of the bodies are displaced by less than
+/// `displacement` relative to each other. Bodies of unlike steels, the traction across the push and
+/// its coupling with the pressure are left out, as in Mindlin's theory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartialSlip {
     /// Displacement of distant points at which gross slip begins (m).
@@ -20,8 +22,9 @@ pub struct PartialSlip {
 impl PartialSlip {
     /// Of a patch under `load` (N) with the friction coefficient `mu`.
     ///
-    /// A circle: delta* = 3 mu P/(16 a) ((2 - nu1)/G1 + (2 - nu2)/G2), Johnson 7.43. An ellipse: the displacement of a traction
-    /// mu p by the integrals of Mindlin (1949), along its long or short axis.
+    /// A circle: delta* = 3 mu P/(16 a) ((2 - nu1)/G1 + (2 - nu2)/G2), Johnson 7.43. An ellipse:
+    /// the displacement of a traction mu p by the integrals of Mindlin (1949), along its long or
+    /// short axis.
     pub fn of(patch: &PointPatch, load: f64, mu: f64, bodies: &[Solid; 2]) -> Self {
         let long = patch.along.max(patch.across);
         let (first, d) = integrals(patch.along.min(patch.across) / long);
@@ -42,12 +45,14 @@ impl PartialSlip {
         }
     }
 
-    /// Ratio of the axes of the stuck ellipse to those of the patch under a force `q` (N); 0 in gross slip.
+    /// Ratio of the axes of the stuck ellipse to those of the patch under a force `q` (N); 0 in
+    /// gross slip.
     pub fn stuck(&self, q: f64) -> f64 {
         (1.0 - (q / self.force).abs()).max(0.0).cbrt()
     }
 
-    /// Displacement of distant points (m) under a force `q` (N) that rises from zero; infinite in gross slip.
+    /// Displacement of distant points (m) under a force `q` (N) that rises from zero; infinite in
+    /// gross slip.
     pub fn displacement_under(&self, q: f64) -> f64 {
         let share = (q / self.force).abs();
         if share >= 1.0 {
@@ -63,7 +68,8 @@ impl PartialSlip {
     }
 }
 
-/// Half-width of the strip that sticks over that of a line patch, under the share Q/(mu P) (Johnson, 7.27); 0 in gross slip.
+/// Half-width of the strip that sticks over that of a line patch, under the share Q/(mu P)
+/// (Johnson, 7.27); 0 in gross slip.
 ///
 /// The displacement at which gross slip begins depends on the form of the bodies at a distance.
 pub fn stuck_strip(share: f64) -> f64 {
@@ -103,8 +109,8 @@ mod tests {
         );
     }
 
-    /// The displacement under a traction mu p, from Cerruti's solution (Johnson, 3.7.1) integrated over the ellipse in polar
-    /// coordinates about its middle.
+    /// The displacement under a traction mu p, from Cerruti's solution (Johnson, 3.7.1) integrated
+    /// over the ellipse in polar coordinates about its middle.
     #[test]
     fn an_ellipse_begins_to_slip_at_the_displacement_of_its_traction() {
         let bodies = [STEEL, STEEL];

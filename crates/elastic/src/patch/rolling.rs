@@ -1,4 +1,5 @@
-//! Steady rolling with a longitudinal creepage: friction against creepage of line and point contacts.
+//! Steady rolling with a longitudinal creepage: friction against creepage of line and point
+//! contacts.
 
 use super::{LinePatch, PointPatch, Solid, like_bodies};
 
@@ -7,13 +8,14 @@ use super::{LinePatch, PointPatch, Solid, like_bodies};
 pub struct Creep {
     /// Creepage from which the whole patch slips.
     pub saturation: f64,
-    /// Power of 1 - Q/(mu P) = (1 - creepage/saturation)^power: 2 of a line (F. W. Carter 1926), 3 of an ellipse (P. J. Vermeulen,
-    /// K. L. Johnson 1964).
+    /// Power of 1 - Q/(mu P) = (1 - creepage/saturation)^power: 2 of a line (F. W. Carter 1926), 3
+    /// of an ellipse (P. J. Vermeulen, K. L. Johnson 1964).
     pub power: i32,
 }
 
 impl Creep {
-    /// Carter's line contact of like bodies with the relative curvature 1/R1 + 1/R2 (1/m): mu a/R (Johnson, 8.25).
+    /// Carter's line contact of like bodies with the relative curvature 1/R1 + 1/R2 (1/m): mu a/R
+    /// (Johnson, 8.25).
     pub fn of_line(patch: &LinePatch, curvature: f64, mu: f64) -> Self {
         Self {
             saturation: mu * patch.half_width * curvature,
@@ -21,8 +23,9 @@ impl Creep {
         }
     }
 
-    /// An ellipse under `load` (N) that rolls along `along`: the cubic of Vermeulen and Johnson with Kalker's coefficient, 3 mu P/(G a b
-    /// C11) at saturation (Z. Y. Shen, J. K. Hedrick, J. A. Elkins 1983). `None` outside of Kalker's table.
+    /// An ellipse under `load` (N) that rolls along `along`: the cubic of Vermeulen and Johnson
+    /// with Kalker's coefficient, 3 mu P/(G a b C11) at saturation (Z. Y. Shen, J. K. Hedrick, J.
+    /// A. Elkins 1983). `None` outside of Kalker's table.
     pub fn of_point(patch: &PointPatch, load: f64, mu: f64, bodies: &[Solid; 2]) -> Option<Self> {
         let like = like_bodies(bodies);
         let c11 = kalker_c11(patch.along / patch.across, like.poisson)?;
@@ -40,9 +43,9 @@ impl Creep {
     }
 }
 
-/// Kalker's coefficients C11 for nu = 0, 1/4, 1/2 and the ratio 0.1, 0.2, .. 1 of the semi-axes, that along the rolling over the other
-/// (J. J. Kalker, On the rolling contact of two elastic bodies in the presence of dry friction, Delft 1967; the same table in his
-/// book of 1990).
+/// Kalker's coefficients C11 for nu = 0, 1/4, 1/2 and the ratio 0.1, 0.2, .. 1 of the semi-axes,
+/// that along the rolling over the other (J. J. Kalker, On the rolling contact of two elastic
+/// bodies in the presence of dry friction, Delft 1967; the same table in his book of 1990).
 const SHORT: [[f64; 3]; 10] = [
     [2.51, 3.31, 4.85],
     [2.59, 3.37, 4.81],
@@ -70,8 +73,9 @@ const LONG: [[f64; 3]; 10] = [
     [3.40, 4.12, 5.20],
 ];
 
-/// Kalker's coefficient C11 of the ratio of semi-axes, along over across, from 0.1 to 10, and Poisson's ratio from 0 to 0.5; `None`
-/// outside. Linear between rows, and a parabola of 1/C11 through the three Poisson's ratios.
+/// Kalker's coefficient C11 of the ratio of semi-axes, along over across, from 0.1 to 10, and
+/// Poisson's ratio from 0 to 0.5; `None` outside. Linear between rows, and a parabola of 1/C11
+/// through the three Poisson's ratios.
 pub fn kalker_c11(ratio: f64, poisson: f64) -> Option<f64> {
     if !(0.0..=0.5).contains(&poisson) || !(0.1..=10.0).contains(&ratio) {
         return None;
@@ -113,7 +117,8 @@ mod tests {
         poisson: 0.3,
     };
 
-    /// A patch short along the rolling is a strip: C11 tends to pi²/(4 (1 - nu)), Kalker's asymptote.
+    /// A patch short along the rolling is a strip: C11 tends to pi²/(4 (1 - nu)), Kalker's
+    /// asymptote.
     #[test]
     fn a_short_patch_tends_to_the_strip() {
         for poisson in [0.0, 0.25, 0.5] {
@@ -125,7 +130,8 @@ mod tests {
         assert!(kalker_c11(1.0, 0.51).is_none());
     }
 
-    /// Carter's slope dQ/dxi per width is pi a G/(2 (1 - nu)), from P = pi a² E*/(4 R) and E* = G/(1 - nu).
+    /// Carter's slope dQ/dxi per width is pi a G/(2 (1 - nu)), from P = pi a² E*/(4 R) and E* =
+    /// G/(1 - nu).
     #[test]
     fn strips_have_carters_slope() {
         let (load, curvature) = (1e6, 2.0);

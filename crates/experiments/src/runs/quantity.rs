@@ -30,8 +30,8 @@ enum Take {
 /// A number that a run leaves, by its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with `:mean` of the last half of
-    /// the rows, `:max`, `:min` or `:last`.
+    /// Name, as requested: a path in `summary.json` (`wear.Qs`), or `statistics.COLUMN` with
+    /// `:mean` of the last half of the rows, `:max`, `:min` or `:last`.
     pub name: String,
     place: Place,
 }
@@ -137,7 +137,8 @@ impl Quantity {
         )
     }
 
-    /// Checks whether a run has an output of this name; it may be null, or absent because one of the case's `measures` begins later.
+    /// Checks whether a run has an output of this name; it may be null, or absent because one of
+    /// the case's `measures` begins later.
     ///
     /// # Errors
     /// A sentence with the nearest name.
@@ -189,7 +190,8 @@ pub(super) fn listed(names: &[String], prefix: &str) -> String {
     format!("there are {}{more}", names.join(", "))
 }
 
-/// Paths of the numbers of a summary that can be compared; all numbers of a run that says of none what it is.
+/// Paths of the numbers of a summary that can be compared; all numbers of a run that says of none
+/// what it is.
 fn names_of(summary: &Value) -> Vec<String> {
     let mut names = Catalogue::of(summary).comparable();
     if names.is_empty() {

@@ -44,7 +44,8 @@ pub struct Limits {
     pub residual: f64,
 }
 
-/// Contents of `run.json` for a run that ended or was stopped: numbers only, assessed whenever they are read.
+/// Contents of `run.json` for a run that ended or was stopped: numbers only, assessed whenever they
+/// are read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredRun {
     sets: Vec<String>,
@@ -84,13 +85,14 @@ pub struct Finished {
     pub wall: f64,
     /// Contacts times iterations, summed over the steps: a machine-independent measure of cost.
     pub visits: f64,
-    /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none of one that is.
+    /// Words of the reasons why the run says that it is not trustworthy, `NOT SMALL STRAIN`; none
+    /// of one that is.
     pub doubts: Vec<String>,
 }
 
 impl Finished {
-    /// Whether it says something of the case: also that it is refused, or takes too long. Otherwise it was ended by a signal, could
-    /// not write, or left nothing.
+    /// Whether it says something of the case: also that it is refused, or takes too long. Otherwise
+    /// it was ended by a signal, could not write, or left nothing.
     pub fn is_result(&self) -> bool {
         !self.temporary || matches!(self.status, Status::Slow(_) | Status::Refused(_))
     }
@@ -129,8 +131,8 @@ impl StoredRun {
         }
     }
 
-    /// Whether a repetition may end differently: the run was refused (files may have changed), stopped, ended by a signal,
-    /// could not write, or left nothing.
+    /// Whether a repetition may end differently: the run was refused (files may have changed),
+    /// stopped, ended by a signal, could not write, or left nothing.
     pub fn temporary(&self) -> bool {
         match self.exit {
             _ if self.slow.is_some() => true,
@@ -212,8 +214,8 @@ pub fn summary(place: &Path) -> Value {
         .unwrap_or(Value::Null)
 }
 
-/// Half-width of the error of step, tolerance and coupling that a run estimates of an output, as far as
-/// it does.
+/// Half-width of the error of step, tolerance and coupling that a run estimates of an output, as
+/// far as it does.
 pub fn numerical_error(catalogue: &Catalogue, output: &str) -> Option<f64> {
     let estimate = catalogue.entry(output)?.estimate.as_ref()?;
     let known: Vec<f64> = estimate.settings().map(|(_, half)| half).collect();

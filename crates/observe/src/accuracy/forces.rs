@@ -1,10 +1,12 @@
-//! What finer settings change in the forces of contacts: the next step is made again in quarters, and with a hundredth of the tolerance.
+//! What finer settings change in the forces of contacts: the next step is made again in quarters,
+//! and with a hundredth of the tolerance.
 
 use crate::error_estimate::{FINER, cost, shorten, tighten};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{ContactForces, RepeatError, Simulation};
 
-/// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
+/// Most iterations with the tight tolerance: this many times those of the run, and this many in any
+/// case.
 const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
 /// Change of the forces by finer settings, as a share of them.
@@ -43,7 +45,8 @@ fn made<S: Space>(s: &mut Simulation<S>, parts: u32) -> Option<Made<S>> {
     })
 }
 
-/// Repeats the next step, as long as it is; `None` where a step failed. Gives the cost of all of it too, and that of the step as it is.
+/// Repeats the next step, as long as it is; `None` where a step failed. Gives the cost of all of it
+/// too, and that of the step as it is.
 ///
 /// # Errors
 /// A process could not be put back: the run cannot go on.

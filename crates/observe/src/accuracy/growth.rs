@@ -1,9 +1,11 @@
-//! Steps that grow beyond that of the case where nothing moves, and shrink again before something does.
+//! Steps that grow beyond that of the case where nothing moves, and shrink again before something
+//! does.
 //!
-//! A step of the run spans a number of steps of the case. It follows from what a step changes: the largest displacement of a body over the half
-//! size of the smallest grain, which is to stay at the accuracy asked for, and the change of forces and damage, above which steps do not grow. A
-//! step in which something moves too far, a bond forms or breaks, or the solver does not converge is made again with a quarter of the number.
-//! Events end steps, see [`StepBounds`].
+//! A step of the run spans a number of steps of the case. It follows from what a step changes: the
+//! largest displacement of a body over the half size of the smallest grain, which is to stay at the
+//! accuracy asked for, and the change of forces and damage, above which steps do not grow. A step
+//! in which something moves too far, a bond forms or breaks, or the solver does not converge is
+//! made again with a quarter of the number. Events end steps, see [`StepBounds`].
 //!
 //! [`StepBounds`]: fretwork_core::step::control::StepBounds
 
@@ -12,25 +14,29 @@ use fretwork_core::step::{ContactForces, Simulation, StepReport};
 use fretwork_scene::case::{AccuracySpec, Case};
 use serde::{Deserialize, Serialize};
 
-/// A step that has grown is made again as a shorter one above this many times of the displacement that is aimed at.
+/// A step that has grown is made again as a shorter one above this many times of the displacement
+/// that is aimed at.
 const KEPT: f64 = 2.5;
 /// Change of forces above which steps do not grow, of what is allowed.
 const CHANGE: f64 = 0.4;
-/// Least and most by which a step is longer than the one before it. It shrinks slowly where it may: rigid contacts with gaps of up to g h^2
-/// carry over a step h, and a much shorter step finds them open.
+/// Least and most by which a step is longer than the one before it. It shrinks slowly where it may:
+/// rigid contacts with gaps of up to g h^2 carry over a step h, and a much shorter step finds them
+/// open.
 const RATIO: [f64; 2] = [0.8, 2.0];
 /// A step that is not kept is made again with its number over this.
 const SHRINKS: u32 = 4;
 /// Displacements are not told apart more closely than this.
 const LITTLE: f64 = 0.1;
-/// Largest displacement of a step, over the half size of the smallest grain, and change of forces, whatever accuracy is asked for.
+/// Largest displacement of a step, over the half size of the smallest grain, and change of forces,
+/// whatever accuracy is asked for.
 const MOST_CHANGE: f64 = 0.2;
 /// How many steps of the case a step spans.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Growth {
     /// Most; 1 where steps do not grow.
     most: u32,
-    /// Displacement over a step that is aimed at, over the half size of the smallest grain, and change of forces that is allowed, over these.
+    /// Displacement over a step that is aimed at, over the half size of the smallest grain, and
+    /// change of forces that is allowed, over these.
     allowed: f64,
     /// As chosen; events and records may end a step before.
     chosen: u32,
@@ -74,7 +80,8 @@ fn damage<S: Space>(s: &Simulation<S>) -> f64 {
 impl Growth {
     pub fn new<S: Space>(spec: &AccuracySpec, case: &Case, s: &Simulation<S>) -> Self {
         let most = spec.largest(case.time.step) / case.time.step;
-        // A largest step that is a multiple up to rounding is reached. The waves of deformable bodies are not seen by what is looked at here.
+        // A largest step that is a multiple up to rounding is reached. The waves of deformable
+        // bodies are not seen by what is looked at here.
         let most = (most * (1.0 + 1e-9)).clamp(1.0, 1e9) as u32;
         Self {
             most: if s.state.systems.is_empty() { most } else { 1 },
@@ -98,7 +105,8 @@ impl Growth {
         self.chosen
     }
 
-    /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than `most`.
+    /// How many steps of the case, of `h` (s), the next step spans, if it may not span more than
+    /// `most`.
     pub fn next<S: Space>(&mut self, s: &Simulation<S>, h: f64, most: u64) -> u32 {
         self.event = false;
         if self.most == 1 {
@@ -109,14 +117,16 @@ impl Growth {
         }
         let [event, resolved] = s.step_bounds().steps(s.state.time, h);
         let wanted = u64::from(self.chosen).min(resolved).max(1);
-        // Equal steps up to the next event or record, so that none is much shorter than the one before it.
+        // Equal steps up to the next event or record, so that none is much shorter than the one
+        // before it.
         let rest = event.min(most).max(1);
         let count = rest.div_ceil(rest.div_ceil(wanted));
         self.event = count == event;
         u32::try_from(count).unwrap_or(u32::MAX)
     }
 
-    /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or may grow after it.
+    /// Whether the next step, of `count` steps of the case, is worth comparing: it has grown, or
+    /// may grow after it.
     pub fn watches<S: Space>(&self, s: &Simulation<S>, count: u32) -> bool {
         count > 1 || (self.most > 1 && s.largest_displacement() <= self.allowed)
     }
@@ -150,7 +160,8 @@ impl Growth {
         true
     }
 
-    /// A step of `count` steps of the case is made, in which displacement and forces changed by these, over what is aimed at.
+    /// A step of `count` steps of the case is made, in which displacement and forces changed by
+    /// these, over what is aimed at.
     fn keep(&mut self, count: u32, moved: f64, changed: f64) {
         self.last = count;
         self.longest = self.longest.max(count);
@@ -172,7 +183,8 @@ impl Growth {
         }
     }
 
-    /// Finer steps were found to change the result by more than is allowed: the next ones are somewhat shorter.
+    /// Finer steps were found to change the result by more than is allowed: the next ones are
+    /// somewhat shorter.
     pub fn shorten(&mut self) {
         self.chosen = ((f64::from(self.chosen) * RATIO[0]) as u32).max(1);
     }

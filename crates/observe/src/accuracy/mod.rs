@@ -1,9 +1,13 @@
-//! Accuracy as an input: a run that chooses its step and tolerance by repeating some of its steps with finer ones.
+//! Accuracy as an input: a run that chooses its step and tolerance by repeating some of its steps
+//! with finer ones.
 //!
-//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts, or one step spans several where nothing moves. Every now and then the next parts are repeated with a
-//! quarter of their length and with a hundredth of the tolerance, as for the [error estimate](crate::error_estimate); from the change of
-//! the result asked for follow finer or coarser settings. Half of the share allowed is for the step, half for the tolerance. All of it
-//! follows from the state, and costs are counted in iterations: the bits are the same on every machine, and after a resume.
+//! The steps of the case, `time.step`, stay: each is made in 2^k equal parts, or one step spans
+//! several where nothing moves. Every now and then the next parts are repeated with a quarter of
+//! their length and with a hundredth of the tolerance, as for the [error
+//! estimate](crate::error_estimate); from the change of the result asked for follow finer or
+//! coarser settings. Half of the share allowed is for the step, half for the tolerance. All of it
+//! follows from the state, and costs are counted in iterations: the bits are the same on every
+//! machine, and after a resume.
 
 mod forces;
 mod growth;
@@ -63,7 +67,8 @@ pub struct AccuracyControl {
     stretches: [u64; 2],
     /// Cost of the run, and of repeated stretches.
     cost: [f64; 2],
-    /// Halvings that laws asked for, steps of the case since the last one, and how many requests there were.
+    /// Halvings that laws asked for, steps of the case since the last one, and how many requests
+    /// there were.
     asked: u32,
     calm: u32,
     requests: u64,
@@ -140,7 +145,8 @@ impl AccuracyControl {
         let of = Quantity::asked(spec.of, case, s);
         let [mut step, mut tolerance] = finest_levels(spec, &coarsest);
         if of == Quantity::Forces {
-            // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is tightened where the case says how far.
+            // Their steps only grow, and forces of rigid packings scatter at any tolerance: it is
+            // tightened where the case says how far.
             step = 0;
             tolerance = if spec.finest_tolerance.is_some() {
                 tolerance
@@ -171,8 +177,9 @@ impl AccuracyControl {
         })
     }
 
-    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a stretch where one is due, and chooses the
-    /// settings. A step that spans several may span `most`.
+    /// Prepares a step of the case, of which so many are done, of so many in total: repeats a
+    /// stretch where one is due, and chooses the settings. A step that spans several may span
+    /// `most`.
     ///
     /// # Errors
     /// Steps cannot be repeated, or a process could not be put back.
@@ -217,11 +224,12 @@ impl AccuracyControl {
         }
     }
 
-    /// Makes one part of a step of the case. `None` where a law asked for a smaller one: nothing was done then, and the
-    /// next part is shorter.
+    /// Makes one part of a step of the case. `None` where a law asked for a smaller one: nothing
+    /// was done then, and the next part is shorter.
     ///
     /// # Errors
-    /// The step's own error, also that of a law that asks for less than the smallest step; steps cannot be repeated.
+    /// The step's own error, also that of a law that asks for less than the smallest step; steps
+    /// cannot be repeated.
     pub fn part<S: Space>(
         &mut self,
         s: &mut Simulation<S>,
@@ -288,7 +296,8 @@ impl AccuracyControl {
         self.coarsest[1] / TOLERANCE_FACTOR.powi(self.tolerance.level as i32)
     }
 
-    /// Goes on in a simulation that was restored with its state: impulses are those of the step in force.
+    /// Goes on in a simulation that was restored with its state: impulses are those of the step in
+    /// force.
     pub fn resume<S: Space>(&mut self, s: &mut Simulation<S>) {
         let last = self.growth.last();
         let parts = f64::from(1u32 << self.level());
@@ -297,7 +306,8 @@ impl AccuracyControl {
         self.set(s, last);
     }
 
-    /// Sets the step, which spans `count` of the case or is a part of one, tolerance and correction.
+    /// Sets the step, which spans `count` of the case or is a part of one, tolerance and
+    /// correction.
     fn set<S: Space>(&mut self, s: &mut Simulation<S>, count: u32) {
         let [h, _, correction] = self.coarsest;
         let parts = f64::from(1u32 << self.level());
@@ -348,8 +358,8 @@ impl AccuracyControl {
         Ok(())
     }
 
-    /// Whether a step is repeated for its forces: as often as the effort permits, since every step tells as much, and not the first ones,
-    /// which are solved from nothing.
+    /// Whether a step is repeated for its forces: as often as the effort permits, since every step
+    /// tells as much, and not the first ones, which are solved from nothing.
     fn repeats_for_forces<S: Space>(&self, s: &Simulation<S>) -> bool {
         let [run, repeats] = self.cost;
         let each = run / self.parts.max(1) as f64;
@@ -401,7 +411,8 @@ impl AccuracyControl {
         };
         let (finer, tighter) = (pair(&place.finer), pair(&place.tighter));
         let step = self.step.decide(finer, STEP_LIMIT, 2.0, allowed);
-        // A phase may have a tolerance of its own; a stretch that did not reach the tighter one says too little.
+        // A phase may have a tolerance of its own; a stretch that did not reach the tighter one
+        // says too little.
         let tolerance = if s.state.control.tolerance.is_none() && place.tight {
             self.tolerance
                 .decide(tighter, 1.0, TOLERANCE_FACTOR, allowed)

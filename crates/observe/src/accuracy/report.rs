@@ -52,11 +52,13 @@ crate::described! {
         pub changes: Vec<SettingChange> = part::<SettingChange>(),
         /// Requests of laws for a smaller step.
         pub requests: u64 => ONE,
-        /// Relative change of the result with a smaller step, with the last settings; null where it is not known.
+        /// Relative change of the result with a smaller step, with the last settings; null where it
+        /// is not known.
         pub step_effect: Option<Change> = part::<Change>(),
         /// Relative change of the result with a smaller tolerance; null where it is not known.
         pub tolerance_effect: Option<Change> = part::<Change>(),
-        /// Whether both effects, with their intervals, were measured with the last settings and are together below the share.
+        /// Whether both effects, with their intervals, were measured with the last settings and are
+        /// together below the share.
         pub reached: bool => WORD,
     }
 }

@@ -41,7 +41,8 @@ impl Setting {
         }
     }
 
-    /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the result that the setting may change.
+    /// Takes in a stretch, and decides; `factor` is that of a level, `allowed` the share of the
+    /// result that the setting may change.
     pub fn decide(&mut self, pair: Pair, limit: f64, factor: f64, allowed: f64) -> Decision {
         self.pairs.push([pair.coarse, pair.fine]);
         self.measured += 1;
@@ -79,8 +80,9 @@ impl Setting {
         self.effect.filter(|_| self.measured >= FEWEST)
     }
 
-    /// Adopts a decision; returns whether it changed anything. What was found before counts with the effect that it would have had at
-    /// the first order, so that knowledge is not lost with every change.
+    /// Adopts a decision; returns whether it changed anything. What was found before counts with
+    /// the effect that it would have had at the first order, so that knowledge is not lost with
+    /// every change.
     pub fn adopt(&mut self, decision: Decision, factor: f64) -> bool {
         let times = match decision {
             Decision::Keep => return false,

@@ -1,7 +1,8 @@
-//! Biaxial test: stresses, strains, compacity and coordination of the grains between four flat walls.
+//! Biaxial test: stresses, strains, compacity and coordination of the grains between four flat
+//! walls.
 //!
-//! Stresses and the axial strain are positive in compression, the volumetric strain in expansion. In 2D
-//! forces are per metre of depth, so a force over a length is a pressure.
+//! Stresses and the axial strain are positive in compression, the volumetric strain in expansion.
+//! In 2D forces are per metre of depth, so a force over a length is a pressure.
 
 mod outcome;
 
@@ -56,7 +57,8 @@ pub struct State {
     pub pressure_contacts: f64,
     /// Deviator over mean pressure, (axial - lateral)/(axial + lateral), from the walls.
     pub deviator_ratio: f64,
-    /// Sine of the mobilised friction angle, from the principal Love-Weber stresses of the contacts.
+    /// Sine of the mobilised friction angle, from the principal Love-Weber stresses of the
+    /// contacts.
     pub sin_phi: f64,
     /// Decrease of the axial length over its initial value.
     pub axial_strain: f64,

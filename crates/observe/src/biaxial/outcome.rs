@@ -5,8 +5,8 @@ use crate::quantity::{Findings, Role, Topic};
 use crate::statistics::Table;
 use serde::Serialize;
 
-/// Axial strain over which the stress ratio is averaged before its maximum is taken as the peak, since forces
-/// between rigid grains fluctuate from step to step.
+/// Axial strain over which the stress ratio is averaged before its maximum is taken as the peak,
+/// since forces between rigid grains fluctuate from step to step.
 const WINDOW: f64 = 5e-3;
 
 crate::described! {
@@ -43,14 +43,15 @@ crate::described! {
         pub compacity_end: f64 => ONE,
         /// Coordination at the end, averaged likewise.
         pub coordination_end: f64 => ONE,
-        /// Mean inertial number over the test: rate of axial strain times sqrt(m/p), with m the mean mass of a
-        /// grain.
+        /// Mean inertial number over the test: rate of axial strain times sqrt(m/p), with m the
+        /// mean mass of a grain.
         pub inertial_number: f64 => ONE,
     }
 }
 
 impl Outcome {
-    /// Evaluates the statistics, with the `start` of the test (s) and the mean mass of a grain (kg; kg/m).
+    /// Evaluates the statistics, with the `start` of the test (s) and the mean mass of a grain (kg;
+    /// kg/m).
     pub fn new(table: &Table, start: f64, mass: f64) -> Self {
         let time = table.column("time");
         let first = time.partition_point(|t| *t <= start * (1.0 + 1e-9));
@@ -182,8 +183,9 @@ pub(crate) fn report_none(found: &mut Findings) {
     none.lacks("the case has no biaxial test (`biaxial`)");
 }
 
-/// Stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero without pressure. Forces between rigid grains
-/// fluctuate by as much as their mean, so that a mean of ratios would weigh the steps of low pressure too much.
+/// Stress ratio q/p = (axial - lateral)/(axial + lateral) of mean stresses; zero without pressure.
+/// Forces between rigid grains fluctuate by as much as their mean, so that a mean of ratios would
+/// weigh the steps of low pressure too much.
 fn ratio([axial, lateral]: [f64; 2]) -> f64 {
     let sum = axial + lateral;
     if sum > 0.0 {
@@ -193,8 +195,8 @@ fn ratio([axial, lateral]: [f64; 2]) -> f64 {
     }
 }
 
-/// Largest ratio of the mean axial and lateral stresses in a window of strain, and the strain at its centre; of the whole range
-/// if it is shorter.
+/// Largest ratio of the mean axial and lateral stresses in a window of strain, and the strain at
+/// its centre; of the whole range if it is shorter.
 fn peak(strain: &[f64], stresses: [&[f64]; 2]) -> (f64, f64) {
     let whole = ratio(stresses.map(|s| s.iter().sum::<f64>()));
     let mut best: Option<(f64, f64)> = None;
@@ -223,7 +225,8 @@ mod tests {
     #[test]
     fn a_lone_jump_is_no_peak() {
         let strain: Vec<f64> = (0..1000).map(|k| f64::from(k) * 1e-4).collect();
-        // A plateau of 0.4 within 0.3, and one step of 1 in which the pressure is that of the others.
+        // A plateau of 0.4 within 0.3, and one step of 1 in which the pressure is that of the
+        // others.
         let mut q: Vec<f64> = strain
             .iter()
             .map(|e| if (e - 0.03).abs() < 5e-3 { 0.4 } else { 0.3 })
@@ -240,7 +243,8 @@ mod tests {
 
     #[test]
     fn ratios_are_those_of_mean_stresses() {
-        // Two steps in turn, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the ratio of means 2/10.
+        // Two steps in turn, q = 1 at p = 1 and q = 1 at p = 9: the mean of ratios is 0.556, the
+        // ratio of means 2/10.
         let columns = [
             "time",
             "axial_strain",

@@ -1,5 +1,5 @@
-//! The tribological circuit as an observer: its columns, its events, and what it sums up. The account itself is a process,
-//! [`fretwork_core::process::circuit`].
+//! The tribological circuit as an observer: its columns, its events, and what it sums up. The
+//! account itself is a process, [`fretwork_core::process::circuit`].
 
 mod summary;
 

@@ -9,8 +9,8 @@ use fretwork_core::wear::ledger::{Contents, Flows};
 use serde::Serialize;
 
 crate::described! {
-    /// Mean flows over the second half of the account, with their confidence intervals (kg/s; kg/(m s) in 2D);
-    /// null if there were too few updates.
+    /// Mean flows over the second half of the account, with their confidence intervals (kg/s; kg/(m
+    /// s) in 2D); null if there were too few updates.
     #[derive(Clone, Copy, Debug, Default, Serialize)]
     #[allow(non_snake_case)]
     pub struct Rates {
@@ -106,7 +106,10 @@ crate::described! {
 pub(crate) fn report_none(found: &mut Findings) {
     found.begin(Topic::Wear, Role::Detail);
     let doc = "the tribological circuit; null without one";
-    found.add("circuit", (), WORD, doc).lacks(NO_CIRCUIT);
+    found.parts::<CircuitSummary>("circuit", &None::<CircuitSummary>, doc);
+    found.edit("circuit", |q| {
+        q.lacks(NO_CIRCUIT);
+    });
 }
 
 impl CircuitSummary {

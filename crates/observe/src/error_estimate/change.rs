@@ -1,8 +1,9 @@
 //! Relative change of a result between two series of stretches, with its confidence interval.
 //!
-//! The change is that of the ratio of the sums over all stretches, which is steadier than the mean of their ratios: a stretch in
-//! which little happens has little weight. Its interval is from the jackknife over the stretches (B. Efron and C. Stein, The
-//! jackknife estimate of variance, Annals of Statistics 9, 1981).
+//! The change is that of the ratio of the sums over all stretches, which is steadier than the mean
+//! of their ratios: a stretch in which little happens has little weight. Its interval is from the
+//! jackknife over the stretches (B. Efron and C. Stein, The jackknife estimate of variance, Annals
+//! of Statistics 9, 1981).
 
 use crate::quantity::unit::ONE;
 use serde::{Deserialize, Serialize};
@@ -11,7 +12,8 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 /// Fewest stretches of which an interval is formed.
 pub const FEWEST: usize = 3;
 
-/// Numerator and denominator of a result over one stretch: as computed by the run, and by the finer repeat.
+/// Numerator and denominator of a result over one stretch: as computed by the run, and by the finer
+/// repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// As the run computes it.
@@ -26,14 +28,15 @@ crate::described! {
     pub struct Change {
         /// Fine over coarse, less 1, extrapolated to the limit of fine settings.
         pub change: f64 => ONE,
-        /// Half-width of its 95 % confidence interval; infinite where all of the result grew in one stretch (null in JSON).
+        /// Half-width of its 95 % confidence interval; infinite where all of the result grew in one
+        /// stretch (null in JSON).
         pub half_width: f64 => ONE,
     }
 }
 
 impl Change {
-    /// The change over all stretches times a factor of extrapolation; `None` for fewer than three, or where the run gives nothing
-    /// to compare with.
+    /// The change over all stretches times a factor of extrapolation; `None` for fewer than three,
+    /// or where the run gives nothing to compare with.
     pub fn over(pairs: &[Pair], extrapolation: f64) -> Option<Self> {
         let n = pairs.len();
         if n < FEWEST {
@@ -57,7 +60,8 @@ impl Change {
         })
     }
 
-    /// What the result may be off by, as a share of it: the change, which the run has not made, and what is not known of it.
+    /// What the result may be off by, as a share of it: the change, which the run has not made, and
+    /// what is not known of it.
     pub fn bound(&self) -> f64 {
         self.change.abs() + self.half_width
     }
@@ -97,8 +101,8 @@ mod tests {
         assert!(change.half_width < 1e-12, "{change:?}");
     }
 
-    /// Of equal stretches the jackknife is Student's interval of the mean: changes of 0.01, 0.02, 0.03 have the mean 0.02, the standard
-    /// deviation 0.01, and t(2, 0.975) = 4.302653.
+    /// Of equal stretches the jackknife is Student's interval of the mean: changes of 0.01, 0.02,
+    /// 0.03 have the mean 0.02, the standard deviation 0.01, and t(2, 0.975) = 4.302653.
     #[test]
     fn equal_stretches_give_the_interval_of_the_mean() {
         let pairs = [0.01, 0.02, 0.03].map(|x| pair(2.0, 2.0 * (1.0 + x)));

@@ -33,8 +33,8 @@ pub struct Stretch {
     pub converged: bool,
 }
 
-/// Cost of a step without its iterations, in iterations: detection, laws and motion take about as long as this many sweeps of contacts
-/// with three laws each.
+/// Cost of a step without its iterations, in iterations: detection, laws and motion take about as
+/// long as this many sweeps of contacts with three laws each.
 const FIXED_ITERATIONS: f64 = 60.0;
 
 /// Cost of a step in iterations times contacts: the same on every machine.
@@ -54,8 +54,9 @@ fn damage<S: Space>(s: &Simulation<S>) -> f64 {
 }
 
 impl Stretch {
-    /// Makes `length` steps of a run, each in `parts`, and measures those after the first half of the `length`: by then what the change of settings disturbs has
-    /// mostly died away, such as damage that explicit coupling lets lag by a step.
+    /// Makes `length` steps of a run, each in `parts`, and measures those after the first half of
+    /// the `length`: by then what the change of settings disturbs has mostly died away, such as
+    /// damage that explicit coupling lets lag by a step.
     ///
     /// # Errors
     /// A step failed.

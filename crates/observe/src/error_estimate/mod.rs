@@ -1,7 +1,9 @@
-//! The error of a run by its own estimate: at places drawn from the seed it repeats a few steps with a quarter of the step, with a hundredth of
-//! the tolerance, and, where damage is coupled explicitly, with implicit coupling, and compares what friction, damage and wear grow by.
+//! The error of a run by its own estimate: at places drawn from the seed it repeats a few steps
+//! with a quarter of the step, with a hundredth of the tolerance, and, where damage is coupled
+//! explicitly, with implicit coupling, and compares what friction, damage and wear grow by.
 //!
-//! The state is restored after each repeat, so that the run has the same bits as without. Observers see no repeated step.
+//! The state is restored after each repeat, so that the run has the same bits as without. Observers
+//! see no repeated step.
 
 mod change;
 mod increments;
@@ -56,7 +58,8 @@ pub struct ErrorEstimate {
     /// Steps of the run when it was begun.
     total: u64,
     body: Option<RubbedBody>,
-    /// Whether repeats are left out once they cost too much: where the case does not say how many there are.
+    /// Whether repeats are left out once they cost too much: where the case does not say how many
+    /// there are.
     limited: bool,
     /// Why there is no estimate.
     reason: Option<String>,
@@ -97,7 +100,8 @@ impl ErrorEstimate {
         estimate
     }
 
-    /// Repeats the steps that are next, where one of the places is reached: `step` steps of the case are done.
+    /// Repeats the steps that are next, where one of the places is reached: `step` steps of the
+    /// case are done.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.
@@ -137,7 +141,8 @@ impl ErrorEstimate {
         Ok(())
     }
 
-    /// Whether one more place, at the mean cost of those so far, would take more than its share of the run.
+    /// Whether one more place, at the mean cost of those so far, would take more than its share of
+    /// the run.
     fn costs_too_much(&self, step: u64) -> bool {
         let done = self.places.len() + self.failed as usize;
         if !self.limited || done < change::FEWEST || step == 0 {

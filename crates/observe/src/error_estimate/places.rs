@@ -1,14 +1,16 @@
-//! Places at which a run repeats a stretch of steps: drawn from its seed, one in each of equal parts of the evaluated time.
+//! Places at which a run repeats a stretch of steps: drawn from its seed, one in each of equal
+//! parts of the evaluated time.
 
 use super::change::FEWEST;
 use fretwork_scene::case::UncertaintySpec;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Steps of a run for each step of a stretch: what a stretch costs with all its repeats is about ten times its own cost, and at most
-/// 5 % of the run may go into them.
+/// Steps of a run for each step of a stretch: what a stretch costs with all its repeats is about
+/// ten times its own cost, and at most 5 % of the run may go into them.
 const STEPS_EACH: u64 = 220;
-/// Places over which the repeats are distributed before stretches are made longer, for the interval.
+/// Places over which the repeats are distributed before stretches are made longer, for the
+/// interval.
 const PLACES: u64 = 4;
 /// Longest stretch: what the change of settings disturbs at its start has died away by then.
 const LONGEST: u64 = 8;

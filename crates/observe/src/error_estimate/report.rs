@@ -9,7 +9,8 @@ use fretwork_core::energy::Energy;
 use serde::Serialize;
 
 crate::described! {
-    /// Effect of one setting on the results: relative changes between the run and its repeats, null where they cannot be compared.
+    /// Effect of one setting on the results: relative changes between the run and its repeats, null
+    /// where they cannot be compared.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct Effects {
         /// Friction coefficient, from forces.
@@ -45,14 +46,16 @@ crate::described! {
     /// Shares of the energy supplied that are a measure of the error.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
     pub struct Shares {
-        /// Energy that the position correction supplies over the external work, or over the energy dissipated where that is more; null where
-        /// there is neither.
+        /// Energy that the position correction supplies over the external work, or over the energy
+        /// dissipated where that is more; null where there is neither.
         pub correction: Option<f64> => ONE,
-        /// Energy that the time integration takes (negative where it adds some) over the energy of the run: the largest of the external work, the
-        /// energy dissipated, the change of potential energy, and the kinetic energy at the start but for that of driven bodies; null where there
-        /// is none of these.
+        /// Energy that the time integration takes (negative where it adds some) over the energy of
+        /// the run: the largest of the external work, the energy dissipated, the change of
+        /// potential energy, and the kinetic energy at the start but for that of driven bodies;
+        /// null where there is none of these.
         pub scheme: Option<f64> => ONE,
-        /// Work supplied in steps that missed the tolerance over that in all steps; null where none is supplied.
+        /// Work supplied in steps that missed the tolerance over that in all steps; null where none
+        /// is supplied.
         pub unconverged: Option<f64> => ONE,
     }
 }
@@ -71,8 +74,9 @@ crate::described! {
         pub failed: u32 => ONE,
         /// Places left out because repeats were dearer than planned.
         pub left_out: u32 => ONE,
-        /// Places at which a hundredth of the tolerance was reached; at the others the repeat ended at four times the
-        /// largest number of iterations of the run's own steps there, or at 100 if that is more.
+        /// Places at which a hundredth of the tolerance was reached; at the others the repeat ended
+        /// at four times the largest number of iterations of the run's own steps there, or at 100
+        /// if that is more.
         pub tight: usize => ONE,
         /// Cost of the repeats over that of the run, in solver iterations times contacts.
         pub cost_share: f64 => ONE,
@@ -90,7 +94,8 @@ crate::described! {
 }
 
 impl ErrorEstimate {
-    /// What it has found, by the ledger at the end and the kinetic energy of driven bodies then (J).
+    /// What it has found, by the ledger at the end and the kinetic energy of driven bodies then
+    /// (J).
     pub fn report(&self, energy: &Energy, driven: f64) -> Repeats {
         let pairs = |fine: fn(&Place) -> Option<Increments>| {
             let pairs = self.places.iter().filter_map(|p| Some((p.base, fine(p)?)));

@@ -12,7 +12,8 @@ use fretwork_core::step::{RepeatError, Simulation};
 const TIGHTER: f64 = 100.0;
 /// Below this tolerance rounding decides, not the solver.
 const ROUNDING: f64 = 1e-12;
-/// Most iterations with the tight tolerance: this many times those of the run, and this many in any case.
+/// Most iterations with the tight tolerance: this many times those of the run, and this many in any
+/// case.
 const MOST_ITERATIONS: (f64, f64) = (4.0, 100.0);
 
 /// What is repeated: so many steps, and the body under test.
@@ -25,8 +26,9 @@ pub(crate) struct RepeatedStretch {
 }
 
 impl RepeatedStretch {
-    /// Repeats the next steps in all ways; `None` where a step failed. Steps of the stretch itself are repeated too, so that all are
-    /// measured in the same way. Gives the cost of all of it too, and that of a step as it is.
+    /// Repeats the next steps in all ways; `None` where a step failed. Steps of the stretch itself
+    /// are repeated too, so that all are measured in the same way. Gives the cost of all of it too,
+    /// and that of a step as it is.
     ///
     /// # Errors
     /// A process could not be put back: the run cannot go on.

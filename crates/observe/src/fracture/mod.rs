@@ -1,4 +1,5 @@
-//! Observes broken bonds: the energy that they released over what their laws declare, and whether the step resolved them.
+//! Observes broken bonds: the energy that they released over what their laws declare, and whether
+//! the step resolved them.
 
 mod summary;
 
@@ -19,20 +20,21 @@ use fretwork_scene::case::Case;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// Angles of opening, evenly from the normal to the tangent, at which areas of broken bonds are collected for laws that declare no
-/// energy.
+/// Angles of opening, evenly from the normal to the tangent, at which areas of broken bonds are
+/// collected for laws that declare no energy.
 const ANGLES: usize = 19;
 /// Reduced radius of the bond on the bench (m), where the scene has no contact any more.
 const RADIUS: f64 = 1e-3;
-/// Share of rotation in the work on a bond from which its energy is compared with that of a pull that also turns it: what laws
-/// declare is that of openings.
+/// Share of rotation in the work on a bond from which its energy is compared with that of a pull
+/// that also turns it: what laws declare is that of openings.
 const TURNS: f64 = 1e-3;
 /// Bonds broken by rotation that are compared; the rest are not.
 const TURNED: usize = 32;
 /// Speed at which critical openings are sought (m/s).
 const SLOW: f64 = 1e-6;
 
-/// A bond that broke as it turned: its opening normal and across (m), twist and bending (rad), area, and what it released (J).
+/// A bond that broke as it turned: its opening normal and across (m), twist and bending (rad),
+/// area, and what it released (J).
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Turned {
     opening: [f64; 2],
@@ -94,8 +96,8 @@ impl Broken {
         self.areas[low + 1] += b.area * share;
     }
 
-    /// What those that turned released, and what slow pulls to the same openings and rotations take for them; `None` where a pull does not
-    /// break a bond.
+    /// What those that turned released, and what slow pulls to the same openings and rotations take
+    /// for them; `None` where a pull does not break a bond.
     fn by_turning_pulls(
         &self,
         law: &Interface,

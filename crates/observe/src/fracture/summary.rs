@@ -8,17 +8,20 @@ use fretwork_core::step::Coupling;
 use fretwork_core::step::Options;
 use serde::Serialize;
 
-/// Relative difference of the released energy from that of the laws from which bonds count as not resolved.
+/// Relative difference of the released energy from that of the laws from which bonds count as not
+/// resolved.
 pub const WRONG_ENERGY: f64 = 0.05;
-/// Share of bonds that break within the step in which their damage begins, from which they count as not resolved.
+/// Share of bonds that break within the step in which their damage begins, from which they count as
+/// not resolved.
 pub const AT_ONCE: f64 = 0.1;
-/// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at once however small the step.
+/// A bond that breaks below this multiple of its opening at peak traction is brittle: it breaks at
+/// once however small the step.
 const BRITTLE: f64 = 1.05;
-/// Slide over critical opening, in the steps in which they break, from which brittle bonds count as not resolved: the step, not the law, then
-/// decides which of several breaks.
+/// Slide over critical opening, in the steps in which they break, from which brittle bonds count as
+/// not resolved: the step, not the law, then decides which of several breaks.
 const OVERSHOOT: f64 = 0.2;
-/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`: with damage at its start or end, and
-/// with damage at its middle.
+/// Slide per step over critical opening with which a step resolves a bond, as in `fretwork check`:
+/// with damage at its start or end, and with damage at its middle.
 const RESOLVED: [f64; 2] = [0.01, 0.07];
 
 /// What the energy to break a bond is compared with.
@@ -44,30 +47,36 @@ crate::described! {
         pub broken: u64 => ONE,
         /// Bonds whose contact moved out of range, or whose body was removed.
         pub torn: u64 => ONE,
-        /// Energy that the bonds broken by damage released, all that was stored at the break included.
+        /// Energy that the bonds broken by damage released, all that was stored at the break
+        /// included.
         pub released: f64 => ENERGY,
-        /// Part of it that is compared with the next: all, unless bonds were broken by rotation in great numbers.
+        /// Part of it that is compared with the next: all, unless bonds were broken by rotation in
+        /// great numbers.
         #[serde(skip)]
         pub compared: f64,
-        /// Fracture energy of their laws for their areas and openings; where bonds were also turned, the work of a slow pull that opens and
-        /// turns them in the same proportion.
+        /// Fracture energy of their laws for their areas and openings; where bonds were also
+        /// turned, the work of a slow pull that opens and turns them in the same proportion.
         pub declared: Option<f64> => ENERGY,
         /// What the fracture energy comes from.
         pub reference: Reference => WORD,
         /// Released over declared; null without broken bonds.
         pub released_over_declared: Option<f64> => ONE,
-        /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it depends on neither speed, pressure nor
-        /// history; and no broken bond began at its gap, with an energy that its law may not have allowed.
+        /// Whether a ratio other than 1 is an error of the step: the law declares the energy, or it
+        /// depends on neither speed, pressure nor history; and no broken bond began at its gap,
+        /// with an energy that its law may not have allowed.
         pub comparable: bool => WORD,
-        /// Share of the broken bonds that had no damage at the start of the step in which they broke.
+        /// Share of the broken bonds that had no damage at the start of the step in which they
+        /// broke.
         pub broken_at_once: Option<f64> => ONE,
         /// Opening of a slow pull at which a bond breaks, the smaller of both modes.
         pub critical_opening: Option<f64> => METRE,
         /// Smallest opening at the peak of the traction.
         pub peak_opening: Option<f64> => METRE,
-        /// Change of the opening of an intact bond in a step over the critical opening: mean over bonds and steps.
+        /// Change of the opening of an intact bond in a step over the critical opening: mean over
+        /// bonds and steps.
         pub slide_mean: Option<f64> => ONE,
-        /// Change of the opening in a step over the critical opening, mean over the steps that released energy, weighted by that energy.
+        /// Change of the opening in a step over the critical opening, mean over the steps that
+        /// released energy, weighted by that energy.
         pub slide_breaking: Option<f64> => ONE,
         /// Largest change of the opening of an intact bond in a step over the critical opening.
         pub slide_largest: Option<f64> => ONE,
@@ -77,16 +86,20 @@ crate::described! {
 }
 
 crate::described! {
-    /// Energy that broken bonds released, over what their laws declare; the slide of bonds in a step.
+    /// Energy that broken bonds released, over what their laws declare; the slide of bonds in a
+    /// step.
     #[derive(Clone, Debug, Default, PartialEq, Serialize)]
     pub struct FractureSummary {
-        /// Energy released over that of the laws, over all bonds that damage broke in interfaces where they are `comparable`; null without any.
+        /// Energy released over that of the laws, over all bonds that damage broke in interfaces
+        /// where they are `comparable`; null without any.
         pub released_over_declared: Option<f64> => ONE,
         /// The interfaces that made bonds.
         pub interfaces: Vec<BondEnergies> = part::<BondEnergies>(),
-        /// Whether cycles were skipped: damage then grows by more than what the energies of a step say, and nothing is compared.
+        /// Whether cycles were skipped: damage then grows by more than what the energies of a step
+        /// say, and nothing is compared.
         pub jumps: bool => WORD,
-        /// Time step, and the slide per step over critical opening with which it would resolve a bond.
+        /// Time step, and the slide per step over critical opening with which it would resolve a
+        /// bond.
         #[serde(skip)]
         pub step: [f64; 2],
     }
@@ -142,7 +155,8 @@ impl FractureSummary {
         text.join("; ")
     }
 
-    /// Says which bonds the step does not resolve, and what to change; `None` where it resolves all, or nothing is known.
+    /// Says which bonds the step does not resolve, and what to change; `None` where it resolves
+    /// all, or nothing is known.
     pub fn warning(&self) -> Option<String> {
         if self.jumps {
             return None;

@@ -1,5 +1,5 @@
-//! What may be wrong with the heat of a run: an account that does not close, half-spaces that are not deep enough, and contacts
-//! that heat a body beside its half-spaces.
+//! What may be wrong with the heat of a run: an account that does not close, half-spaces that are
+//! not deep enough, and contacts that heat a body beside its half-spaces.
 
 use crate::quantity::part;
 use crate::quantity::unit::{METRE, ONE, WORD};
@@ -11,11 +11,13 @@ use fretwork_core::heat::{BodyNodes, Heat, HeatState, Pieces, Store};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
 
-/// Depth of half-spaces over the distance sqrt(D t) that heat has come, below which their end may be felt.
+/// Depth of half-spaces over the distance sqrt(D t) that heat has come, below which their end may
+/// be felt.
 const DEEP: f64 = 4.0;
 /// Share of the heat of a body that may pass beside its half-spaces without a note.
 const NEGLIGIBLE: f64 = 1e-2;
-/// Distance beyond the ends of the half-spaces that is not beside them, over their length: rounding, and rotation in a step.
+/// Distance beyond the ends of the half-spaces that is not beside them, over their length:
+/// rounding, and rotation in a step.
 const ROUNDING: f64 = 1e-3;
 
 crate::described! {
@@ -40,7 +42,8 @@ crate::described! {
         pub depth: f64 => METRE,
         /// Distance sqrt(D t) that heat has come in thermal time.
         pub reach: f64 => METRE,
-        /// Share of the heat that contacts put into the body and conduct to it, of those beside the range of its half-spaces.
+        /// Share of the heat that contacts put into the body and conduct to it, of those beside the
+        /// range of its half-spaces.
         pub outside: f64 => ONE,
     }
 }
@@ -109,7 +112,8 @@ impl HeatChecks {
     }
 }
 
-/// Heat at the contacts of each driven body with half-spaces, in their order: beside the half-spaces, and of all (J; J/m in 2D).
+/// Heat at the contacts of each driven body with half-spaces, in their order: beside the
+/// half-spaces, and of all (J; J/m in 2D).
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct ContactShares(Vec<[f64; 2]>);
 
@@ -133,7 +137,8 @@ impl ContactShares {
         let (Some(thermal), true) = (&s.state.network.thermal, begun && !bounded.is_empty()) else {
             return;
         };
-        // With a circuit conductances are known in every step, without in those in which heat flows.
+        // With a circuit conductances are known in every step, without in those in which heat
+        // flows.
         let steps = if thermal.current { 1 } else { heat.every };
         let span = heat.clock * h * steps as f64;
         let temperature =
@@ -208,7 +213,8 @@ pub(super) fn checks<S: Space>(
     })
 }
 
-/// Interfaces whose transport law is not asked, since the case computes no heat: a sentence for each.
+/// Interfaces whose transport law is not asked, since the case computes no heat: a sentence for
+/// each.
 pub fn without_heat<S: Space>(s: &Simulation<S>) -> Vec<String> {
     let idle = s
         .laws

@@ -1,9 +1,9 @@
 //! Shear band: its angle and width from the grains in a box whose local shear exceeds a threshold.
 //!
-//! The grains are sorted into rows two mean diameters high. In each row the band's centre is the median
-//! position of these grains, and its width is twice their interquartile range, which is exact for a uniformly
-//! filled band and robust against a few stray grains. A straight line through the rows gives the angle; the
-//! width across that line is the mean over the rows.
+//! The grains are sorted into rows two mean diameters high. In each row the band's centre is the
+//! median position of these grains, and its width is twice their interquartile range, which is
+//! exact for a uniformly filled band and robust against a few stray grains. A straight line through
+//! the rows gives the angle; the width across that line is the mean over the rows.
 
 use super::{Observer, RunEnd, grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
@@ -47,8 +47,8 @@ fn shape(points: &[(f64, f64)], low: f64, row: f64) -> Option<(f64, f64)> {
     {
         row_k.sort_by(f64::total_cmp);
         let n = row_k.len() as f64;
-        // Correction for the quartiles of n equidistant samples, which are closer together than those of the
-        // population.
+        // Correction for the quartiles of n equidistant samples, which are closer together than
+        // those of the population.
         let few = (n + 1.0) / (n - 1.0);
         width += 2.0 * few * (quantile(row_k, 0.75) - quantile(row_k, 0.25));
         centres.push((low + (k as f64 + 0.5) * row, quantile(row_k, 0.5)));
@@ -179,7 +179,8 @@ mod tests {
                 "{} in place of {degrees}",
                 a.to_degrees()
             );
-            // The rows are a third of the width high, so a leaning band appears slightly wider in them.
+            // The rows are a third of the width high, so a leaning band appears slightly wider in
+            // them.
             assert!((w / width - 1.0).abs() < 0.12, "{w} at {degrees}");
         }
         assert!(shape(&[(0.0, 0.0); 9], 0.0, 1.0).is_none());

@@ -14,8 +14,8 @@ use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use fretwork_scene::measures::MeasureSpec;
 
-/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are too large. `heated`: whether it
-/// computes heat.
+/// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are
+/// too large. `heated`: whether it computes heat.
 pub fn measures<S: Space>(
     specs: &[MeasureSpec],
     inertia_scaling: f64,

@@ -1,4 +1,5 @@
-//! Time-averaged profiles of solid fraction, velocity, spin and, where heat is computed, temperature in the slices of a box.
+//! Time-averaged profiles of solid fraction, velocity, spin and, where heat is computed,
+//! temperature in the slices of a box.
 //!
 //! A grain counts in the slice of its centre; velocities and temperatures are mass-weighted.
 
@@ -76,7 +77,8 @@ impl<S: Space> Profile<S> {
         out
     }
 
-    /// Position, solid fraction, velocity and spin of each slice; NaN velocities where there was no grain.
+    /// Position, solid fraction, velocity and spin of each slice; NaN velocities where there was no
+    /// grain.
     fn rows(&self) -> Vec<Vec<f64>> {
         let wide = (self.high[self.axis] - self.low[self.axis]) / self.slices.len() as f64;
         let section: f64 = (0..S::D)

@@ -1,5 +1,5 @@
-//! The catalogue of a run: what each path of its `summary.json` is. Written under the key `quantities`, and read
-//! by everything that shows runs later.
+//! The catalogue of a run: what each path of its `summary.json` is. Written under the key
+//! `quantities`, and read by everything that shows runs later.
 
 use super::{Estimate, Findings, Role, Topic};
 use serde::{Deserialize, Serialize};

@@ -45,8 +45,9 @@ pub const fn field(name: &'static str, unit: Unit, doc: &'static str) -> Field {
     }
 }
 
-/// Declares a struct whose fields have a unit, `=> UNIT`, or a schema, `= part::<Other>()`; their documentation
-/// is their explanation in all outputs. Fields with neither are not reported: `#[serde(skip)]` goes with them.
+/// Declares a struct whose fields have a unit, `=> UNIT`, or a schema, `= part::<Other>()`; their
+/// documentation is their explanation in all outputs. Fields with neither are not reported:
+/// `#[serde(skip)]` goes with them.
 #[macro_export]
 macro_rules! described {
     (@schema [] [$unit:expr]) => { $crate::quantity::Schema::Values($unit) };

@@ -5,20 +5,21 @@ use serde::{Deserialize, Serialize};
 use super::unit::{ONE, WORD};
 
 crate::described! {
-    /// A result with its uncertainties, each as a half-width of a 95 % confidence interval in the unit of the
-    /// value; null if it was not estimated.
+    /// A result with its uncertainties, each as a half-width of a 95 % confidence interval in the
+    /// unit of the value; null if it was not estimated.
     #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct Estimate {
         /// Value to which the half-widths refer.
         pub value: Option<f64> => ONE,
         /// Half-width from the scatter within the run.
         pub scatter: Option<f64> => ONE,
-        /// Half-width from the time step, by repeated steps: the change that they show, and what is not known of it.
+        /// Half-width from the time step, by repeated steps: the change that they show, and what is
+        /// not known of it.
         pub step: Option<f64> => ONE,
         /// Half-width from the solver's tolerance, by repeated steps.
         pub tolerance: Option<f64> => ONE,
-        /// Half-width from the explicit coupling of damage and opening, by repeated steps; a part of the effect of
-        /// the step too.
+        /// Half-width from the explicit coupling of damage and opening, by repeated steps; a part
+        /// of the effect of the step too.
         pub coupling: Option<f64> => ONE,
         /// Method of the scatter estimate, or the reason why there is none.
         pub method: Option<String> => WORD,
@@ -36,16 +37,16 @@ impl Estimate {
         all.into_iter().filter_map(|(of, half)| Some((of, half?)))
     }
 
-    /// Half-widths of settings that are smaller than the value, and names of those that are not: as large as the
-    /// value they say that nothing is known.
+    /// Half-widths of settings that are smaller than the value, and names of those that are not: as
+    /// large as the value they say that nothing is known.
     pub fn known(&self) -> (Vec<(&'static str, f64)>, Vec<&'static str>) {
         let size = self.value.unwrap_or(0.0).abs();
         let (known, unknown): (Vec<_>, Vec<_>) = self.settings().partition(|(_, h)| *h < size);
         (known, unknown.into_iter().map(|(of, _)| of).collect())
     }
 
-    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`. Empty where nothing was
-    /// estimated.
+    /// ` +- 0.004 (step) +- 0.002 (tolerance)`, with the half-widths formatted by `shown`. Empty
+    /// where nothing was estimated.
     pub fn from_settings(&self, shown: impl Fn(f64) -> String) -> String {
         let (known, unknown) = self.known();
         let known = known.iter();

@@ -8,8 +8,8 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// Quantities in the order in which they were added, and warnings. A quantity that is added again replaces the
-/// value of the first.
+/// Quantities in the order in which they were added, and warnings. A quantity that is added again
+/// replaces the value of the first.
 #[derive(Clone, Default)]
 pub struct Findings {
     dimension: usize,
@@ -72,7 +72,8 @@ impl Findings {
         self.dimension
     }
 
-    /// What the quantities that follow are about, and how prominent they are unless they say otherwise.
+    /// What the quantities that follow are about, and how prominent they are unless they say
+    /// otherwise.
     pub fn begin(&mut self, topic: Topic, role: Role) {
         (self.topic, self.role) = (topic, role);
     }
@@ -159,14 +160,15 @@ impl Findings {
         &mut self.list[place]
     }
 
-    /// Adds all fields of a described result below a path (at the root where it is empty), and keeps it for
-    /// [`Findings::get`]. `doc` is said where there is nothing, such as an empty list.
+    /// Adds all fields of a described result below a path (at the root where it is empty), and
+    /// keeps it for [`Findings::get`]. `doc` is said where there is nothing, such as an empty list.
     pub fn part<T: Described>(&mut self, path: &str, result: &T, doc: &str) {
         self.keep(result.clone());
         self.fields(path, result, T::FIELDS, doc);
     }
 
-    /// The same of a list of results; of an optional one, null where it is none.
+    /// Adds all fields of a list of described results, or of an optional one, which is null where
+    /// there is none.
     pub fn parts<T: Described>(
         &mut self,
         path: &str,
@@ -253,7 +255,8 @@ impl Findings {
         &self.to_come
     }
 
-    /// Whether a result that is not there yet will have a field of this path; none where nothing is known of its group.
+    /// Whether a result that is not there yet will have a field of this path; none where nothing is
+    /// known of its group.
     pub fn expects(&self, path: &str) -> Option<bool> {
         let keys = |path: &str| {
             let keys = path

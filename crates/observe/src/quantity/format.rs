@@ -31,8 +31,8 @@ pub fn number(value: f64, digits: i32) -> String {
     }
 }
 
-/// Formats a value in an SI unit: `2.300e-5`, `m` gives `23.00 um`. Kilograms become grams, and cubic metres
-/// mm3, so that volumes have a common unit.
+/// Formats a value in an SI unit: `2.300e-5`, `m` gives `23.00 um`. Kilograms become grams, and
+/// cubic metres mm3, so that volumes have a common unit.
 pub fn quantity(value: f64, unit: &str) -> String {
     if matches!(unit, "" | "1") {
         return number(value, 4);

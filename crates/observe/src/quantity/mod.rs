@@ -1,6 +1,7 @@
-//! What a run says in numbers and words. Observers add quantities to [`Findings`], each with its path in
-//! `summary.json`, unit, explanation, role and half-widths; everything that shows results, on the terminal, in
-//! files and in tables, is made from that list and from its [`Catalogue`], and knows no quantity by name.
+//! What a run says in numbers and words. Observers add quantities to [`Findings`], each with its
+//! path in `summary.json`, unit, explanation, role and half-widths; everything that shows results,
+//! on the terminal, in files and in tables, is made from that list and from its [`Catalogue`], and
+//! knows no quantity by name.
 
 mod catalogue;
 mod described;

@@ -18,7 +18,8 @@ pub struct DrivenBodies {
 }
 
 impl DrivenBodies {
-    /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may be left out of the figures.
+    /// Of the driven bodies of a simulation; a body and an axis whose force is drawn elsewhere may
+    /// be left out of the figures.
     pub fn of<S: Space>(s: &Simulation<S>, test: Option<(String, usize)>) -> Self {
         let named = s.state.bodies.driven.iter().enumerate();
         // Walls that a scene file brought are not worth columns.

@@ -8,8 +8,9 @@ use fretwork_core::energy::Energy;
 use fretwork_core::momentum::Momentum;
 use serde::Serialize;
 
-/// Residual of the energy ledger, and of the account of heat, relative to the largest energy or heat, above which it
-/// is not explained by rounding: ledgers close to 1e-9 and better, also over millions of steps.
+/// Residual of the energy ledger, and of the account of heat, relative to the largest energy or
+/// heat, above which it is not explained by rounding: ledgers close to 1e-9 and better, also over
+/// millions of steps.
 pub const LEDGER: f64 = 1e-6;
 /// Share of the energy taken by friction that friction may give back without a warning.
 const GIVEN: f64 = 0.05;
@@ -22,7 +23,8 @@ crate::described! {
     pub struct MomentumSummary {
         /// Linear momentum of the free rigid bodies that nothing outside gave them.
         pub linear: f64 => MOMENTUM,
-        /// Angular momentum of the free rigid bodies that nothing outside gave them; zero in periodic scenes.
+        /// Angular momentum of the free rigid bodies that nothing outside gave them; zero in
+        /// periodic scenes.
         pub angular: f64 => ANGULAR_MOMENTUM,
         /// The linear one over the largest sum of the bodies' |m v| so far.
         pub linear_relative: f64 => ONE,
@@ -113,7 +115,8 @@ fn largest(e: &Energy) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// Sentences of the terminal: external work + gravity + kinetic energy at the start = dissipated + stored.
+/// Sentences of the terminal: external work + gravity + kinetic energy at the start = dissipated +
+/// stored.
 fn sentences(e: &Energy, unit: &str) -> Vec<(&'static str, &'static str, String)> {
     let largest = largest(e);
     let shown = |x: f64| x.is_nan() || x.abs() > NEGLIGIBLE * largest;

@@ -30,8 +30,8 @@ impl Missed {
         self.error = self.error.max(report.error);
     }
 
-    /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if all steps
-    /// converged.
+    /// Advice to the user after `of` steps; proposes only solvers that the laws permit. `None` if
+    /// all steps converged.
     pub fn warning<S: Space>(&self, simulation: &Simulation<S>, of: u64) -> Option<String> {
         let options = simulation.solver_in_force();
         let seen = self.seen(of, options.tolerance)?;
@@ -46,8 +46,8 @@ impl Missed {
         } else {
             format!(", or try solver.method {}", others.join(" or "))
         };
-        // Velocities of bodies much lighter than their neighbours have rounding errors above a tight
-        // tolerance.
+        // Velocities of bodies much lighter than their neighbours have rounding errors above a
+        // tight tolerance.
         let rounding = if options.tolerance < 1e-6 {
             ", or allow a larger solver.tolerance (rounding may leave more than this one)"
         } else {
@@ -59,7 +59,8 @@ impl Missed {
         ))
     }
 
-    /// Description of the missed steps among `of`, and the first thing to change. `None` if all steps converged.
+    /// Description of the missed steps among `of`, and the first thing to change. `None` if all
+    /// steps converged.
     pub(super) fn seen(&self, of: u64, tolerance: f64) -> Option<String> {
         (self.steps > 0).then(|| {
             format!(

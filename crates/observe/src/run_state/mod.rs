@@ -165,7 +165,8 @@ pub struct RunState {
     couplings: u64,
     /// Number of contacts in the last step; none before it.
     contacts: Option<usize>,
-    /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance was reached.
+    /// Contacts that carried an impulse in the last step, sweeps, error, and whether the tolerance
+    /// was reached.
     last: [f64; 5],
 }
 

@@ -4,11 +4,13 @@ use crate::quantity::{Findings, Role, Topic};
 use crate::solving::SolverSummary;
 use crate::warning::Warning;
 
-/// Overlap of rigid contacts, over the radius of the smaller grain, from which they are not where the model says.
+/// Overlap of rigid contacts, over the radius of the smaller grain, from which they are not where
+/// the model says.
 const OVERLAP: f64 = 1e-2;
 /// Residual velocities, as a share of those of the contacts, below which they are not worth a note.
 const LOOSE: f64 = 1e-3;
-/// Mean share of the friction, and largest share of an attraction, by which steps may differ from their laws.
+/// Mean share of the friction, and largest share of an attraction, by which steps may differ from
+/// their laws.
 const UNMET_FRICTION: f64 = 2e-3;
 const UNMET_ATTRACTION: f64 = 2e-2;
 
@@ -74,7 +76,8 @@ impl SolverSummary {
         out
     }
 
-    /// What is wrong with the solutions of a run of so many steps; `possible` unless motions could not be obeyed.
+    /// What is wrong with the solutions of a run of so many steps; `possible` unless motions could
+    /// not be obeyed.
     pub(super) fn warnings(&self, steps: u64, possible: bool) -> Vec<Warning> {
         let reasons = [
             // No smaller step helps against a motion that cannot be obeyed.
@@ -106,7 +109,8 @@ impl SolverSummary {
         })
     }
 
-    /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to resolve.
+    /// Steps that reached their tolerance, but whose residuals outweigh the slip that they are to
+    /// resolve.
     fn loose_velocities(&self) -> Option<String> {
         let parts = &self.error_parts;
         let loose = parts.contact_law > 1.0 && parts.velocity > LOOSE;
@@ -149,8 +153,9 @@ impl SolverSummary {
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 
-    /// Steps of which another solution was found, with those in which it was not sought: alone these say nothing, as
-    /// all dense flows have them, but where first bodies alone may hold a grain.
+    /// Steps of which another solution was found, with those in which it was not sought: alone
+    /// these say nothing, as all dense flows have them, but where first bodies alone may hold a
+    /// grain.
     fn several_solutions(&self) -> Option<String> {
         let [several, not_searched, pinched] = [
             self.several_steps,
@@ -250,8 +255,8 @@ mod tests {
         assert!(list.len() == 1 && list[0].serious && list[0].of == "LOOSE VELOCITIES");
     }
 
-    /// Steps in which no other solution was sought say nothing alone, as dense flows have them, but where grains
-    /// between first bodies let go.
+    /// Steps in which no other solution was sought say nothing alone, as dense flows have them, but
+    /// where grains between first bodies let go.
     #[test]
     fn several_solutions_are_a_note_and_grains_between_first_bodies_that_let_go() {
         let told = |several: u64, pinched: u64| {

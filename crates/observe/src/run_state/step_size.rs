@@ -104,7 +104,8 @@ mod tests {
     use super::*;
     use fretwork_core::contact::Occurrence;
 
-    /// Bodies that slid into low edges are a reason from one to a thousand pieces, and a note below.
+    /// Bodies that slid into low edges are a reason from one to a thousand pieces, and a note
+    /// below.
     #[test]
     fn low_edges_are_a_reason_where_they_are_many() {
         let told = |edges: u64| {

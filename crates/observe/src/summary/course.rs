@@ -15,7 +15,8 @@ pub struct Course {
     pub unconverged: f64,
     /// Steps that missed the tolerance of the damage coupling.
     pub uncoupled: f64,
-    /// Energy that no entry of the ledger explains, over the largest energy; none where it is not finite.
+    /// Energy that no entry of the ledger explains, over the largest energy; none where it is not
+    /// finite.
     pub residual: Option<f64>,
     /// Processor time (s).
     pub cpu_seconds: Option<f64>,

@@ -14,14 +14,15 @@ crate::described! {
     pub struct Uncertainty {
         /// Friction coefficient: the mean over the steady cycles or blocks.
         pub friction_coefficient: Estimate = part::<Estimate>(),
-        /// Broken bonds over bonds made; its half-widths are those of the sum of the damage of all bonds, of which
-        /// the ratio counts the part that is complete.
+        /// Broken bonds over bonds made; its half-widths are those of the sum of the damage of all
+        /// bonds, of which the ratio counts the part that is complete.
         pub damage_ratio: Estimate = part::<Estimate>(),
         /// Volume worn off first bodies.
         pub wear: Estimate = part::<Estimate>(),
         /// Energy dissipated by friction.
         pub friction_energy: Estimate = part::<Estimate>(),
-        /// The repeated steps on which `step`, `tolerance` and `coupling` rest, and shares of the energy.
+        /// The repeated steps on which `step`, `tolerance` and `coupling` rest, and shares of the
+        /// energy.
         pub repeats: Repeats = part::<Repeats>(),
     }
 }

@@ -1,4 +1,5 @@
-//! `summary.json`, and the text at the end of a run: the facts of a run and all that its observers found.
+//! `summary.json`, and the text at the end of a run: the facts of a run and all that its observers
+//! found.
 
 mod course;
 mod estimate;
@@ -37,8 +38,9 @@ crate::described! {
     }
 }
 
-/// JSON pointers to the values that may differ between the summaries of two runs of a case: wall and
-/// processor times, and the number of threads. All others are bit-identical, see `docs/checkpoints.md`.
+/// JSON pointers to the values that may differ between the summaries of two runs of a case: wall
+/// and processor times, and the number of threads. All others are bit-identical, see
+/// `docs/checkpoints.md`.
 pub const FROM_THE_CLOCK: [&str; 5] = [
     "/wall_seconds",
     "/cpu_seconds",
@@ -59,7 +61,8 @@ crate::described! {
         pub reasons: Vec<String> => WORD,
         /// The reasons, followed by notes.
         pub warnings: Vec<String> => WORD,
-        /// Identity of the run (case, materials, laws and scene), by which the results file recognises its summary.
+        /// Identity of the run (case, materials, laws and scene), by which the results file
+        /// recognises its summary.
         pub identity: String => WORD,
         /// Dimension, 2 or 3.
         pub dimension: usize => ONE,

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
 crate::described! {
-    /// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and the report page are not part of a run.
+    /// Wall time of a run (s) by what it was spent on. Reading the case, searching for plugins and
+    /// the report page are not part of a run.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
     pub struct TimeSpent {
         /// Detection of contacts, in the steps.
@@ -15,7 +16,8 @@ crate::described! {
         pub laws: f64 => SECOND,
         /// The solver.
         pub solver: f64 => SECOND,
-        /// Everything else in a step: motion, energy ledger, processes, and steps repeated to estimate an error.
+        /// Everything else in a step: motion, energy ledger, processes, and steps repeated to
+        /// estimate an error.
         pub rest_of_steps: f64 => SECOND,
         /// Observers: statistics, tests and measures.
         pub observers: f64 => SECOND,

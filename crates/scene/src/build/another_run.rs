@@ -1,5 +1,5 @@
-//! Grains taken from a state of another run: positions, orientations, velocities, spins and shapes as
-//! recorded there.
+//! Grains taken from a state of another run: positions, orientations, velocities, spins and shapes
+//! as recorded there.
 
 use super::grains::Seed;
 use super::{Builder, Dimensional, Origin};

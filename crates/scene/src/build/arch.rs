@@ -11,8 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const MAX_BLOCKS: usize = 10_000;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for other
-    /// kinds of grains.
+    /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for
+    /// other kinds of grains.
     pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block<S>>, InputError> {
         let GrainSpec::Arch {
             blocks,

@@ -7,7 +7,8 @@ use fretwork_core::laws::Interface;
 /// The alert distance of a case (m): the given one, or `needed` and what laws with a `range` need.
 ///
 /// # Errors
-/// A law that attracts beyond the given one, where no contact is known: how far it acts would depend on that.
+/// A law that attracts beyond the given one, where no contact is known: how far it acts would
+/// depend on that.
 pub(super) fn alert(
     source: &Source,
     case: &Case,
@@ -23,7 +24,8 @@ pub(super) fn alert(
                 continue;
             };
             let range = law.parameters[at];
-            // A range of the law's own goes as far as contacts are known; one that is given is meant.
+            // A range of the law's own goes as far as contacts are known; one that is given is
+            // meant.
             let slot = law.plugin.kind.word();
             let given = range != law.plugin.parameters[at].default;
             match case.detection.alert {

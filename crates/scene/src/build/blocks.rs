@@ -16,8 +16,8 @@ use nalgebra::{Vector2, Vector3};
 const MAX_BLOCKS: usize = 100_000;
 /// Limit on Lloyd iterations; beyond some hundred the cells no longer change visibly.
 const MAX_ROUNDS: usize = 1_000;
-/// Limit on cells times Lloyd iterations in 2D and 3D, which take some seconds. Building the cells counts as
-/// one iteration.
+/// Limit on cells times Lloyd iterations in 2D and 3D, which take some seconds. Building the cells
+/// counts as one iteration.
 const MAX_WORK: [f64; 2] = [1e6, 5e4];
 
 impl<S: Dimensional> Builder<'_, S> {

@@ -6,9 +6,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 impl Loaded {
-    /// The case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and content of each file that one of its texts
-    /// names: materials, parameters, profiles, meshes, samples, and the summary of another run. Two cases with equal contents are
-    /// the same scene under the same laws, without building it.
+    /// The case in the spelling of [`Case::to_ron`](crate::Case::to_ron), and name and content of
+    /// each file that one of its texts names: materials, parameters, profiles, meshes, samples, and
+    /// the summary of another run. Two cases with equal contents are the same scene under the same
+    /// laws, without building it.
     ///
     /// # Errors
     /// The case cannot be written as text.

@@ -1,4 +1,5 @@
-//! Grains that deform between two runs: what a state of another run knows of their deformation, and what is recorded of them.
+//! Grains that deform between two runs: what a state of another run knows of their deformation, and
+//! what is recorded of them.
 
 use super::elastic_grains::Shapes;
 use super::{Builder, Dimensional};
@@ -12,11 +13,13 @@ use fretwork_elastic::{Elasticity, GrainShape};
 
 /// Most that a point of a mesh may lie elsewhere than in the other run, over the size of the grain.
 const SAME_PLACE: f64 = 1e-6;
-/// Most that a stress may differ from that of the other run, as a share of the largest of the grain.
+/// Most that a stress may differ from that of the other run, as a share of the largest of the
+/// grain.
 const SAME_STRESS: f64 = 1e-6;
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Displacements of the points of a grain in its frame (m) and their rates (m/s), where a state of another run has them; empty otherwise.
+    /// Displacements of the points of a grain in its frame (m) and their rates (m/s), where a state
+    /// of another run has them; empty otherwise.
     pub(super) fn taken_over(
         &self,
         body: u32,

@@ -128,8 +128,8 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// Radius of the smallest of the balls about the centres of the balls and convex parts of grains that they hold (m); infinite
-    /// without grains.
+    /// Radius of the smallest of the balls about the centres of the balls and convex parts of
+    /// grains that they hold (m); infinite without grains.
     fn thinnest_grain(&self) -> f64 {
         let grain = self.bodies.grain_flags();
         let balls = self.shapes.balls.iter().map(|b| (b.body, b.radius));
@@ -143,15 +143,16 @@ impl<S: Dimensional> Builder<'_, S> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// Grains that fit between the points of a body would fall into it. Every cut through the centre of one holds a disk of the radius
-    /// of the ball in it: where that is larger than the gaps between points, one of them stops it.
+    /// Grains that fit between the points of a body would fall into it. Every cut through the
+    /// centre of one holds a disk of the radius of the ball in it: where that is larger than the
+    /// gaps between points, one of them stops it.
     pub(super) fn check_elastic_points(
         &self,
         systems: &[Box<dyn DynamicalSystem<S>>],
     ) -> Result<(), InputError> {
         let thinnest = self.thinnest_grain();
-        // The size of a point is half of the distance to the next, in space the radius of the disk of its area a: a disk of the radius
-        // sqrt(a/2) fits between four.
+        // The size of a point is half of the distance to the next, in space the radius of the disk
+        // of its area a: a disk of the radius sqrt(a/2) fits between four.
         let wide = match S::D {
             2 => 1.0,
             _ => std::f64::consts::FRAC_PI_2.sqrt(),

@@ -1,4 +1,5 @@
-//! Grains that deform: those of a material are taken out of the rigid bodies and become dynamical systems.
+//! Grains that deform: those of a material are taken out of the rigid bodies and become dynamical
+//! systems.
 
 use super::{Builder, Dimensional, Origin};
 use crate::case::ElasticGrainSpec;
@@ -14,7 +15,8 @@ use fretwork_elastic::{ElasticGrainSpec as Grain, Elasticity, GrainShape, Mesh};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
-/// Most elements along the radius of a grain, by dimension: modes of finer meshes take minutes to find.
+/// Most elements along the radius of a grain, by dimension: modes of finer meshes take minutes to
+/// find.
 const MAX_ELEMENTS: [usize; 2] = [12, 5];
 
 /// Grains that were taken out of the rigid bodies, with their entries in the case.
@@ -46,8 +48,8 @@ impl<S: Space> Shapes<'_, S> {
 }
 
 impl<S: Dimensional> Builder<'_, S> {
-    /// Takes the grains of the materials that deform out of the rigid bodies. Called after the grains and before all other
-    /// bodies.
+    /// Takes the grains of the materials that deform out of the rigid bodies. Called after the
+    /// grains and before all other bodies.
     pub(super) fn elastic_grains(
         &mut self,
         properties: &[BTreeMap<String, Sourced>],

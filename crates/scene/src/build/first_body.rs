@@ -29,8 +29,8 @@ impl<S: Dimensional> Builder<'_, S> {
             .unwrap_or(if volume > 0.0 { density * volume } else { 1.0 });
         let inertia = match spec.inertia {
             Some(inertia) => S::Tensor::uniform(inertia),
-            // If a drive imposes its rotation at any time, the body has one scalar inertia throughout, so
-            // that its energy does not jump when the drive ends.
+            // If a drive imposes its rotation at any time, the body has one scalar inertia
+            // throughout, so that its energy does not jump when the drive ends.
             None if volume > 0.0 && self.turned_by_drives(spec) => {
                 S::Tensor::uniform(tensor::mean::<S>(&own) * density)
             }
@@ -56,8 +56,9 @@ impl<S: Dimensional> Builder<'_, S> {
         self.wears(here, spec, first)
     }
 
-    /// Rejects half-spaces that are not parallel to a periodic axis. A half-space normal to the axis is
-    /// accepted: it is a wall of a case that was made periodic by `--set`, and it is dropped.
+    /// Rejects half-spaces that are not parallel to a periodic axis. A half-space normal to the
+    /// axis is accepted: it is a wall of a case that was made periodic by `--set`, and it is
+    /// dropped.
     fn check_periods(&self, here: &str, spec: &BodySpec) -> Result<(), InputError> {
         let periods = self.shapes.periodic.period;
         for (k, shape) in spec.shapes.iter().enumerate() {

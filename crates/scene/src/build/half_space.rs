@@ -12,7 +12,8 @@ use fretwork_elastic::half_space::{
 };
 use std::collections::BTreeMap;
 
-/// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 - theta)/theta in a step, and near 1/2 single steps win energy.
+/// Least theta: the error of a contact force on a stiff half-space is multiplied by -(1 -
+/// theta)/theta in a step, and near 1/2 single steps win energy.
 const MIN_THETA: f64 = 0.55;
 
 /// Creepage of one surface over another that may come on top of rolling by one cell a step.

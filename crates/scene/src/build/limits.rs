@@ -5,9 +5,11 @@ use crate::source::{InputError, ValidationError};
 use fretwork_core::contact::detect::{LawTable, centre};
 use fretwork_core::geometry::grid;
 
-/// Limit on the pairs of grains that a large skin may make neighbours, see [`Builder::refuse_wide_skin`].
+/// Limit on the pairs of grains that a large skin may make neighbours, see
+/// [`Builder::refuse_wide_skin`].
 const MAX_PAIRS: f64 = 2e8;
-/// Limits on the pairs of grains at the start, in total and per grain, see [`Builder::refuse_piles`].
+/// Limits on the pairs of grains at the start, in total and per grain, see
+/// [`Builder::refuse_piles`].
 const MAX_PAIRS_AT_ALL: usize = 2_000_000;
 const MAX_PAIRS_A_GRAIN: usize = 100;
 
@@ -18,8 +20,8 @@ impl<S: Dimensional> Builder<'_, S> {
         self.shapes.balls.iter().map(|b| b.radius).chain(pieces)
     }
 
-    /// Rejects a skin larger than the grains: it makes neighbours of grains that never meet, and the
-    /// neighbour list may not fit into memory.
+    /// Rejects a skin larger than the grains: it makes neighbours of grains that never meet, and
+    /// the neighbour list may not fit into memory.
     pub(super) fn refuse_wide_skin(
         &self,
         alert: f64,
@@ -46,9 +48,9 @@ impl<S: Dimensional> Builder<'_, S> {
         Err(self.fail("detection.skin", message))
     }
 
-    /// Rejects grains that overlap in large numbers, such as all at one position: they make more pairs than
-    /// fit into memory. The test runs before any pair is stored. Grains that only touch have about twenty
-    /// neighbours each, whatever their sizes.
+    /// Rejects grains that overlap in large numbers, such as all at one position: they make more
+    /// pairs than fit into memory. The test runs before any pair is stored. Grains that only touch
+    /// have about twenty neighbours each, whatever their sizes.
     pub(super) fn refuse_piles(
         &self,
         alert: f64,

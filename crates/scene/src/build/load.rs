@@ -18,8 +18,8 @@ pub fn load(path: &Path, sets: &[String]) -> Result<Loaded, InputError> {
     read(Source::read(path)?, path, sets)
 }
 
-/// The same from a text. `name` stands for the file in errors; the files that the case names, and `materials/`, are looked
-/// for relative to `folder` (an empty path for the working folder).
+/// The same from a text. `name` stands for the file in errors; the files that the case names, and
+/// `materials/`, are looked for relative to `folder` (an empty path for the working folder).
 ///
 /// # Errors
 /// At name, line and column.
@@ -71,8 +71,9 @@ fn read(mut source: Source, path: &Path, sets: &[String]) -> Result<Loaded, Inpu
 }
 
 impl Loaded {
-    /// A case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors show their place in the
-    /// text that [`Case::to_ron`] makes of it. Files are looked for as in [`load_text`].
+    /// A case that was made in Rust, for instance by a [`CaseBuilder`](crate::CaseBuilder). Errors
+    /// show their place in the text that [`Case::to_ron`] makes of it. Files are looked for as in
+    /// [`load_text`].
     ///
     /// # Errors
     /// What a case file with the same content would be refused for.
@@ -102,7 +103,8 @@ impl Loaded {
         }
     }
 
-    /// The same case, with a material of one's own: `materials` of the case finds it under `file` before any file of that name.
+    /// The same case, with a material of one's own: `materials` of the case finds it under `file`
+    /// before any file of that name.
     ///
     /// # Errors
     /// A material that cannot be written as text.
@@ -110,7 +112,8 @@ impl Loaded {
         self.with_file(file, material)
     }
 
-    /// The same case, with parameters of laws of one's own: `parameters_from` of an interface finds them under `file`.
+    /// The same case, with parameters of laws of one's own: `parameters_from` of an interface finds
+    /// them under `file`.
     ///
     /// # Errors
     /// Parameters that cannot be written as text.

@@ -19,7 +19,8 @@ const POINTS_A_WAVE: f64 = 16.0;
 enum Heights {
     /// Amplitude, and lengths along x and y; an infinite one is no wave.
     Wave(f64, [f64; 2]),
-    /// Between the places of a table, of which the last repeats the first where it has a period (m).
+    /// Between the places of a table, of which the last repeats the first where it has a period
+    /// (m).
     Table(Vec<(f64, f64)>),
 }
 

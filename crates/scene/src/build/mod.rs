@@ -54,7 +54,8 @@ pub struct Loaded {
     pub case: Case,
     /// Path of the file.
     pub path: PathBuf,
-    /// Reader of grains from the results of other runs; with `None` cases that need it are rejected.
+    /// Reader of grains from the results of other runs; with `None` cases that need it are
+    /// rejected.
     pub records: Option<RecordReader>,
     /// Texts of material and parameter files that the program gives itself, by name.
     pub(super) own_files: BTreeMap<String, String>,
@@ -250,8 +251,8 @@ struct Builder<'a, S: Space> {
     files: BTreeMap<String, SceneFile>,
     bodies: Bodies<S>,
     shapes: Shapes<S>,
-    /// The entry of the case that made each body: an index in `grains`, an index in its list, or an index in
-    /// `bodies`.
+    /// The entry of the case that made each body: an index in `grains`, an index in its list, or an
+    /// index in `bodies`.
     origins: Vec<Origin>,
     /// See [`Built::samples`].
     samples: Vec<String>,
@@ -406,7 +407,8 @@ impl<S: Dimensional> Builder<'_, S> {
             h: case.time.step,
             theta: case.time.theta,
         };
-        // A scene of springs can be slow: its error is measured by the heat of slip, unless the case gives a tolerance of its own.
+        // A scene of springs can be slow: its error is measured by the heat of slip, unless the
+        // case gives a tolerance of its own.
         let springs = simulation.laws.iter().all(Interface::compliant);
         let by_heat = springs && !simulation.laws.is_empty() && case.solver.tolerance.is_none();
         let norm = case

@@ -12,7 +12,8 @@ use nalgebra::Vector2;
 /// Limit on the sides of a regular polygon: a larger number is taken for a typing error.
 const MAX_SIDES: usize = 10_000;
 
-/// A grain of one convex part: its centre of mass (m), volume and moment of inertia at unit density.
+/// A grain of one convex part: its centre of mass (m), volume and moment of inertia at unit
+/// density.
 pub(super) struct Block<S: Space> {
     pub at: S::Vector,
     pub volume: f64,

@@ -45,7 +45,8 @@ pub trait Dimensional: Deposits + Deformable {
     /// Makes a height field.
     ///
     /// # Errors
-    /// The reason why the heights are not a valid field, or that the dimension has no height fields.
+    /// The reason why the heights are not a valid field, or that the dimension has no height
+    /// fields.
     fn height_field(
         points: (usize, usize),
         spacing: (f64, f64),

@@ -18,8 +18,8 @@ pub(super) struct Union<S: Space> {
 }
 
 impl<S: Space> Union<S> {
-    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about it at unit density, of each shape that
-    /// has a volume.
+    /// Centre (m), volume (m^3; 2D: m^2) and moments of inertia about it at unit density, of each
+    /// shape that has a volume.
     fn volumes(&self) -> impl Iterator<Item = (S::Vector, f64, S::Tensor)> + '_ {
         let ball = |(x, r): &(S::Vector, f64)| {
             let volume = S::ball_volume(*r);
@@ -143,7 +143,8 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(cluster.1.iter().map(ball).collect())
     }
 
-    /// Makes the balls of a plate with a hole, so close that no grain of their size passes between them.
+    /// Makes the balls of a plate with a hole, so close that no grain of their size passes between
+    /// them.
     fn plate(
         &self,
         here: &str,

@@ -252,8 +252,8 @@ impl<S: Dimensional> Builder<'_, S> {
         Ok(())
     }
 
-    /// Whether a body can slide relative to a body that an interface pairs it with; false if all are held in
-    /// all degrees of freedom at all times.
+    /// Whether a body can slide relative to a body that an interface pairs it with; false if all
+    /// are held in all degrees of freedom at all times.
     fn slips(&self, body: &BodySpec, law: &InterfaceSpec) -> bool {
         let other = if law.between.0 == body.material {
             &law.between.1

@@ -11,8 +11,8 @@ impl GrainSpec {
         }
     }
 
-    /// A hexagonal (2D) or cubic (3D) lattice that fills a box from its low corner (m) up: at most `count` balls, radii (m)
-    /// drawn uniformly between two.
+    /// A hexagonal (2D) or cubic (3D) lattice that fills a box from its low corner (m) up: at most
+    /// `count` balls, radii (m) drawn uniformly between two.
     pub fn lattice(
         material: impl Into<String>,
         count: usize,

@@ -14,8 +14,9 @@ fn values(parameters: &[(&str, f64)]) -> BTreeMap<String, Given> {
 }
 
 impl InterfaceSpec {
-    /// An interface between two materials, by their names in the case, with a contact law and its parameters in the units of
-    /// the law (SI). `fretwork law show contact/NAME` lists the parameters and their ranges.
+    /// An interface between two materials, by their names in the case, with a contact law and its
+    /// parameters in the units of the law (SI). `fretwork law show contact/NAME` lists the
+    /// parameters and their ranges.
     pub fn new(
         name: impl Into<String>,
         between: (&str, &str),

@@ -1,8 +1,8 @@
 //! A case made in Rust, without any file.
 //!
-//! A [`CaseBuilder`] fills in a [`Case`], the type that case files are read into, so that all that a file can say can be said
-//! here, is checked by the same code and refused in the same sentences. What has no method of its own is reached by
-//! [`CaseBuilder::change`].
+//! A [`CaseBuilder`] fills in a [`Case`], the type that case files are read into, so that all that
+//! a file can say can be said here, is checked by the same code and refused in the same sentences.
+//! What has no method of its own is reached by [`CaseBuilder::change`].
 
 mod body;
 mod grains;
@@ -21,11 +21,13 @@ use std::collections::BTreeMap;
 use std::marker::PhantomData;
 use std::path::PathBuf;
 
-/// Builds a [`Case`] in two ([`Dim2`](crate::Dim2)) or three ([`Dim3`](crate::Dim3)) dimensions, and from it a simulation.
+/// Builds a [`Case`] in two ([`Dim2`](crate::Dim2)) or three ([`Dim3`](crate::Dim3)) dimensions,
+/// and from it a simulation.
 ///
 /// # Examples
-/// A ball rests on a plane, both of a material of one's own. The laws are those that the search path finds; the crate
-/// `fretwork` has one with all shipped laws, `fretwork::shipped::search_path()`.
+/// A ball rests on a plane, both of a material of one's own. The laws are those that the search
+/// path finds; the crate `fretwork` has one with all shipped laws,
+/// `fretwork::shipped::search_path()`.
 /// ```
 /// use fretwork_scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
 /// use fretwork_scene::{CaseBuilder, Dim3};
@@ -54,7 +56,8 @@ pub struct CaseBuilder<S> {
 }
 
 impl<S: Dimensional> CaseBuilder<S> {
-    /// A case with a title and nothing in it: it still needs its [time](Self::time), materials and bodies.
+    /// A case with a title and nothing in it: it still needs its [time](Self::time), materials and
+    /// bodies.
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             case: Case {
@@ -106,7 +109,8 @@ impl<S: Dimensional> CaseBuilder<S> {
         self
     }
 
-    /// Has the run choose step and tolerance for an accuracy: a share of friction by which they may change it.
+    /// Has the run choose step and tolerance for an accuracy: a share of friction by which they may
+    /// change it.
     #[must_use]
     pub fn accuracy(mut self, accuracy: AccuracySpec) -> Self {
         self.case.accuracy = Some(accuracy);
@@ -148,7 +152,8 @@ impl<S: Dimensional> CaseBuilder<S> {
         self
     }
 
-    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built in, such as `rail_steel_r260`.
+    /// A material of the case from the file `FILE.ron` in a folder `materials`, or from those built
+    /// in, such as `rail_steel_r260`.
     #[must_use]
     pub fn material(mut self, name: impl Into<String>, file: impl Into<String>) -> Self {
         self.case.materials.insert(name.into(), file.into());
@@ -207,15 +212,16 @@ impl<S: Dimensional> CaseBuilder<S> {
         self
     }
 
-    /// The folder relative to which files that the case names are found; the working folder by default.
+    /// The folder relative to which files that the case names are found; the working folder by
+    /// default.
     #[must_use]
     pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
         self.folder = folder.into();
         self
     }
 
-    /// The case as it stands, unchecked. Materials of [`own_material`](Self::own_material) are not part of it: it names them
-    /// as files.
+    /// The case as it stands, unchecked. Materials of [`own_material`](Self::own_material) are not
+    /// part of it: it names them as files.
     pub fn case(&self) -> Case {
         self.case.clone()
     }
@@ -235,8 +241,8 @@ impl<S: Dimensional> CaseBuilder<S> {
     /// Checks the case and builds its simulation with the laws of a search path.
     ///
     /// # Errors
-    /// What a case file with the same content would be refused for: laws and materials that are not found, parameters out of
-    /// range, bodies that overlap.
+    /// What a case file with the same content would be refused for: laws and materials that are not
+    /// found, parameters out of range, bodies that overlap.
     pub fn build(self, laws: &SearchPath) -> Result<Built<S>, InputError> {
         self.load()?.build_in(laws)
     }

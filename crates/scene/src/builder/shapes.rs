@@ -1,4 +1,5 @@
-//! Shapes of first bodies made in Rust; those that are not here are written as the variants of [`ShapeSpec`].
+//! Shapes of first bodies made in Rust; those that are not here are written as the variants of
+//! [`ShapeSpec`].
 
 use crate::case::{Coordinates, ShapeSpec, Side};
 
@@ -29,7 +30,8 @@ impl ShapeSpec {
         }
     }
 
-    /// A profile (2D) by its points (m) from left to right, and the side of it on which the solid is.
+    /// A profile (2D) by its points (m) from left to right, and the side of it on which the solid
+    /// is.
     pub fn profile(points: impl Into<Vec<(f64, f64)>>, side: Side) -> Self {
         Self::Profile {
             points: points.into(),

@@ -6,7 +6,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 /// The result whose error is to stay below a share of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum AccurateResult {
-    /// The friction coefficient of the friction test; in a case without one the energy of friction, or forces where nothing is driven.
+    /// The friction coefficient of the friction test; in a case without one the energy of friction,
+    /// or forces where nothing is driven.
     #[default]
     Friction,
     /// Forces of contacts: for scenes that are at rest or come to rest.
@@ -19,8 +20,9 @@ pub enum AccurateResult {
     Wear,
 }
 
-/// The accuracy asked for, and the bounds within which the run chooses its settings. `solver.tolerance` is the coarsest one; `time.step` is the
-/// coarsest one where bodies move, and grows where nothing does. A share alone stands for the struct with it: `accuracy: 0.03`.
+/// The accuracy asked for, and the bounds within which the run chooses its settings.
+/// `solver.tolerance` is the coarsest one; `time.step` is the coarsest one where bodies move, and
+/// grows where nothing does. A share alone stands for the struct with it: `accuracy: 0.03`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AccuracySpec {
     /// Share of the result by which step and tolerance together may change it.
@@ -30,13 +32,15 @@ pub struct AccuracySpec {
     /// Smallest step (s); a sixty-fourth of `time.step` by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_step: Option<f64>,
-    /// Largest step (s) where nothing moves; 100 times `time.step` by default, and `time.step` for steps that do not grow.
+    /// Largest step (s) where nothing moves; 100 times `time.step` by default, and `time.step` for
+    /// steps that do not grow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_step: Option<f64>,
     /// Smallest tolerance; 1/256 of the case's by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub finest_tolerance: Option<f64>,
-    /// Share of the cost of the run that may go into the repeated steps by which it measures its error.
+    /// Share of the cost of the run that may go into the repeated steps by which it measures its
+    /// error.
     pub effort: f64,
 }
 

@@ -6,8 +6,8 @@ use fretwork_core::bodies::Dof;
 use fretwork_elastic::{Rayleigh, Strain};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A body of finite elements; in 2D the strain is plane. Its density, Young's modulus and Poisson's ratio are those
-/// of its material.
+/// A body of finite elements; in 2D the strain is plane. Its density, Young's modulus and Poisson's
+/// ratio are those of its material.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticSpec {
@@ -26,7 +26,8 @@ pub struct ElasticSpec {
     /// Velocity at the start (m/s); at rest by default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocity: Vec<f64>,
-    /// Angular velocity at the start about the centre of mass (rad/s), in 3D with three components; not in small strain.
+    /// Angular velocity at the start about the centre of mass (rad/s), in 3D with three components;
+    /// not in small strain.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub spin: Vec<f64>,
     /// What holds and drives it.
@@ -51,8 +52,8 @@ pub struct ElasticSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSpec {
-    /// A block with its sides along the axes. Its sides are the parts `left`, `right` (x), `bottom`, `top` (y in 2D, z in 3D), `front`,
-    /// `back` (y in 3D).
+    /// A block with its sides along the axes. Its sides are the parts `left`, `right` (x),
+    /// `bottom`, `top` (y in 2D, z in 3D), `front`, `back` (y in 3D).
     Block {
         /// Points along x.
         x: LineSpec,
@@ -87,8 +88,8 @@ pub enum MeshSpec {
         )]
         coarsen: Option<Box<CoarsenSpec>>,
     },
-    /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra (3D); its parts are the named
-    /// physical groups of lines or triangles.
+    /// A mesh in Gmsh's format (version 2.2 or 4.1, as text) with triangles (2D) or tetrahedra
+    /// (3D); its parts are the named physical groups of lines or triangles.
     Gmsh {
         /// The file, beside the case.
         file: String,
@@ -108,7 +109,8 @@ pub struct LineSpec {
     pub to: f64,
     /// Size of an element.
     pub size: f64,
-    /// Where elements have this size: from the first to the second of these; beyond they grow. Everywhere by default.
+    /// Where elements have this size: from the first to the second of these; beyond they grow.
+    /// Everywhere by default.
     #[serde(
         default,
         deserialize_with = "some",
@@ -131,7 +133,8 @@ pub struct CoarsenSpec {
     pub ratio: f64,
 }
 
-/// A side of a block as part of a circle (2D), a sphere or a cylinder (3D), whose middle touches the flat side that it replaces.
+/// A side of a block as part of a circle (2D), a sphere or a cylinder (3D), whose middle touches
+/// the flat side that it replaces.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct RoundSpec {
@@ -186,7 +189,8 @@ pub enum ProfileShape {
         /// Shortest wave (m).
         shortest: f64,
     },
-    /// A table of places `x` and heights `z` (m), straight between them (2D): a measured profile, or one that a run wrote.
+    /// A table of places `x` and heights `z` (m), straight between them (2D): a measured profile,
+    /// or one that a run wrote.
     Table {
         /// The file, beside the case.
         file: String,
@@ -199,7 +203,8 @@ pub enum ProfileShape {
 pub struct SupportSpec {
     /// Name of the part.
     pub part: String,
-    /// Along x: `Free` as one, `Fixed`, `Velocity(...)`, `Displacement(...)` or `Force(...)`; left to its points by default.
+    /// Along x: `Free` as one, `Fixed`, `Velocity(...)`, `Displacement(...)` or `Force(...)`; left
+    /// to its points by default.
     #[serde(
         default,
         deserialize_with = "some",
@@ -222,7 +227,8 @@ pub struct SupportSpec {
     pub z: Option<Dof>,
 }
 
-/// What of a deformable body touches. Where two such bodies meet, one of them touches by its points.
+/// What of a deformable body touches. Where two such bodies meet, one of them touches by its
+/// points.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub enum TouchSpec {

@@ -4,8 +4,8 @@ use super::elastic::some;
 use fretwork_elastic::Rayleigh;
 use serde::{Deserialize, Serialize};
 
-/// Lets the grains of a material deform: balls, polygons and polyhedra, however they were made. Density, Young's modulus and
-/// Poisson's ratio are those of the material.
+/// Lets the grains of a material deform: balls, polygons and polyhedra, however they were made.
+/// Density, Young's modulus and Poisson's ratio are those of the material.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElasticGrainSpec {

@@ -15,8 +15,8 @@ pub enum GrainSpec {
         /// Balls.
         grains: Vec<OneGrain>,
     },
-    /// A hexagonal (2D) or cubic (3D) lattice without overlaps, radii drawn uniformly between two and
-    /// shuffled by the seed. Fills the box from its low corner up.
+    /// A hexagonal (2D) or cubic (3D) lattice without overlaps, radii drawn uniformly between two
+    /// and shuffled by the seed. Fills the box from its low corner up.
     Lattice {
         /// Material.
         material: String,
@@ -119,7 +119,8 @@ fn half_circle() -> f64 {
 /// The edges of a voussoir between its joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub enum Edges {
-    /// Arcs: mass and centre are those of a ring sector. The block makes contact at its joints only.
+    /// Arcs: mass and centre are those of a ring sector. The block makes contact at its joints
+    /// only.
     #[default]
     Curved,
     /// Chords.

@@ -5,8 +5,9 @@ use super::{Side, WearSpec};
 use fretwork_core::bodies::{Dof, TimeFunction};
 use serde::{Deserialize, Serialize};
 
-/// A body that is large against what touches it: its surface deforms as that of a half-space, at once and without inertia. Young's modulus
-/// and Poisson's ratio are those of its material; in 2D the strain is plane.
+/// A body that is large against what touches it: its surface deforms as that of a half-space, at
+/// once and without inertia. Young's modulus and Poisson's ratio are those of its material; in 2D
+/// the strain is plane.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct HalfSpaceSpec {
@@ -29,14 +30,16 @@ pub struct HalfSpaceSpec {
         skip_serializing_if = "Option::is_none"
     )]
     pub y: Option<CellSpec>,
-    /// Depth below a load at which the displacement is zero (m): needed in 2D and where the cells repeat; in 3D it is infinite.
+    /// Depth below a load at which the displacement is zero (m): needed in 2D and where the cells
+    /// repeat; in 3D it is infinite.
     #[serde(
         default,
         deserialize_with = "some",
         skip_serializing_if = "Option::is_none"
     )]
     pub depth: Option<f64>,
-    /// Whether the cells and their loads repeat along the surface; with them the surface itself, where the case is periodic along x.
+    /// Whether the cells and their loads repeat along the surface; with them the surface itself,
+    /// where the case is periodic along x.
     #[serde(default)]
     pub periodic: bool,
     /// Shape of the surface without load; flat by default.
@@ -85,7 +88,8 @@ pub enum HalfSpaceProfile {
     /// A plane.
     #[default]
     Flat,
-    /// A summit at the origin with radii of curvature (m): a cylinder where one is left out, a sphere where both are the same.
+    /// A summit at the origin with radii of curvature (m): a cylinder where one is left out, a
+    /// sphere where both are the same.
     Summit {
         /// In the plane of x.
         #[serde(default = "straight")]
@@ -122,7 +126,8 @@ pub enum HalfSpaceProfile {
         /// Shortest wave (m).
         shortest: f64,
     },
-    /// Heights over the plane (m), outward, of each cell: row by row along x. A file has them as numbers, in lines along x.
+    /// Heights over the plane (m), outward, of each cell: row by row along x. A file has them as
+    /// numbers, in lines along x.
     Heights {
         /// The file, beside the case.
         file: String,
@@ -159,7 +164,8 @@ pub struct HolderSpec {
     pub z: Option<Dof>,
 }
 
-/// How the cells of a half-space touch. Where two deformable bodies meet, one of them touches by its points.
+/// How the cells of a half-space touch. Where two deformable bodies meet, one of them touches by
+/// its points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 pub enum CellTouch {
     /// The middle of each cell: against balls, pieces and surfaces.

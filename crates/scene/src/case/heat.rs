@@ -4,14 +4,16 @@ use fretwork_core::heat::{Partition, Shares, Supply};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Heat of a case: what is warm at the start, what becomes of dissipated energy, and what first bodies do with heat. Materials then have
-/// `conductivity` and `heat_capacity`; heat flows through the contacts of interfaces with a `transport` law.
+/// Heat of a case: what is warm at the start, what becomes of dissipated energy, and what first
+/// bodies do with heat. Materials then have `conductivity` and `heat_capacity`; heat flows through
+/// the contacts of interfaces with a `transport` law.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct HeatSpec {
     /// Temperature of everything at the start (K).
     pub initial: f64,
-    /// Temperature at the start of the grains of a material (K), by the names of this case; `initial` for the others.
+    /// Temperature at the start of the grains of a material (K), by the names of this case;
+    /// `initial` for the others.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub grains: BTreeMap<String, f64>,
     /// Convection at the surfaces of all grains.
@@ -24,20 +26,23 @@ pub struct HeatSpec {
     pub shares: Shares,
     /// How the heat of a contact is split between its sides.
     pub partition: Partition,
-    /// Thermal time over mechanical time: each step lets heat flow for `clock` times as long, while what it puts in stays the same.
+    /// Thermal time over mechanical time: each step lets heat flow for `clock` times as long, while
+    /// what it puts in stays the same.
     pub clock: f64,
     /// Steps of the mechanics per step of the heat.
     pub every: u64,
-    /// Time from which on heat flows and is put in (s); 0 by default. What dissipates before, as in a compaction, warms nothing.
+    /// Time from which on heat flows and is put in (s); 0 by default. What dissipates before, as in
+    /// a compaction, warms nothing.
     pub start: f64,
     /// Theta of the heat's time scheme, 1/2 to 1.
     pub theta: f64,
-    /// Whether bodies expand by the `expansion` (1/K) of their materials, from their size at the start: rigid grains, first bodies of balls, polygons or
-    /// polyhedra that are `Lumped`, and bodies of `elastic`.
+    /// Whether bodies expand by the `expansion` (1/K) of their materials, from their size at the
+    /// start: rigid grains, first bodies of balls, polygons or polyhedra that are `Lumped`, and
+    /// bodies of `elastic`.
     #[serde(skip_serializing_if = "is_false")]
     pub expansion: bool,
-    /// Hardness (Pa) of the softer bodies, from which the flash temperature of sliding spots follows; without it contacts have the temperature of
-    /// their bodies.
+    /// Hardness (Pa) of the softer bodies, from which the flash temperature of sliding spots
+    /// follows; without it contacts have the temperature of their bodies.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub flash: Option<f64>,
     /// An electric current between two first bodies.
@@ -80,7 +85,8 @@ pub struct ConvectionSpec {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct BodyHeatSpec {
-    /// Where its heat goes: `Fixed` (the default), `Insulated`, `Lumped(...)`, `HalfSpace(...)`, or of finite elements `Mesh(...)`.
+    /// Where its heat goes: `Fixed` (the default), `Insulated`, `Lumped(...)`, `HalfSpace(...)`, or
+    /// of finite elements `Mesh(...)`.
     pub store: StoreSpec,
     /// Its temperature at the start (K); that of the case without it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +94,8 @@ pub struct BodyHeatSpec {
     /// Heat that flows into it from outside (W; W/m in 2D), at the surfaces of its pieces.
     #[serde(skip_serializing_if = "is_zero")]
     pub power: f64,
-    /// Convection at a face of it; of a half-space at the surfaces of its pieces, since nothing leaves at its depth.
+    /// Convection at a face of it; of a half-space at the surfaces of its pieces, since nothing
+    /// leaves at its depth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub convection: Option<FaceSpec>,
 }
@@ -123,17 +130,20 @@ pub enum StoreSpec {
     Insulated,
     /// It has one temperature.
     Lumped {
-        /// Heat capacity (J/K; J/(K m) in 2D); from the material where the body has balls, polygons or polyhedra.
+        /// Heat capacity (J/K; J/(K m) in 2D); from the material where the body has balls, polygons
+        /// or polyhedra.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         capacity: Option<f64>,
     },
-    /// A half-space below each piece of its surface, in which heat flows along the depth: `HalfSpace(x: 40)`.
+    /// A half-space below each piece of its surface, in which heat flows along the depth:
+    /// `HalfSpace(x: 40)`.
     HalfSpace(DepthSpec),
     /// Heat flows in its finite elements; of the bodies of `elastic` only: `Mesh()`.
     Mesh(MeshHeatSpec),
 }
 
-/// What happens at the boundary of a body of finite elements, by the names of its parts; no heat flows through the rest, but for contacts.
+/// What happens at the boundary of a body of finite elements, by the names of its parts; no heat
+/// flows through the rest, but for contacts.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeshHeatSpec {
@@ -161,14 +171,16 @@ pub struct DepthSpec {
     /// Along z.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub z: Option<u32>,
-    /// Where the pieces begin and end along each of these axes (m), in the axes of the body; by default over the period, or over the extent of the
-    /// body's profiles, balls and polygons.
+    /// Where the pieces begin and end along each of these axes (m), in the axes of the body; by
+    /// default over the period, or over the extent of the body's profiles, balls and polygons.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub over: Vec<(f64, f64)>,
-    /// Depth to which heat can go (m); by default six times the distance that it comes during the run.
+    /// Depth to which heat can go (m); by default six times the distance that it comes during the
+    /// run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub depth: Option<f64>,
-    /// First spacing of the grid below the surface (m); by default 0.3 of the distance that heat comes in a step.
+    /// First spacing of the grid below the surface (m); by default 0.3 of the distance that heat
+    /// comes in a step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<f64>,
     /// Factor from each spacing to the next; 1.2 by default.
@@ -184,6 +196,7 @@ pub struct ElectricSpec {
     pub from: String,
     /// Name of the body that it leaves, of potential 0.
     pub to: String,
-    /// `Voltage(V)`, or `Current(current: A, limit: V)`: a current source with the voltage that it does not exceed.
+    /// `Voltage(V)`, or `Current(current: A, limit: V)`: a current source with the voltage that it
+    /// does not exceed.
     pub supply: Supply,
 }

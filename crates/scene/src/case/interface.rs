@@ -12,8 +12,8 @@ use std::fmt;
 /// Values by slot and parameter: numbers in the unit of the law, or `(value: 5, unit: "um")`.
 pub type SlotValues = BySlot<BTreeMap<String, Given>>;
 
-/// The law between two materials: a slot for each kind of law, each a plugin's name. In the text each slot is a field with the
-/// word of its kind: `contact: "coulomb", wear: "archard"`.
+/// The law between two materials: a slot for each kind of law, each a plugin's name. In the text
+/// each slot is a field with the word of its kind: `contact: "coulomb", wear: "archard"`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterfaceSpec {
     /// Name.
@@ -28,7 +28,8 @@ pub struct InterfaceSpec {
     pub parameters: SlotValues,
     /// When bonds are made.
     pub bonds: BondRule,
-    /// Largest gap at which a bond is made (m), at most the alert distance, which it is without one.
+    /// Largest gap at which a bond is made (m), at most the alert distance, which it is without
+    /// one.
     pub bonds_within: Option<f64>,
     /// Opening at which bonds begin.
     pub bond_opening: BondOpening,

@@ -68,13 +68,14 @@ pub struct Case {
     /// Phases of the run, one after another.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<PhaseSpec>,
-    /// Factor on all densities, for quasi-static runs without gravity. With scaled inertia the time step has
-    /// to resolve the motion only, not sound waves; results do not depend on the factor while the inertial
-    /// number stays below 1e-3 (da Cruz et al. 2005). Reported densities and wear are unscaled.
+    /// Factor on all densities, for quasi-static runs without gravity. With scaled inertia the time
+    /// step has to resolve the motion only, not sound waves; results do not depend on the factor
+    /// while the inertial number stays below 1e-3 (da Cruz et al. 2005). Reported densities and
+    /// wear are unscaled.
     #[serde(default = "one")]
     pub inertia_scaling: f64,
-    /// Coupling of damage and opening within a step: `Midpoint` (the default), `Explicit`, or `Implicit(tolerance: 1e-6,
-    /// max_iterations: 50)`, see [`Coupling`].
+    /// Coupling of damage and opening within a step: `Midpoint` (the default), `Explicit`, or
+    /// `Implicit(tolerance: 1e-6, max_iterations: 50)`, see [`Coupling`].
     #[serde(default)]
     pub coupling: Coupling,
     /// Length of the periodic cell along an axis (m).
@@ -90,7 +91,8 @@ pub struct Case {
     pub materials: BTreeMap<String, String>,
     /// Interface laws between materials.
     pub interfaces: Vec<InterfaceSpec>,
-    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one may be any.
+    /// SHA-256 that libraries of laws must have, in hexadecimal, by `kind/name`; a law without one
+    /// may be any.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub pins: BTreeMap<String, String>,
     /// First bodies.
@@ -126,7 +128,8 @@ pub struct Case {
     /// Other quantities that are measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub measures: Vec<MeasureSpec>,
-    /// Accuracy that the run is asked for; without it step and tolerance are those of the case throughout.
+    /// Accuracy that the run is asked for; without it step and tolerance are those of the case
+    /// throughout.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<AccuracySpec>,
     /// How the run estimates its own error.
@@ -194,28 +197,30 @@ pub struct DetectionSpec {
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSpec {
-    /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`; see
-    /// `docs/solvers.md`.
+    /// The method: `Auto`, `Nlgs`, `Anderson`, `Pg`, `Cpg`, `Pcpg`, `Apgd`, `Newton`, `Interior`;
+    /// see `docs/solvers.md`.
     pub method: Method,
     /// Bound on the error; by default the norm's own, [`Norm::default_tolerance`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Definition of the error, `Balance`, `Velocity` or `Power`, see [`fretwork_core::solve::error`]; by default `Power` where
-    /// all contacts are springs and no tolerance is given, `Balance` elsewhere.
+    /// Definition of the error, `Balance`, `Velocity` or `Power`, see
+    /// [`fretwork_core::solve::error`]; by default `Power` where all contacts are springs and no
+    /// tolerance is given, `Balance` elsewhere.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub norm: Option<Norm>,
     /// Largest number of iterations per step.
     pub max_iterations: u32,
     /// Iterations between convergence tests.
     pub test_every: u32,
-    /// Over-relaxation factor, from 1 to below 2, on the change of each contact's impulse in an iteration.
+    /// Over-relaxation factor, from 1 to below 2, on the change of each contact's impulse in an
+    /// iteration.
     pub relaxation: f64,
-    /// Fraction of a penetration that is removed per step, 0 to 1. Rigid contacts under a slowly changing
-    /// load drift into penetration by the solver's tolerance; 0.1 bounds the penetration to that of ten
-    /// steps. The work of the correction is an entry of the energy ledger.
+    /// Fraction of a penetration that is removed per step, 0 to 1. Rigid contacts under a slowly
+    /// changing load drift into penetration by the solver's tolerance; 0.1 bounds the penetration
+    /// to that of ten steps. The work of the correction is an entry of the energy ledger.
     pub correction: f64,
-    /// Penetration, as a fraction of the smaller body's length (a grain's radius), beyond which bodies are
-    /// moved apart without a change of velocity; 0 (the default) disables it. See
+    /// Penetration, as a fraction of the smaller body's length (a grain's radius), beyond which
+    /// bodies are moved apart without a change of velocity; 0 (the default) disables it. See
     /// [`fretwork_core::step::projection`].
     pub projection: f64,
 }

@@ -38,7 +38,8 @@ pub enum ShapeSpec {
         /// Points (m).
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         points: Vec<(f64, f64)>,
-        /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to the case.
+        /// A table of them with the columns `x` and `z`, in place of `points`: a path relative to
+        /// the case.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         file: Option<String>,
         /// Side of the solid.
@@ -51,7 +52,8 @@ pub enum ShapeSpec {
         /// Longest segment (m).
         #[serde(default = "half_millimetre")]
         spacing: f64,
-        /// Where it begins and ends along the standard's own lateral axis (m); all of it by default.
+        /// Where it begins and ends along the standard's own lateral axis (m); all of it by
+        /// default.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         from: Option<f64>,
         /// Its other end (m).
@@ -64,7 +66,8 @@ pub enum ShapeSpec {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         side: Option<Side>,
     },
-    /// A periodic, self-affine rough profile over the period of x (2D): random phases, spectrum |q|^(-1-2H).
+    /// A periodic, self-affine rough profile over the period of x (2D): random phases, spectrum
+    /// |q|^(-1-2H).
     RoughProfile {
         /// Number of points along the period.
         points: usize,
@@ -136,8 +139,8 @@ pub enum ShapeSpec {
     },
     /// Balls fixed to the body: (position in the body's frame, radius), in m.
     Balls(Vec<(Vec<f64>, f64)>),
-    /// A horizontal plate of balls in rings about the z axis, with a round hole (3D): the balls touch z = 0
-    /// from below.
+    /// A horizontal plate of balls in rings about the z axis, with a round hole (3D): the balls
+    /// touch z = 0 from below.
     Plate {
         /// Radius of the plate (m).
         radius: f64,

@@ -1,5 +1,5 @@
-//! What a case says of the slots of an interface, by kind of law. The fields of the text are the words of the kinds, so that a
-//! registered kind is one of them: see [`Kind::register`].
+//! What a case says of the slots of an interface, by kind of law. The fields of the text are the
+//! words of the kinds, so that a registered kind is one of them: see [`Kind::register`].
 
 use fretwork_core::laws::Kind;
 use serde::de::{DeserializeSeed, Error as _, MapAccess, Visitor};

@@ -7,8 +7,9 @@ use ron::ser::PrettyConfig;
 use serde::Serialize;
 
 impl Case {
-    /// The case as RON, with all numbers written out, defaults too; lists and options that are empty are left out. Read
-    /// again it gives an equal case, to the last bit. Comments of a file, `source`s beside numbers and the spelling are lost.
+    /// The case as RON, with all numbers written out, defaults too; lists and options that are
+    /// empty are left out. Read again it gives an equal case, to the last bit. Comments of a file,
+    /// `source`s beside numbers and the spelling are lost.
     ///
     /// # Errors
     /// A value that no case file can hold: the error norm `Field`.

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct UncertaintySpec {
-    /// Number of places of the run at which steps are repeated; 0 for no estimate. By default as many as cost less than 5 % of the run,
-    /// and none in a run that is too short for three.
+    /// Number of places of the run at which steps are repeated; 0 for no estimate. By default as
+    /// many as cost less than 5 % of the run, and none in a run that is too short for three.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeats: Option<u32>,
     /// Successive steps that are repeated at each place; by default 1 to 8, more in longer runs.

@@ -12,7 +12,8 @@ use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// Growth of the spacing with depth, the first spacing over the distance that heat comes in a step, and the depth over that of the run.
+/// Growth of the spacing with depth, the first spacing over the distance that heat comes in a step,
+/// and the depth over that of the run.
 const GROWTH: f64 = 1.2;
 const FIRST: f64 = 0.3;
 const DEEP: f64 = 6.0;
@@ -213,7 +214,8 @@ impl<S: Space> Scene<'_, S> {
         balls.chain(pieces).any(|b| b as usize == body)
     }
 
-    /// Surface of each grain (m^2; circumference in 2D, m): of others than balls that of the ball of the same volume.
+    /// Surface of each grain (m^2; circumference in 2D, m): of others than balls that of the ball
+    /// of the same volume.
     fn surface_of_grains(&self) -> Vec<f64> {
         let shapes = &self.simulation.shapes;
         let mut surface = vec![0.0; self.simulation.state.bodies.len()];

@@ -54,7 +54,8 @@ impl Coefficients<'_> {
     }
 }
 
-/// Has bodies of a case expand: rigid ones of balls, polygons and polyhedra that have one temperature which may change, and bodies of finite elements.
+/// Has bodies of a case expand: rigid ones of balls, polygons and polyhedra that have one
+/// temperature which may change, and bodies of finite elements.
 pub(super) fn install<S: Space>(
     case: &Case,
     spec: &HeatSpec,

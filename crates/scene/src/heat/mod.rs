@@ -20,7 +20,8 @@ use std::collections::BTreeMap;
 /// Properties of the materials of a case, in its order.
 pub(crate) type Properties = [BTreeMap<String, Sourced>];
 
-/// Has a simulation compute the heat of its case, where it has any. Densities are without inertia scaling (kg/m^3).
+/// Has a simulation compute the heat of its case, where it has any. Densities are without inertia
+/// scaling (kg/m^3).
 pub(crate) fn install<S: Space>(
     case: &Case,
     properties: &Properties,

@@ -49,8 +49,8 @@ const OF_SHAPES: [(&str, &str); 12] = [
     ("heights", "m"),
 ];
 
-/// The SI unit of the key at a path of names, with the names of variants between them; empty for pure numbers, texts, and
-/// parameters of laws, which have the units of their law.
+/// The SI unit of the key at a path of names, with the names of variants between them; empty for
+/// pure numbers, texts, and parameters of laws, which have the units of their law.
 pub(super) fn of(named: &[String], dimension: u32) -> &'static str {
     let has = |name: &str| named.iter().any(|n| n == name);
     let Some(last) = named.last().map(String::as_str) else {

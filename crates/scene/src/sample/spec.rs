@@ -41,8 +41,8 @@ pub struct VoronoiSpec {
     pub rounding: f64,
 }
 
-/// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D it stands along x
-/// and z and is one block thick.
+/// A wall of blocks in running bond: every second course begins and ends with half a block. In 3D
+/// it stands along x and z and is one block thick.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BlockWallSpec {
@@ -87,8 +87,8 @@ pub enum SizeSpec {
         #[serde(default)]
         by: Counted,
     },
-    /// A grading curve in a CSV file with the columns `size`, the sieve opening (m), which is a diameter, and
-    /// `passing`, the mass fraction that passes it.
+    /// A grading curve in a CSV file with the columns `size`, the sieve opening (m), which is a
+    /// diameter, and `passing`, the mass fraction that passes it.
     Sieve {
         /// Path relative to the case.
         file: String,
@@ -105,8 +105,8 @@ pub enum Counted {
     Mass,
 }
 
-/// Grains of a CSV file with the columns x, y (z in 3D), radius, and optionally velocity_x, velocity_y
-/// (velocity_z) and spin (spin_x, spin_y, spin_z in 3D).
+/// Grains of a CSV file with the columns x, y (z in 3D), radius, and optionally velocity_x,
+/// velocity_y (velocity_z) and spin (spin_x, spin_y, spin_z in 3D).
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct CsvSpec {

@@ -18,15 +18,16 @@ impl Table {
     /// Reads a table with required and optional columns. Lines that begin with `#` are comments.
     ///
     /// # Errors
-    /// An error at the line that is wrong: a missing, unknown or repeated column, a row of another length, or a value
-    /// that is not a finite number.
+    /// An error at the line that is wrong: a missing, unknown or repeated column, a row of another
+    /// length, or a value that is not a finite number.
     pub fn read(path: &Path, required: &[&str], optional: &[&str]) -> Result<Self, InputError> {
         let text = read_text(path)?;
         let name = path.display().to_string();
         Self::parse(name, text, required, optional, false)
     }
 
-    /// Reads a table of lengths, whose columns may have a unit behind the name, `z [mm]`; values are converted to metres.
+    /// Reads a table of lengths, whose columns may have a unit behind the name, `z [mm]`; values
+    /// are converted to metres.
     ///
     /// # Errors
     /// As [`Table::read`], or a unit that is not a length.

@@ -9,7 +9,8 @@ use ariadne::{Config, IndexType, Label, Report, ReportKind};
 
 use super::nearest::nearest;
 
-/// Lines longer than this (in characters) are not shown, since the location could not be found in them.
+/// Lines longer than this (in characters) are not shown, since the location could not be found in
+/// them.
 const LONGEST_LINE: usize = 400;
 
 /// For texts with more lines than this only the one-line form is given.
@@ -17,8 +18,8 @@ const MAX_LINES: usize = 200_000;
 
 /// An error in an input, with its location.
 ///
-/// Displayed as one line, `file:line:column: error: message; expected ...; help`, followed by the source line
-/// with the location marked; see [`InputError::render`].
+/// Displayed as one line, `file:line:column: error: message; expected ...; help`, followed by the
+/// source line with the location marked; see [`InputError::render`].
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", self.render(false))]
 pub struct InputError {
@@ -219,8 +220,8 @@ impl InputError {
         super::clean(&line)
     }
 
-    /// The error on one line, followed by the source line with the location marked; with terminal colours if
-    /// `colour`.
+    /// The error on one line, followed by the source line with the location marked; with terminal
+    /// colours if `colour`.
     pub fn render(&self, colour: bool) -> String {
         let mut out = if colour {
             let line = self.compact();
@@ -288,8 +289,8 @@ fn picture(
     let end = text[begin..]
         .find('\n')
         .map_or(text.len(), |length| begin + length);
-    // Only this line is passed on. Characters that ariadne takes for a line break, or a terminal for a
-    // control sequence, are replaced by blanks one by one.
+    // Only this line is passed on. Characters that ariadne takes for a line break, or a terminal
+    // for a control sequence, are replaced by blanks one by one.
     let clean = |c: char| match c {
         '\t' => c,
         '\u{2028}' | '\u{2029}' => ' ',

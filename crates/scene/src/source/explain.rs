@@ -181,8 +181,8 @@ impl Source {
         node.map_or(start..end, |node| node.head(&self.text))
     }
 
-    /// An error reported by a type's validation; its message may continue a sentence that begins with the
-    /// field's name.
+    /// An error reported by a type's validation; its message may continue a sentence that begins
+    /// with the field's name.
     fn validation_error(&self, message: &str, start: usize, end: usize) -> InputError {
         let span = self.validated_span(start, end);
         let predicate = ["must ", "is ", "has ", "cannot "];

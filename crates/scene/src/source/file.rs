@@ -11,9 +11,9 @@ pub const MAX_BYTES: u64 = 64 << 20;
 
 /// Opens a regular file of at most `most` bytes and returns it with its length.
 ///
-/// The file type is checked before opening, since opening a pipe blocks until its other end is opened. A file of length
-/// zero is taken as empty and not read: files below `/proc` report no length, and reading some of them (`/proc/kmsg`)
-/// blocks.
+/// The file type is checked before opening, since opening a pipe blocks until its other end is
+/// opened. A file of length zero is taken as empty and not read: files below `/proc` report no
+/// length, and reading some of them (`/proc/kmsg`) blocks.
 ///
 /// # Errors
 /// The file is missing, unreadable, a folder, a device, a pipe or a socket, empty, or too large.

@@ -1,7 +1,7 @@
 //! Input text: reading, modification by `--set`, parsing, and location of errors.
 //!
-//! Every error names a file, a line and a column. The location comes from a [`Tree`] of the text, since the
-//! position reported by ron is often not that of the cause.
+//! Every error names a file, a line and a column. The location comes from a [`Tree`] of the text,
+//! since the position reported by ron is often not that of the cause.
 
 mod diagnostic;
 mod difference;
@@ -112,7 +112,8 @@ impl Source {
     /// where an enum has that variant.
     ///
     /// # Errors
-    /// An error from ron or from the validation of `T`, at the token that caused it; or a key that a map gives twice.
+    /// An error from ron or from the validation of `T`, at the token that caused it; or a key that
+    /// a map gives twice.
     pub fn parse<T: DeserializeOwned>(&self) -> Result<T, InputError> {
         if let Some(refusal) = self.refuse_depth() {
             return Err(refusal);
@@ -195,9 +196,9 @@ impl Source {
         self.error_in(&node.span, "").position()
     }
 
-    /// Adds to an error in a file the path of the value that names that file. If the file as a whole is at
-    /// fault (missing, empty), the error is located at the value; otherwise it keeps its location in the file
-    /// and a note names the value.
+    /// Adds to an error in a file the path of the value that names that file. If the file as a
+    /// whole is at fault (missing, empty), the error is located at the value; otherwise it keeps
+    /// its location in the file and a note names the value.
     pub fn named_at(&self, path: &str, error: InputError) -> InputError {
         if error.is_about_a_whole_file() {
             let mut found = self.error_at(path, error.in_short());
@@ -243,8 +244,8 @@ impl Source {
     }
 }
 
-/// Limit on alternative spellings tried in a parse; each attempt changes all values at the same place of the
-/// schema.
+/// Limit on alternative spellings tried in a parse; each attempt changes all values at the same
+/// place of the schema.
 const MAX_SPELLINGS: usize = 256;
 
 /// Whether ron parsed beyond a byte and the white space after it.

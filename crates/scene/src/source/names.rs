@@ -19,7 +19,8 @@ pub enum Names {
 }
 
 impl Source {
-    /// What may stand at a dotted path of a text of type `T`, the empty path for the text itself; `None` if `T` has no such path.
+    /// What may stand at a dotted path of a text of type `T`, the empty path for the text itself;
+    /// `None` if `T` has no such path.
     ///
     /// ```
     /// use fretwork_scene::source::{Names, Source};

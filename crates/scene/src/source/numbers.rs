@@ -1,7 +1,7 @@
 //! Number types that validate their range while they are deserialized.
 //!
-//! RON reads `NaN`, `inf` and `1e400` (as infinity) as valid floats; these types reject them during parsing,
-//! so that the error has a line and column.
+//! RON reads `NaN`, `inf` and `1e400` (as infinity) as valid floats; these types reject them during
+//! parsing, so that the error has a line and column.
 
 use serde::{Deserialize, Serialize};
 

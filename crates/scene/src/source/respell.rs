@@ -1,9 +1,9 @@
-//! Alternative notations that ron does not accept: a tuple for a list or a list for a tuple, and a number for
-//! a constant function of time.
+//! Alternative notations that ron does not accept: a tuple for a list or a list for a tuple, and a
+//! number for a constant function of time.
 //!
-//! ron reports the value at which it stopped. That value is rewritten in the expected notation, together with
-//! all values at the same place of the schema (for example the other points of a table), and the text is
-//! parsed again.
+//! ron reports the value at which it stopped. That value is rewritten in the expected notation,
+//! together with all values at the same place of the schema (for example the other points of a
+//! table), and the text is parsed again.
 
 use ron::error::{Error as RonError, SpannedError};
 use std::ops::Range;
@@ -36,8 +36,8 @@ pub(super) enum Step {
 }
 
 impl Source {
-    /// The text with the value at which ron stopped rewritten, and the byte that ron must pass for the
-    /// rewriting to be correct; `None` if no other notation applies.
+    /// The text with the value at which ron stopped rewritten, and the byte that ron must pass for
+    /// the rewriting to be correct; `None` if no other notation applies.
     pub(super) fn respelled(&self, error: &SpannedError) -> Option<(Source, usize)> {
         let node = self.stopped_at(error)?;
         let change = match (&error.code, &node.kind) {
@@ -124,7 +124,8 @@ impl Source {
         }
     }
 
-    /// Collects the values at the end of this path to which the change applies, in the order of the text.
+    /// Collects the values at the end of this path to which the change applies, in the order of the
+    /// text.
     fn collect(
         &self,
         node: &Node,

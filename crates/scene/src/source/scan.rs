@@ -194,7 +194,8 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// Scans an identifier, raw (`r#name`) or plain, whose first character was checked by the caller.
+    /// Scans an identifier, raw (`r#name`) or plain, whose first character was checked by the
+    /// caller.
     fn word(&mut self) {
         if self.rest().starts_with("r#") {
             self.at += 2;

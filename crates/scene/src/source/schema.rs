@@ -1,7 +1,7 @@
 //! Schema of a type along a path, independent of the text.
 //!
-//! serde's visitors know their fields. A deserializer that answers each of them with the one value on the
-//! path descends into the type without any text, and records the types it passes.
+//! serde's visitors know their fields. A deserializer that answers each of them with the one value
+//! on the path descends into the type without any text, and records the types it passes.
 
 use std::marker::PhantomData;
 
@@ -31,8 +31,8 @@ pub(super) enum Level {
     Value,
 }
 
-/// The types of `T` along `path`: first that of the root, then of each component, as far as the type has
-/// them. `root` is the value in the text; it determines the variants of enums.
+/// The types of `T` along `path`: first that of the root, then of each component, as far as the
+/// type has them. `root` is the value in the text; it determines the variants of enums.
 pub(super) fn levels<T: DeserializeOwned>(
     text: &str,
     root: Option<&Node>,

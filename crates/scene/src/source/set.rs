@@ -121,12 +121,13 @@ fn quote(text: &str) -> String {
 }
 
 impl Source {
-    /// Applies `key.path=value` to the text of a `T`: replaces a value, or inserts it if the text omits it,
-    /// with the structs and maps around it. The value is RON text; a bare word where a text is expected is quoted.
+    /// Applies `key.path=value` to the text of a `T`: replaces a value, or inserts it if the text
+    /// omits it, with the structs and maps around it. The value is RON text; a bare word where a
+    /// text is expected is quoted.
     ///
     /// # Errors
-    /// The argument is malformed, `T` does not have the key, a list element is not in the text, or the value
-    /// is not one complete RON value.
+    /// The argument is malformed, `T` does not have the key, a list element is not in the text, or
+    /// the value is not one complete RON value.
     pub fn set<T: DeserializeOwned>(&mut self, argument: &str) -> Result<(), InputError> {
         let wanted = Assignment::parse(argument)?;
         if let Some(refusal) = self.refuse_depth() {
@@ -210,9 +211,9 @@ impl Source {
         self.sets.push(wanted.argument.to_owned());
     }
 
-    /// Position at which to insert what is missing below `parent`, and the text before and after its value.
-    /// The first `depth` components of the key are in the text; `levels` are the types along the key, as far
-    /// as the type has them.
+    /// Position at which to insert what is missing below `parent`, and the text before and after
+    /// its value. The first `depth` components of the key are in the text; `levels` are the types
+    /// along the key, as far as the type has them.
     fn insertion(
         &self,
         wanted: &Assignment<'_>,
@@ -273,7 +274,8 @@ impl Source {
                 entry.value.span.end
             }
             None => {
-                // An empty group may contain a comment before its bracket; a trailing comma is allowed.
+                // An empty group may contain a comment before its bracket; a trailing comma is
+                // allowed.
                 after.push(',');
                 group.open + 1
             }
@@ -281,8 +283,8 @@ impl Source {
         Ok((at, before, after))
     }
 
-    /// Makes an error for the first component that neither the text nor the type has, with the nearest
-    /// existing name.
+    /// Makes an error for the first component that neither the text nor the type has, with the
+    /// nearest existing name.
     fn refuse_unknown(
         &self,
         wanted: &Assignment<'_>,
@@ -397,8 +399,8 @@ fn replacement(
     Ok((target.span.clone(), new))
 }
 
-/// Suggests `coupling=Implicit(tolerance: ..., max_iterations: 3)` for `coupling.max_iterations=3`: the
-/// parent key as a whole, with the first variant that has such a field.
+/// Suggests `coupling=Implicit(tolerance: ..., max_iterations: 3)` for `coupling.max_iterations=3`:
+/// the parent key as a whole, with the first variant that has such a field.
 fn as_one_value<T: DeserializeOwned>(wanted: &Assignment<'_>, levels: &[Level]) -> Option<String> {
     let (last, above) = wanted.path.split_last()?;
     let Some(Level::Enum(variants)) = levels.get(above.len()) else {

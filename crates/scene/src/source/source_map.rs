@@ -38,8 +38,8 @@ pub(super) struct Place {
 
 /// The text in use, as ranges of the file and of `--set` arguments.
 ///
-/// It maps positions in the modified text to positions in the file, whose line numbers are the only ones that
-/// the user can look up.
+/// It maps positions in the modified text to positions in the file, whose line numbers are the only
+/// ones that the user can look up.
 #[derive(Debug, Clone)]
 pub(super) struct SourceMap(Vec<SourceRange>);
 

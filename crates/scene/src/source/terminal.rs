@@ -1,9 +1,10 @@
 //! Sanitizing of text from files and plugins before it is printed to a terminal.
 //!
-//! A title with escape sequences could clear the screen, set the window's title or hide lines of the output;
-//! bidirectional control characters could display other words than the file contains.
+//! A title with escape sequences could clear the screen, set the window's title or hide lines of
+//! the output; bidirectional control characters could display other words than the file contains.
 
-/// Whether a terminal interprets a character as a control sequence, or as a change of text direction.
+/// Whether a terminal interprets a character as a control sequence, or as a change of text
+/// direction.
 pub fn commands_a_terminal(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -156,9 +156,9 @@ impl Tree {
 
     /// Finds the value at a path of components, or how much of the path exists.
     ///
-    /// Components are field names, map keys, indices, and in a list also the `name` of an element. `Some(x)`
-    /// counts as `x`; the value of a one-tuple is its `.0`, and the components of that value may follow
-    /// directly.
+    /// Components are field names, map keys, indices, and in a list also the `name` of an element.
+    /// `Some(x)` counts as `x`; the value of a one-tuple is its `.0`, and the components of that
+    /// value may follow directly.
     pub fn find(&self, text: &str, path: &[String]) -> Result<&Node, Missing<'_>> {
         let mut node = self.root.as_ref().ok_or(Missing {
             parent: None,

@@ -1,9 +1,9 @@
 //! Standard wheel and rail profiles as polylines.
 //!
-//! In the case x is the standard's lateral axis and z points up. A wheel's profile is upside down, with its
-//! flange at negative x reaching below; the gauge side of a rail is at negative x. The origin is the datum of
-//! the tread for a wheel, and the middle of the running surface for a rail, or the highest point if the rail
-//! is inclined.
+//! In the case x is the standard's lateral axis and z points up. A wheel's profile is upside down,
+//! with its flange at negative x reaching below; the gauge side of a rail is at negative x. The
+//! origin is the datum of the tread for a wheel, and the middle of the running surface for a rail,
+//! or the highest point if the rail is inclined.
 
 mod rail_60e1;
 mod s1002;
@@ -23,8 +23,8 @@ pub struct Cut {
     pub inclination: Option<f64>,
 }
 
-/// A profile as drawn in its standard: lateral positions and heights in mm, heights positive as in the
-/// standard.
+/// A profile as drawn in its standard: lateral positions and heights in mm, heights positive as in
+/// the standard.
 trait Drawing {
     /// Lateral positions where its segments meet, and its ends, from left to right (mm).
     fn joints(&self) -> Vec<f64>;
@@ -40,7 +40,8 @@ pub fn side(name: StandardName) -> Side {
     }
 }
 
-/// Samples the points of a profile, from left to right (m), at most `spacing` apart and with one at each joint of segments.
+/// Samples the points of a profile, from left to right (m), at most `spacing` apart and with one at
+/// each joint of segments.
 ///
 /// # Errors
 /// The field at fault and the reason.

@@ -1,10 +1,10 @@
 //! Head of the rail 60E1, formerly UIC 60.
 //!
-//! EN 13674-1 (2011+A1:2017): arcs of radius 300, 80 and 13 mm that meet tangentially at widths of 20.456 and
-//! 52.053 mm, then a flank inclined 1:20 to the vertical down to a depth of 35.27 mm, where the lower corner
-//! of the head begins. The same construction is in the GENSYS manual ("Creation of a rail profile from a
-//! drawing"). y is the lateral axis, about which the rail is symmetric; z > 0 is the depth below the middle
-//! of the running surface.
+//! EN 13674-1 (2011+A1:2017): arcs of radius 300, 80 and 13 mm that meet tangentially at widths of
+//! 20.456 and 52.053 mm, then a flank inclined 1:20 to the vertical down to a depth of 35.27 mm,
+//! where the lower corner of the head begins. The same construction is in the GENSYS manual
+//! ("Creation of a rail profile from a drawing"). y is the lateral axis, about which the rail is
+//! symmetric; z > 0 is the depth below the middle of the running surface.
 
 use super::Drawing;
 
@@ -66,7 +66,8 @@ impl Rail60E1 {
         }
     }
 
-    /// A point of the rail inclined 1:n towards negative y, with its highest point at the origin (mm).
+    /// A point of the rail inclined 1:n towards negative y, with its highest point at the origin
+    /// (mm).
     pub(super) fn inclined(&self, (y, z): (f64, f64), n: f64) -> (f64, f64) {
         let (sin, cos) = (1.0 / n).atan().sin_cos();
         let [ya, za] = self.apex(n);
@@ -104,8 +105,8 @@ impl Drawing for Rail60E1 {
 mod tests {
     use super::*;
 
-    /// The drawing gives the end of the corner arc as 36 mm from the middle and 14.3 mm deep, which the
-    /// construction does not use.
+    /// The drawing gives the end of the corner arc as 36 mm from the middle and 14.3 mm deep, which
+    /// the construction does not use.
     #[test]
     fn the_corner_ends_where_the_drawing_says() {
         let [y, z] = Rail60E1::new().tangent;

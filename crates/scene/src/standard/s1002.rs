@@ -1,11 +1,11 @@
 //! Wheel profile S1002, flange 28 mm high and 32.5 mm thick.
 //!
-//! EN 13715 (2006+A1:2010, 2020), UIC 510-2 (2004). The coefficients are those commonly published with credit
-//! to H. Netter, DLR (a cone, two polynomials, four arcs, a line); the same profile is tabulated in the
-//! GENSYS manual (profiles of KPF) and in the Manchester contact benchmark, P. Shackleton, S. Iwnicki, Veh.
-//! Syst. Dyn. 46 (2008) 129-149. y > 0 points to the field side, z > 0 away from the axle; the origin is the
-//! datum of the tread, 70 mm from the back of the flange. Rounding of the printed coefficients leaves a step
-//! of 1.2e-4 mm at y = -35.
+//! EN 13715 (2006+A1:2010, 2020), UIC 510-2 (2004). The coefficients are those commonly published
+//! with credit to H. Netter, DLR (a cone, two polynomials, four arcs, a line); the same profile is
+//! tabulated in the GENSYS manual (profiles of KPF) and in the Manchester contact benchmark, P.
+//! Shackleton, S. Iwnicki, Veh. Syst. Dyn. 46 (2008) 129-149. y > 0 points to the field side, z > 0
+//! away from the axle; the origin is the datum of the tread, 70 mm from the back of the flange.
+//! Rounding of the printed coefficients leaves a step of 1.2e-4 mm at y = -35.
 
 use super::Drawing;
 

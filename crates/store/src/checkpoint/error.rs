@@ -87,7 +87,8 @@ pub enum ResumeError {
 }
 
 impl ResumeError {
-    /// Whether the user's input differs from that of the original run; otherwise the file is at fault.
+    /// Whether the user's input differs from that of the original run; otherwise the file is at
+    /// fault.
     pub fn is_input(&self) -> bool {
         matches!(
             self,

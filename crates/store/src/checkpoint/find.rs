@@ -30,7 +30,8 @@ pub struct ResumePoint {
     pub lock: FolderLock,
 }
 
-/// The file that a run writes last, and removes before it starts: if it exists, all others are complete.
+/// The file that a run writes last, and removes before it starts: if it exists, all others are
+/// complete.
 pub const LAST: &str = "summary.json";
 
 /// Whether the run in a folder, with this identity, finished without an error.
@@ -54,12 +55,12 @@ fn version(path: &Path) -> Option<(u64, std::time::SystemTime)> {
     Some((data.len(), data.modified().ok()?))
 }
 
-/// Searches a folder for a run with this identity. The folder is owned only where there is something to go on with: a finished run
-/// may lie where nobody writes.
+/// Searches a folder for a run with this identity. The folder is owned only where there is
+/// something to go on with: a finished run may lie where nobody writes.
 ///
 /// # Errors
-/// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to another version or case, or it has rows
-/// and no state.
+/// A run is writing there, a file cannot be read, its checkpoints are damaged, it belongs to
+/// another version or case, or it has rows and no state.
 pub fn find(folder: &Path, identity: &Identity) -> Result<Found, ResumeError> {
     let path = folder.join("results.h5");
     if !path.exists() {
@@ -113,7 +114,8 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     let Some(frame) = frames.last() else {
         return Err(ResumeError::Damaged { path });
     };
-    // A sealed slot held a frame; one that was being written when the run was killed has no seal yet.
+    // A sealed slot held a frame; one that was being written when the run was killed has no seal
+    // yet.
     let written = |slot: &&Option<Vec<u8>>| {
         slot.as_ref()
             .is_none_or(|bytes| bytes.iter().take(Frame::SEAL).any(|b| *b != 0))
@@ -137,7 +139,8 @@ fn look(folder: &Path, path: &Path, identity: &Identity) -> Result<Seen, ResumeE
     }
     let later = theirs.ends_later(identity);
     let name = frame.identity.clone();
-    // The results file is marked complete, and the summary of the same run shows that all others are.
+    // The results file is marked complete, and the summary of the same run shows that all others
+    // are.
     let is_finished =
         frame.kind == Kind::Ended && finished(folder, &Identity::name(&frame.identity));
     if !later && is_finished {

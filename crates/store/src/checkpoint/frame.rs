@@ -5,7 +5,8 @@
 //! 24 bytes of the version, the identity and the state (3 u64)      48  SHA-256 of all the rest
 //! 80 version, identity, state
 //! ```
-//! Numbers are little-endian. This header is the same in all versions, so that a version can report which one wrote a frame.
+//! Numbers are little-endian. This header is the same in all versions, so that a version can report
+//! which one wrote a frame.
 
 use sha2::{Digest, Sha256};
 
@@ -42,7 +43,8 @@ const HASH: usize = 48;
 const BODY: usize = 80;
 
 impl Frame {
-    /// Form of identities and states that this program writes: one more whenever anything of them changes.
+    /// Form of identities and states that this program writes: one more whenever anything of them
+    /// changes.
     pub const FORMAT: u32 = 18;
 
     /// First bytes of a frame, which are written when all others are on disk: zeros until then.

@@ -29,8 +29,8 @@ pub struct Identity {
     materials: Vec<(String, String)>,
     /// Libraries of laws: kind with name, and SHA-256.
     plugins: Vec<(String, String)>,
-    /// SHA-256 of the built scene without the depths of its half-spaces of heat, which includes the effect of files named in the case (profiles, meshes,
-    /// samples).
+    /// SHA-256 of the built scene without the depths of its half-spaces of heat, which includes the
+    /// effect of files named in the case (profiles, meshes, samples).
     scene: String,
 }
 
@@ -73,7 +73,8 @@ impl Identity {
         now.end > self.end
     }
 
-    /// Describes the first relevant difference from `now`; `None` if there is none and `now` ends no earlier.
+    /// Describes the first relevant difference from `now`; `None` if there is none and `now` ends
+    /// no earlier.
     pub fn differs(&self, now: &Self) -> Option<String> {
         if self.case != now.case {
             let [a, b] = [&self.case, &now.case].map(|t| Source::from_text("case", t.clone()));
@@ -125,8 +126,9 @@ impl Identity {
     }
 }
 
-/// A state in which half-spaces of heat have no depth. Their grids follow from what else is in an identity, except for the depth that
-/// a case does not give: it follows from `time.end`, and a run that is extended keeps the one that it began with.
+/// A state in which half-spaces of heat have no depth. Their grids follow from what else is in an
+/// identity, except for the depth that a case does not give: it follows from `time.end`, and a run
+/// that is extended keeps the one that it began with.
 fn without_depths<S: Space>(state: &State<S>) -> Cow<'_, State<S>> {
     let deep = |node: &Node| matches!(node.store, Store::HalfSpace(_));
     let heat = state.heat.as_ref();

@@ -1,11 +1,13 @@
-//! Checkpoints in `results.h5`, from which `--resume` continues to results that are bit-identical to those of an uninterrupted run.
+//! Checkpoints in `results.h5`, from which `--resume` continues to results that are bit-identical
+//! to those of an uninterrupted run.
 //!
 //! ```text
 //! /checkpoints/even, /checkpoints/odd   bytes of a frame each, written in turn
 //! ```
-//! A frame contains the identity of the run (case, materials, laws, scene: [`Identity`]) and its state, protected by a
-//! checksum. While one of the two frames is being written the other is intact, so there is always one to resume from.
-//! The guarantees are documented in `docs/checkpoints.md`.
+//! A frame contains the identity of the run (case, materials, laws, scene: [`Identity`]) and its
+//! state, protected by a checksum. While one of the two frames is being written the other is
+//! intact, so there is always one to resume from. The guarantees are documented in
+//! `docs/checkpoints.md`.
 
 mod error;
 mod find;

@@ -1,8 +1,9 @@
 //! FCLIB matrix group: sizes, a storage code, and three arrays.
 //!
-//! `nz` >= 0: triplets, with `nz` their number; -1: compressed columns; -2: compressed rows. In triplets `p`
-//! holds columns and `i` rows, as in CSparse and in every file written by Siconos. The comment in `fclib.h`
-//! states the opposite; a file that follows it is recognised if its indices are valid only in that order.
+//! `nz` >= 0: triplets, with `nz` their number; -1: compressed columns; -2: compressed rows. In
+//! triplets `p` holds columns and `i` rows, as in CSparse and in every file written by Siconos. The
+//! comment in `fclib.h` states the opposite; a file that follows it is recognised if its indices
+//! are valid only in that order.
 
 use super::FclibError;
 use super::source::Source;
@@ -208,8 +209,8 @@ fn read_sizes(
     Ok((nz, nzmax))
 }
 
-/// Number of entries, from the storage code and the array `p`: the indices of triplets, which are cut to their number, or the
-/// pointers of compressed lines.
+/// Number of entries, from the storage code and the array `p`: the indices of triplets, which are
+/// cut to their number, or the pointers of compressed lines.
 fn entries(nz: i64, p: &mut Vec<i64>, lines: usize) -> Result<usize, String> {
     if nz >= 0 {
         if p.len() < nz as usize {

@@ -1,11 +1,12 @@
 //! Reader and writer of FCLIB problem files (HDF5).
 //!
-//! The layout is that of `fclib.h` (github.com/FrictionalContactLibrary/fclib) and of the existing files;
-//! where the header's comments and the files disagree, the files are followed. It is described in
-//! `docs/fclib.md`. The solver's side, with the meaning of the symbols, is [`fretwork_core::solve::local`].
+//! The layout is that of `fclib.h` (github.com/FrictionalContactLibrary/fclib) and of the existing
+//! files; where the header's comments and the files disagree, the files are followed. It is
+//! described in `docs/fclib.md`. The solver's side, with the meaning of the symbols, is
+//! [`fretwork_core::solve::local`].
 //!
-//! Files are untrusted: for any content, [`read`] returns a problem or an error, and uses no more memory than
-//! a small multiple of the file's size.
+//! Files are untrusted: for any content, [`read`] returns a problem or an error, and uses no more
+//! memory than a small multiple of the file's size.
 
 mod matrix;
 mod read;

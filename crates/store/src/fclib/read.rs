@@ -9,8 +9,8 @@ use std::path::Path;
 /// Reads the problem of a file: the global one if both are present, as FCLIB's own reader does.
 ///
 /// # Errors
-/// The file is missing, not HDF5, without an FCLIB problem, damaged, or its sizes, indices or values are inconsistent;
-/// the message names the group or dataset.
+/// The file is missing, not HDF5, without an FCLIB problem, damaged, or its sizes, indices or
+/// values are inconsistent; the message names the group or dataset.
 pub fn read(path: &Path) -> Result<Problem, FclibError> {
     let source = Source::open(path)?;
     if source.has_group("/fclib_global") {
@@ -141,7 +141,8 @@ fn dimension(source: &Source, place: &str) -> Result<usize, FclibError> {
     }
 }
 
-/// Reads the friction coefficients, whose number must be the length of the vector divided by `dimension`.
+/// Reads the friction coefficients, whose number must be the length of the vector divided by
+/// `dimension`.
 fn friction(
     source: &Source,
     place: &str,

@@ -18,7 +18,8 @@ pub struct Solution {
     pub r: Vec<f64>,
 }
 
-/// Writes a file with a problem and its solution: v for a global problem only, l only with constraints.
+/// Writes a file with a problem and its solution: v for a global problem only, l only with
+/// constraints.
 ///
 /// # Errors
 /// The file cannot be written, or a size exceeds the 32 bits of the layout.
@@ -41,8 +42,8 @@ pub fn write_with_solution(
     })
 }
 
-/// Reads the solution of a file, if it has the group. Many files have a group that was never written and reads
-/// as zeros.
+/// Reads the solution of a file, if it has the group. Many files have a group that was never
+/// written and reads as zeros.
 ///
 /// # Errors
 /// The file or the group is damaged.

@@ -1,4 +1,5 @@
-//! Reading access to an HDF5 file. In this module only this file and `target.rs` use the HDF5 crate.
+//! Reading access to an HDF5 file. In this module only this file and `target.rs` use the HDF5
+//! crate.
 
 use super::FclibError;
 use hdf5::{DatatypeMessage, H5Dataset, H5File, StorageLayout};
@@ -47,8 +48,8 @@ impl Source {
             file,
             datasets: datasets.into_iter().collect(),
             path: path.to_owned(),
-            // Unwritten data takes no space in the file and reads as zeros, so a dataset may be longer than
-            // the file; the pointers of a matrix take half the space of a vector.
+            // Unwritten data takes no space in the file and reads as zeros, so a dataset may be
+            // longer than the file; the pointers of a matrix take half the space of a vector.
             most: usize::try_from(length).unwrap_or(usize::MAX / 8) * 4 + (1 << 16),
         })
     }
@@ -228,8 +229,8 @@ fn signed(path: &Path) -> Result<u64, FclibError> {
     })
 }
 
-/// File length according to the superblock at the start of a file. The HDF5 crate does not compare it with
-/// the actual length, and reads what remains of a truncated file.
+/// File length according to the superblock at the start of a file. The HDF5 crate does not compare
+/// it with the actual length, and reads what remains of a truncated file.
 fn promised(path: &Path) -> Option<u64> {
     let mut start = [0u8; 64];
     std::fs::File::open(path)
@@ -252,9 +253,9 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Calls the HDF5 crate and converts a panic, which damaged bytes can cause in it, to an error. The panic
-/// hook is wrapped once and suppresses messages only on a thread inside such a call, so that other panics are
-/// reported as usual.
+/// Calls the HDF5 crate and converts a panic, which damaged bytes can cause in it, to an error. The
+/// panic hook is wrapped once and suppresses messages only on a thread inside such a call, so that
+/// other panics are reported as usual.
 pub fn guard<T>(call: impl FnOnce() -> hdf5::Result<T>) -> Result<T, String> {
     static WRAPPED: Once = Once::new();
     WRAPPED.call_once(|| {

@@ -98,7 +98,8 @@ fn explicit_zeros_and_empty_matrices_are_read() {
     }
 }
 
-/// M is [2 3; 0 4] on two degrees of freedom, with unit mass on the others; H has `contacts` contacts in 2D.
+/// M is [2 3; 0 4] on two degrees of freedom, with unit mass on the others; H has `contacts`
+/// contacts in 2D.
 fn global(n: i64, m: i64, by_comment: bool) -> File {
     let turn = |p: &'static [i64], i: &'static [i64]| if by_comment { (i, p) } else { (p, i) };
     File::with(|t| {

@@ -1,7 +1,7 @@
 //! Writing access to an HDF5 file, for the few data types of FCLIB.
 //!
-//! The file is written under a temporary name and renamed when complete, so that the final name never refers
-//! to a partial file.
+//! The file is written under a temporary name and renamed when complete, so that the final name
+//! never refers to a partial file.
 
 use super::FclibError;
 use super::source::guard;

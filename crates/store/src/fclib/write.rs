@@ -5,8 +5,8 @@ use super::{FclibError, Global, Info, Local, Problem};
 use fretwork_core::solve::local::{Csr, GlobalProblem, LocalProblem};
 use std::path::Path;
 
-/// Writes a local problem: W in compressed rows, with increasing columns. Every block of two contacts that has an
-/// entry is written in full, and diagonal blocks always are, as Siconos does.
+/// Writes a local problem: W in compressed rows, with increasing columns. Every block of two
+/// contacts that has an entry is written in full, and diagonal blocks always are, as Siconos does.
 ///
 /// # Errors
 /// The file cannot be written, or a size exceeds the 32 bits of the layout.
@@ -21,7 +21,8 @@ pub fn write_local(
     })
 }
 
-/// Writes a global problem: every matrix as triplets, the only storage that Siconos' reader accepts there.
+/// Writes a global problem: every matrix as triplets, the only storage that Siconos' reader accepts
+/// there.
 ///
 /// # Errors
 /// The file cannot be written, or a size exceeds the 32 bits of the layout.

@@ -1,4 +1,5 @@
-//! Declaration of the contents of the results file before the first row: groups, attributes, texts, datasets.
+//! Declaration of the contents of the results file before the first row: groups, attributes, texts,
+//! datasets.
 
 use super::dataset::{Growing, Number, Slot};
 use super::store::{ResultsError, Store};
@@ -96,7 +97,8 @@ impl Store {
         self.named(text_attribute(&dataset, "doc", doc))
     }
 
-    /// Writes a dataset of rows of `width` numbers with its unit and description; no dataset if there are no rows.
+    /// Writes a dataset of rows of `width` numbers with its unit and description; no dataset if
+    /// there are no rows.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -141,8 +143,8 @@ impl Store {
         self.named(describe(&dataset, "", doc))
     }
 
-    /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and description,
-    /// and its chunk size in rows ([`MANY`], [`FEW`]).
+    /// Declares a growing dataset of rows of `width` numbers (1: a plain column), with its unit and
+    /// description, and its chunk size in rows ([`MANY`], [`FEW`]).
     ///
     /// # Errors
     /// The file cannot be written.

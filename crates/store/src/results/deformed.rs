@@ -1,4 +1,5 @@
-//! Reads how the grains that deform are deformed in a recorded state, from the meshes of their materials.
+//! Reads how the grains that deform are deformed in a recorded state, from the meshes of their
+//! materials.
 
 use super::reader::Reader;
 use fretwork_scene::recorded::Deformed;

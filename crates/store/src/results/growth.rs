@@ -1,8 +1,8 @@
-//! A file that grows in place by HDF5's single-writer multiple-reader protocol: first the rows are written,
-//! then their index, then their number, so that the file can be read at any moment.
+//! A file that grows in place by HDF5's single-writer multiple-reader protocol: first the rows are
+//! written, then their index, then their number, so that the file can be read at any moment.
 //!
-//! The crate syncs the file after each dataset of a flush, some 200 times for a results file. In-place growth
-//! is therefore used only for files too large to be copied.
+//! The crate syncs the file after each dataset of a flush, some 200 times for a results file.
+//! In-place growth is therefore used only for files too large to be copied.
 
 use super::dataset::{Grown, to_bytes};
 use hdf5::FileLocking;

@@ -1,5 +1,6 @@
-//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: points and cells stand in the file once, without
-//! load, and every state points at them; what changes is the data. A reader moves the points by the field `displacement`.
+//! A mesh with data for a sequence of states, as temporal VTKHDF UnstructuredGrid: points and cells
+//! stand in the file once, without load, and every state points at them; what changes is the data.
+//! A reader moves the points by the field `displacement`.
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0, transient data with static geometry.
 

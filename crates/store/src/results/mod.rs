@@ -1,4 +1,5 @@
-//! `results.h5`: one self-contained file, readable while it is written and after a crash, see `store`.
+//! `results.h5`: one self-contained file, readable while it is written and after a crash, see
+//! `store`.
 //!
 //! ```text
 //! /            attributes: program, version, case, seed, dimension
@@ -85,8 +86,9 @@ const MAX_BUFFERED_ROWS: usize = 8192;
 /// Minimum time between flushes of a file.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(2);
 
-/// Minimum time between flushes of a file that grows in place, since each flush syncs once per dataset, some
-/// 200 times. Checkpoints also flush it, usually earlier; in between, rows are written without a sync.
+/// Minimum time between flushes of a file that grows in place, since each flush syncs once per
+/// dataset, some 200 times. Checkpoints also flush it, usually earlier; in between, rows are
+/// written without a sync.
 const FLUSH_INTERVAL_IN_PLACE: Duration = Duration::from_secs(60);
 
 /// Flushes take at most 1/`FLUSH_COST_FACTOR` of the time, however slow the disk.
@@ -166,7 +168,8 @@ impl Results {
         store.publish(path)
     }
 
-    /// Writes buffered rows, and returns the number of rows of each growing dataset and the CRC-32 of their bytes.
+    /// Writes buffered rows, and returns the number of rows of each growing dataset and the CRC-32
+    /// of their bytes.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -187,8 +190,8 @@ impl Results {
             return Ok(());
         };
         let clock = Instant::now();
-        // The rows that the checkpoint counts must be written first: without its first word the checkpoint is
-        // invalid.
+        // The rows that the checkpoint counts must be written first: without its first word the
+        // checkpoint is invalid.
         let slot = self.checkpoints[(number % 2) as usize];
         store.write(slot, bytes, Frame::SEAL)?;
         self.flushed = Some((Instant::now(), clock.elapsed()));
@@ -216,8 +219,8 @@ impl Results {
     /// Appends an event to its table.
     ///
     /// # Errors
-    /// The file cannot be written, or has no such table: [`Observer::event_tables`] of its observer did not declare it with as many
-    /// columns.
+    /// The file cannot be written, or has no such table: [`Observer::event_tables`] of its observer
+    /// did not declare it with as many columns.
     ///
     /// [`Observer::event_tables`]: fretwork_observe::Observer::event_tables
     pub fn append_event(&mut self, event: &Event) -> Result<(), ResultsError> {
@@ -276,7 +279,8 @@ impl Results {
             .try_for_each(|table| table.write(store))
     }
 
-    /// Appends the same state of the meshes: the values of each field of each. To be called before [`Results::append_views`].
+    /// Appends the same state of the meshes: the values of each field of each. To be called before
+    /// [`Results::append_views`].
     ///
     /// # Errors
     /// The file cannot be written.

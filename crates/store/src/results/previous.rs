@@ -51,7 +51,8 @@ impl PreviousResults {
         &self.path
     }
 
-    /// The bytes of its checkpoints, intact or not: empty where none was written, none where they cannot be read.
+    /// The bytes of its checkpoints, intact or not: empty where none was written, none where they
+    /// cannot be read.
     ///
     /// # Errors
     /// The file has no checkpoints: it was written by an older version, or is not a results file.
@@ -88,7 +89,8 @@ impl PreviousResults {
         }
     }
 
-    /// Copies the given number of rows of each growing dataset to a store with the same datasets, and checks their CRC-32.
+    /// Copies the given number of rows of each growing dataset to a store with the same datasets,
+    /// and checks their CRC-32.
     ///
     /// # Errors
     /// The store cannot be written, or the rows are missing or differ.

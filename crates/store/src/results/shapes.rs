@@ -1,4 +1,5 @@
-//! Shapes of the grains other than single balls, and of those that deform, without load, in `results.h5`, stored once in the grains' own frames.
+//! Shapes of the grains other than single balls, and of those that deform, without load, in
+//! `results.h5`, stored once in the grains' own frames.
 //!
 //! ```text
 //! /shapes/bodies/id, mass, density, length, inertia     one row per grain; inertia has 9 numbers, row by row
@@ -8,14 +9,16 @@
 //! /shapes/corners                                       of all parts, relative to their centres, part after part
 //! /shapes/faces                                         of all parts: number of corners of a face, then their indices
 //! ```
-//! Together with a state's positions and orientations in `/views/grains` they define every grain's outline.
+//! Together with a state's positions and orientations in `/views/grains` they define every grain's
+//! outline.
 
 use super::reader::Reader;
 use super::store::{ResultsError, Store};
 use fretwork_core::unit::{INERTIA, MASS};
 pub use fretwork_scene::recorded::{ShapedBall, ShapedBody, ShapedPiece};
 
-/// All grains other than single balls, and those that deform, with their parts, in the order of the grains' view.
+/// All grains other than single balls, and those that deform, with their parts, in the order of the
+/// grains' view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shaped {
     /// The grains.

@@ -11,8 +11,8 @@ use std::path::Path;
 /// Reads a state (the last one without a `frame`) for a case of a dimension.
 ///
 /// # Errors
-/// The file is missing, not a results file, damaged, of the other dimension, without that state, or without the shapes
-/// of its grains.
+/// The file is missing, not a results file, damaged, of the other dimension, without that state, or
+/// without the shapes of its grains.
 pub fn read(path: &Path, frame: Option<usize>, dimension: usize) -> Result<State, StateError> {
     let unreadable = |reason: String| StateError::Unreadable {
         path: path.to_owned(),

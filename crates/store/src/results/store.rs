@@ -1,12 +1,13 @@
 //! The results file: declared once, then growing by rows that are buffered in memory and written at
 //! intervals.
 //!
-//! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is renamed over
-//! it. The named file is therefore always complete, and a flush takes one `fdatasync`. Beyond [`LARGE`] bytes
-//! copies would be too expensive, and the file grows in place by HDF5's single-writer protocol
-//! ([`super::growth`]), whose flush syncs once per dataset.
+//! A small file is never changed in place: a copy beside it gets the new rows, is synced, and is
+//! renamed over it. The named file is therefore always complete, and a flush takes one `fdatasync`.
+//! Beyond [`LARGE`] bytes copies would be too expensive, and the file grows in place by HDF5's
+//! single-writer protocol ([`super::growth`]), whose flush syncs once per dataset.
 //!
-//! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the HDF5 crate.
+//! In this module only this file, `declare.rs`, `growth.rs`, `previous.rs` and `reader.rs` use the
+//! HDF5 crate.
 
 use super::dataset::{Bytes, Growing, Grown, Number, Slot, to_bytes};
 use super::declare::group;
@@ -99,8 +100,8 @@ impl std::fmt::Debug for Store {
 }
 
 impl Store {
-    /// Creates the file for declarations, until [`Store::start`]. It has the temporary name `part` until
-    /// [`Store::publish`].
+    /// Creates the file for declarations, until [`Store::start`]. It has the temporary name `part`
+    /// until [`Store::publish`].
     ///
     /// # Errors
     /// The file cannot be written.
@@ -172,8 +173,8 @@ impl Store {
         named(&self.part, result)
     }
 
-    /// Sets an integer attribute of a group at the next flush, or, in a file that grows in place, when it is
-    /// closed.
+    /// Sets an integer attribute of a group at the next flush, or, in a file that grows in place,
+    /// when it is closed.
     pub fn count(&mut self, group: &str, name: &str, value: i64) {
         let same = |a: &&mut (String, String, i64)| a.0 == group && a.1 == name;
         match self.attributes.iter_mut().find(same) {
@@ -208,14 +209,14 @@ impl Store {
         Ok(())
     }
 
-    /// Stores bytes for a slot, to be written with the next flush or at close. A slot never shrinks: bytes
-    /// beyond the new content keep their old values.
+    /// Stores bytes for a slot, to be written with the next flush or at close. A slot never
+    /// shrinks: bytes beyond the new content keep their old values.
     pub fn buffer_slot(&mut self, slot: Slot, bytes: &[u8]) {
         self.slots[slot.place].buffered = Some(bytes.to_vec());
     }
 
-    /// Overwrites a slot. On return it is synced to disk together with all appended rows. At no moment does the file
-    /// contain the first `seal` bytes without the rest.
+    /// Overwrites a slot. On return it is synced to disk together with all appended rows. At no
+    /// moment does the file contain the first `seal` bytes without the rest.
     ///
     /// # Errors
     /// The file cannot be written.

@@ -1,4 +1,5 @@
-//! A view: points, lines or polygons with data for a sequence of states, as temporal VTKHDF PolyData.
+//! A view: points, lines or polygons with data for a sequence of states, as temporal VTKHDF
+//! PolyData.
 //!
 //! Layout: Kitware, VTKHDF file format, version 2.0 (all four kinds of cells must be present).
 

@@ -14,8 +14,9 @@ const USUAL: f64 = 1e-5;
 const MOST_PRESSURE: f64 = 1e9;
 const MOST_TEMPERATURE: f64 = 2000.0;
 
-/// Default extent of the path from the law's own scale: 1.2 times the opening at break (cyclic: 1.2 times the
-/// opening at the peak; force: 1.1 times the strength), or beyond the range of an attraction.
+/// Default extent of the path from the law's own scale: 1.2 times the opening at break (cyclic: 1.2
+/// times the opening at the peak; force: 1.1 times the strength), or beyond the range of an
+/// attraction.
 pub(super) fn extent(args: &DriveArgs, mode: &str, bench: &mut Bench) -> Result<f64, Failure> {
     if let Some(to) = args.to {
         return Ok(to);

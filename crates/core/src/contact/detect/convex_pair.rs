@@ -1,4 +1,5 @@
-//! Contacts of convex pieces with balls, with each other and with surfaces, several contact points per pair.
+//! Contacts of convex pieces with balls, with each other and with surfaces, several contact points
+//! per pair.
 
 use super::narrow::{Narrow, Scratch};
 use super::renewal::{Found, Touch};
@@ -67,14 +68,16 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece.
+    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a
+    /// piece.
     fn beside(&self, pair: [u32; 2]) -> Vec<Beside<'_, S>> {
         let centre = |k: usize| self.centres[self.shapes.balls.len() + k];
         self.partners
             .beside(self.pairs, self.shapes, self.cores, centre, pair)
     }
 
-    /// Returns whether the bounding balls of a pair without bonds are too far from each other for contacts.
+    /// Returns whether the bounding balls of a pair without bonds are too far from each other for
+    /// contacts.
     fn far(&self, (a, b): (u32, u32)) -> bool {
         if b & Key::SURFACE != 0 {
             return false;
@@ -231,7 +234,8 @@ impl<S: Space> Narrow<'_, S> {
         })
     }
 
-    /// Creates contacts from the contact points within the alert distance, with the memory of old ones.
+    /// Creates contacts from the contact points within the alert distance, with the memory of old
+    /// ones.
     fn create_contacts(&self, pair: &Pair<S>, scratch: &mut Scratch<S>, found: &mut Found<S>) {
         let (network, origins) = (self.network, pair.origins);
         let Scratch {
@@ -294,9 +298,9 @@ impl<S: Space> Narrow<'_, S> {
     }
 }
 
-/// Returns the old contact that each contact point continues: first that of the same corner, then the
-/// nearest of those whose corner is no longer found, in order of distance. If one of two old contacts is
-/// gone, a new point at the other end of the face must not take over the remaining one.
+/// Returns the old contact that each contact point continues: first that of the same corner, then
+/// the nearest of those whose corner is no longer found, in order of distance. If one of two old
+/// contacts is gone, a new point at the other end of the face must not take over the remaining one.
 fn match_old_contacts<S: Space>(
     old: &[Contact<S>],
     contact_points: &[ContactPoint<S::Vector>],
@@ -370,8 +374,8 @@ mod tests {
         }
     }
 
-    /// The bond at one end of a face broke and its contact separated; at the other end the corner got
-    /// another key.
+    /// The bond at one end of a face broke and its contact separated; at the other end the corner
+    /// got another key.
     #[test]
     fn a_bond_stays_at_its_end_of_the_face_when_names_change() {
         let of = |old: &[Contact<Dim2>], new: &[ContactPoint<Vector2<f64>>]| {
@@ -382,7 +386,8 @@ mod tests {
         let new = [contact_point(-1.0, 4), contact_point(1.0, 6)];
         assert_eq!(of(&[contact(1.0, 3)], &new), [None, Some(0)]);
         assert_eq!(of(&[contact(-1.0, 3)], &new), [Some(0), None]);
-        // Equal keys take precedence over distance; the others continue the nearest remaining contact.
+        // Equal keys take precedence over distance; the others continue the nearest remaining
+        // contact.
         assert_eq!(
             of(&[contact(0.9, 4), contact(0.8, 3)], &new),
             [Some(0), Some(1)]

@@ -1,5 +1,6 @@
-//! Bodies that slide into the edge of a neighbour of what they slide over, where the overlaps of the scene are as large as the edge is high: the error
-//! of the solver lets free bodies sink, and what lay flush no longer does.
+//! Bodies that slide into the edge of a neighbour of what they slide over, where the overlaps of
+//! the scene are as large as the edge is high: the error of the solver lets free bodies sink, and
+//! what lay flush no longer does.
 
 use super::partners::Partners;
 use super::piece_centre;
@@ -10,12 +11,14 @@ use crate::geometry::convex::seam::{Beside, Edge, edges_at};
 use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 
-/// Height of an edge that may be of the solution, and distance of the piece below, over the size of the smaller of the two that meet.
+/// Height of an edge that may be of the solution, and distance of the piece below, over the size of
+/// the smaller of the two that meet.
 const LOW: f64 = 5e-3;
 const NEAR: f64 = 0.05;
 /// How many overlaps may add up to the height of an edge, as in a stack.
 const OVERLAPS: f64 = 10.0;
-/// Share of its speed along a face that a body loses where it meets an edge and does not just touch it.
+/// Share of its speed along a face that a body loses where it meets an edge and does not just touch
+/// it.
 const STOPPED: f64 = 1e-2;
 /// Share of the load on it below which an impulse on a body is of rounding, at any tolerance.
 const NOISE: f64 = 1e-3;
@@ -30,8 +33,9 @@ pub struct Impact<S: Space> {
     pub mass: f64,
 }
 
-/// Records bodies that meet such edges in this step, of length `h` from `time` (s). `impact` tells what a contact did, from its place in the network;
-/// none of a compliant one. Velocities that a step at this `tolerance` may be off by count as none.
+/// Records bodies that meet such edges in this step, of length `h` from `time` (s). `impact` tells
+/// what a contact did, from its place in the network; none of a compliant one. Velocities that a
+/// step at this `tolerance` may be off by count as none.
 pub fn record_edges<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -87,7 +91,8 @@ pub fn record_edges<S: Space>(
     }
 }
 
-/// Whether it is by sliding along the face that a body meets its edge, and whether the impulse that it receives there is more than `noise` (N s) and slows it.
+/// Whether it is by sliding along the face that a body meets its edge, and whether the impulse that
+/// it receives there is more than `noise` (N s) and slows it.
 fn slides_into<S: Space>(
     contact: &Contact<S>,
     edge: &Edge<S>,
@@ -105,8 +110,8 @@ fn slides_into<S: Space>(
     slides && closing > lands && impulse > noise && slows
 }
 
-/// The impulse of the piece below on the body that slides (N s), none where it touched it first at `time`, the start of the step; the edge may lift the
-/// body off it.
+/// The impulse of the piece below on the body that slides (N s), none where it touched it first at
+/// `time`, the start of the step; the edge may lift the body off it.
 fn load_on<S: Space>(
     network: &Network<S>,
     contact: &Contact<S>,
@@ -129,7 +134,8 @@ fn load_on<S: Space>(
     loads.reduce(|a, b| a + b)
 }
 
-/// The low edges of a contact of two pieces that the solution may have made: of different bodies, one of which is free to move.
+/// The low edges of a contact of two pieces that the solution may have made: of different bodies,
+/// one of which is free to move.
 fn edges_of<S: Space>(
     network: &Network<S>,
     shapes: &Shapes<S>,

@@ -6,19 +6,20 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads::{fill, pays};
 
-/// Fraction of the half thickness of the thinnest body from which the relative motion in a step counts as
-/// fast.
+/// Fraction of the half thickness of the thinnest body from which the relative motion in a step
+/// counts as fast.
 const FAST: f64 = 0.01;
 /// About what the displacement of a body takes (ns).
 const TRAVEL: f64 = 5.0;
 
-/// Half thicknesses of the convex pieces, and the distance of each body's farthest point from its centre.
+/// Half thicknesses of the convex pieces, and the distance of each body's farthest point from its
+/// centre.
 #[derive(Clone, Debug, Default)]
 pub struct Extents {
     /// Smallest half thickness of each piece, rounding radius included (m).
     pub(super) pieces: Vec<f64>,
-    /// Farthest point of each body that moves when the body rotates (m); zero for centred balls. Surfaces
-    /// are not included.
+    /// Farthest point of each body that moves when the body rotates (m); zero for centred balls.
+    /// Surfaces are not included.
     pub(super) levers: Vec<f64>,
 }
 
@@ -53,8 +54,8 @@ impl Extents {
         self.levers.len() == bodies.len() && self.pieces.len() == shapes.pieces.len()
     }
 
-    /// Returns the largest displacement of any point of each body in `h` seconds (m), excluding surfaces
-    /// that move by rotation.
+    /// Returns the largest displacement of any point of each body in `h` seconds (m), excluding
+    /// surfaces that move by rotation.
     pub(super) fn travels<S: Space>(
         &self,
         bodies: &Bodies<S>,
@@ -77,8 +78,8 @@ impl Extents {
     }
 }
 
-/// Returns the relative motion in a step (m) from which a pair is followed through the step: a fraction of
-/// the smallest half thickness, at most the range of the alert distance.
+/// Returns the relative motion in a step (m) from which a pair is followed through the step: a
+/// fraction of the smallest half thickness, at most the range of the alert distance.
 pub fn fast_motion<S: Space>(shapes: &Shapes<S>, alert: f64) -> f64 {
     let pieces = shapes.pieces.iter();
     let pieces = pieces.map(|p| p.core.half_thickness() + p.rounding);

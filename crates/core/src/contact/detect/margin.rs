@@ -8,10 +8,12 @@ use crate::geometry::space::Space;
 pub(super) const TOLERATED: f64 = 0.05;
 /// Fraction of the half thickness by which a pair may penetrate before it is reported.
 const PASSED: f64 = 0.25;
-/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on its normal may turn over.
+/// The same for a pair that is held by springs, which overlaps as it is pressed: from the middle on
+/// its normal may turn over.
 const PASSED_SPRING: f64 = 1.0;
 
-/// Largest penetration that is accepted in addition to a known overlap, as a fraction of the further penetration that is seen.
+/// Largest penetration that is accepted in addition to a known overlap, as a fraction of the
+/// further penetration that is seen.
 const SEEN: f64 = 0.5;
 
 /// Stage of the step at which pairs are examined.
@@ -33,7 +35,8 @@ pub(super) struct Margin {
     pub begins: f64,
 }
 
-/// Returns the accepted penetration of a pair with these contacts; `None` if the pair need not be examined.
+/// Returns the accepted penetration of a pair with these contacts; `None` if the pair need not be
+/// examined.
 pub(super) fn margin<S: Space>(
     network: &Network<S>,
     of_pair: &[Contact<S>],

@@ -14,7 +14,8 @@ pub(super) struct Search<'a, S: Space> {
     pub network: &'a Network<S>,
     pub sweep: &'a Sweep<'a, S>,
     pub laws: &'a LawTable,
-    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all bodies.
+    /// Displacement of each ball, piece and surface in the step (m), and the greatest of all
+    /// bodies.
     pub travels: Vec<f64>,
     pub farthest: f64,
     /// Whether a surface moves by rotation.
@@ -44,8 +45,8 @@ impl<'a, S: Space> Search<'a, S> {
 
     /// Relative motion in a step from which a pair is followed (m).
     fn slow(&self, names: (u32, u32)) -> f64 {
-        // Two balls have a single contact: if they move less than the alert distance, detection has found
-        // it.
+        // Two balls have a single contact: if they move less than the alert distance, detection has
+        // found it.
         let balls = (names.0 | names.1) & (Key::PIECE | Key::SURFACE) == 0;
         if balls {
             self.network.alert
@@ -76,7 +77,8 @@ impl<'a, S: Space> Search<'a, S> {
         !self.turns(names) && (2.0 * self.farthest <= slow || self.travel(names) <= slow)
     }
 
-    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart than they move: it has no contact.
+    /// Returns whether detection, in the same places, left a pair of convex bodies farther apart
+    /// than they move: it has no contact.
     pub fn detection_suffices(&self, names: (u32, u32), contacts: &[Contact<S>]) -> bool {
         let convex = names.1 & Key::SURFACE == 0 && self.stage != Stage::Report;
         convex && contacts.is_empty() && self.travel(names) <= self.network.alert
@@ -94,7 +96,8 @@ impl<'a, S: Space> Search<'a, S> {
         }
     }
 
-    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that it is to be reported.
+    /// Follows a fast pair with these contacts through the step: its contacts if it meets, or that
+    /// it is to be reported.
     pub fn examine(
         &self,
         names: (u32, u32),
@@ -106,7 +109,8 @@ impl<'a, S: Space> Search<'a, S> {
         let law = self.laws.get(one, other);
         let compliant = law.is_some_and(|l| self.network.memory[l as usize].compliant);
         let margin = margin(self.network, contacts, pair, self.stage, compliant)?;
-        // The gap that detection found, in the same places, is enough for the motion along the normal, along which it closes.
+        // The gap that detection found, in the same places, is enough for the motion along the
+        // normal, along which it closes.
         let known = names.1 & Key::SURFACE == 0 && !contacts.iter().any(|c| c.closing);
         let nearest = contacts.iter().min_by(|a, b| a.gap.total_cmp(&b.gap));
         if let Some(nearest) = nearest

@@ -1,5 +1,5 @@
-//! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals (narrow
-//! phase).
+//! Contact detection at q_m: a neighbour list with a skin (broad phase), then gaps and normals
+//! (narrow phase).
 
 mod convex_pair;
 mod edges;
@@ -30,13 +30,14 @@ use crate::threads::{any, fill, pays};
 use neighbours::{NeighbourSearch, joined};
 use renewal::{Scene, renew_contacts};
 
-/// Corners whose distance along a face is less than this fraction of the alert distance count as on the
-/// face.
+/// Corners whose distance along a face is less than this fraction of the alert distance count as on
+/// the face.
 const SLACK: f64 = 0.01;
 /// About what a pass over centres takes for each (ns).
 const CENTRE: f64 = 4.0;
 
-/// Index of the interface law of each pair of materials, in row-major order; `None` where no law is given.
+/// Index of the interface law of each pair of materials, in row-major order; `None` where no law is
+/// given.
 #[derive(Clone, Debug)]
 pub struct LawTable {
     materials: usize,
@@ -79,8 +80,9 @@ pub fn centre<S: Space>(ball: &Ball<S>, bodies: &Bodies<S>) -> S::Vector {
 
 /// Finds the contacts of this step at the current positions and carries their memory over.
 ///
-/// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `h` is the time
-/// since the last detection (s). Contact points of convex pairs are found by several threads if `parallel`; the results are the same.
+/// Contacts that separate lose their memory; an intact bond keeps its contact at any gap. `h` is
+/// the time since the last detection (s). Contact points of convex pairs are found by several
+/// threads if `parallel`; the results are the same.
 pub fn detect<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -127,8 +129,8 @@ fn centres<S: Space>(shapes: &Shapes<S>, bodies: &Bodies<S>, parallel: bool) -> 
     centres
 }
 
-/// Returns the points that the neighbour list tracks beside the centres of balls and pieces: the frames of the
-/// surfaces, and the vertices of surfaces that deform.
+/// Returns the points that the neighbour list tracks beside the centres of balls and pieces: the
+/// frames of the surfaces, and the vertices of surfaces that deform.
 fn watched_of_surfaces<'a, S: Space>(
     shapes: &'a Shapes<S>,
     bodies: &'a Bodies<S>,
@@ -157,7 +159,8 @@ fn must_rebuild<S: Space>(
     if network.seen_at.len() != centres.len() + shapes.surfaces.len() + vertices {
         return true;
     }
-    // A rotating surface moves more than its frame does; of one that deforms each vertex is watched.
+    // A rotating surface moves more than its frame does; of one that deforms each vertex is
+    // watched.
     if shapes.surfaces.iter().any(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);

@@ -61,7 +61,8 @@ impl<S: Space> Default for Scratch<S> {
 }
 
 impl<S: Space> Narrow<'_, S> {
-    /// Renews the contacts of pairs, in order; `contacts` are the old ones from the first pair to the last.
+    /// Renews the contacts of pairs, in order; `contacts` are the old ones from the first pair to
+    /// the last.
     pub(super) fn renew<'c>(
         &self,
         pairs: &[(u32, u32)],
@@ -136,7 +137,8 @@ impl<S: Space> Narrow<'_, S> {
                 other - self.bodies.position[q.body as usize],
             ]
         };
-        // A ball has its area where it touches the surface of a grain, not at the vertices beside that.
+        // A ball has its area where it touches the surface of a grain, not at the vertices beside
+        // that.
         let vertex = |ball: &Round<S>| {
             ball.radius == 0.0
                 && self
@@ -205,7 +207,8 @@ impl<S: Space> Narrow<'_, S> {
             }
             touches.truncate(nearest + kept);
         }
-        // Its area, with bonds and attraction, is that of a ball or of a point of a surface once: at the nearest point.
+        // Its area, with bonds and attraction, is that of a ball or of a point of a surface once:
+        // at the nearest point.
         let point_of_surface = ball.radius == 0.0 && ball.area == S::Vector::zero();
         if surface.shape.deforms() && (ball.radius > 0.0 || point_of_surface) {
             let nearest = touches.iter().map(|t| t.distance);
@@ -230,7 +233,8 @@ impl<S: Space> Narrow<'_, S> {
             1.0
         };
         let size = ball.size(&self.bodies.length);
-        // A bond whose facet is no longer touched goes on at the nearest one, also where that had a contact without a bond.
+        // A bond whose facet is no longer touched goes on at the nearest one, also where that had a
+        // contact without a bond.
         let old = found.old();
         let mut heir = None;
         let mut left = None;
@@ -296,8 +300,8 @@ impl<S: Space> Narrow<'_, S> {
         found.drop_others(|k| taken[k]);
     }
 
-    /// Distance within which a point is found again that was pressed behind an open surface by much of the alert distance (m), as errors of
-    /// the solution do; 0 for others.
+    /// Distance within which a point is found again that was pressed behind an open surface by much
+    /// of the alert distance (m), as errors of the solution do; 0 for others.
     fn behind(&self, old: &[Contact<S>]) -> f64 {
         let alert = self.network.alert;
         let deepest = old.iter().fold(0.0, |d: f64, c| d.max(-c.gap));
@@ -308,8 +312,8 @@ impl<S: Space> Narrow<'_, S> {
         }
     }
 
-    /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the same
-    /// extension within a step, and the displacement of its bodies in the step.
+    /// Returns the search distance for contacts of a pair (m): it covers the stretched bond, the
+    /// same extension within a step, and the displacement of its bodies in the step.
     pub(super) fn reach(&self, old: &[Contact<S>]) -> f64 {
         let network = self.network;
         let stretch = |old: &Contact<S>| {
@@ -338,8 +342,8 @@ pub(super) struct Round<S: Space> {
     radius: f64,
     body: u32,
     material: u16,
-    /// Whether it is a whole body whose response is isotropic, or belongs to one that stands still: contacts of two such balls are
-    /// central.
+    /// Whether it is a whole body whose response is isotropic, or belongs to one that stands still:
+    /// contacts of two such balls are central.
     simple: bool,
 }
 

@@ -113,8 +113,8 @@ impl<'a, S: Space> NeighbourSearch<'a, S> {
         pairs
     }
 
-    /// Returns the pairs of balls and pieces with surfaces, surface by surface, and the spin of each surface for which the list
-    /// is valid (rad/s), zero where rotation does not move it.
+    /// Returns the pairs of balls and pieces with surfaces, surface by surface, and the spin of
+    /// each surface for which the list is valid (rad/s), zero where rotation does not move it.
     pub(super) fn pairs_with_surfaces(
         &self,
         widened: &[f64],

@@ -1,5 +1,5 @@
-//! Order of the impacts predicted in one step. The first impact of a body changes the motion from which its
-//! later ones were predicted.
+//! Order of the impacts predicted in one step. The first impact of a body changes the motion from
+//! which its later ones were predicted.
 
 use super::margin::TOLERATED;
 use super::sweep::{Course, Sweep};
@@ -22,9 +22,9 @@ pub(super) struct PredictedMeeting {
     pub contacts: Range<usize>,
 }
 
-/// Marks the contacts of meetings that follow an impact of one of their bodies, and of those that would
-/// require a body to pass through another one that was stopped on its way. Meetings closer together than
-/// `fast` (m) count as simultaneous.
+/// Marks the contacts of meetings that follow an impact of one of their bodies, and of those that
+/// would require a body to pass through another one that was stopped on its way. Meetings closer
+/// together than `fast` (m) count as simultaneous.
 pub(super) fn mark_later<S: Space>(
     found: &mut [Contact<S>],
     meetings: &[PredictedMeeting],
@@ -58,7 +58,8 @@ pub(super) fn mark_later<S: Space>(
             }
         }
     }
-    // Each body is moved to its first impact: bodies in its way meet it before the later impact takes place.
+    // Each body is moved to its first impact: bodies in its way meet it before the later impact
+    // takes place.
     let mut velocities = sweep.velocities.to_vec();
     for (b, s) in &first {
         let (v, w) = &mut velocities[*b as usize];

@@ -6,7 +6,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::Space;
 use std::sync::OnceLock;
 
-/// Lists of pieces by ball or piece, made when the first is asked for: few steps of few scenes need them.
+/// Lists of pieces by ball or piece, made when the first is asked for: few steps of few scenes need
+/// them.
 #[derive(Default)]
 pub(super) struct Partners(OnceLock<Lists>);
 
@@ -17,15 +18,17 @@ struct Lists {
 }
 
 impl Partners {
-    /// The pieces in pairs with a ball or piece, in the order of the pairs; `count` is the number of balls and pieces, `balls` that of balls.
+    /// The pieces in pairs with a ball or piece, in the order of the pairs; `count` is the number
+    /// of balls and pieces, `balls` that of balls.
     pub fn of(&self, pairs: &[(u32, u32)], count: usize, balls: usize, name: u32) -> &[u32] {
         let lists = self.0.get_or_init(|| Lists::new(pairs, count, balls));
         let at = place(name, balls);
         &lists.names[lists.starts[at] as usize..lists.starts[at + 1] as usize]
     }
 
-    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a piece. `cores` are those of the pieces in world
-    /// axes, and `centre` gives where a piece stands (m).
+    /// The pieces beside either of a pair that may touch the other one too; the antagonist is a
+    /// piece. `cores` are those of the pieces in world axes, and `centre` gives where a piece
+    /// stands (m).
     pub fn beside<'a, S: Space>(
         &self,
         pairs: &[(u32, u32)],

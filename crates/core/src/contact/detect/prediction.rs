@@ -1,6 +1,6 @@
-//! Contacts that close within the step although their bodies are beyond the alert distance at its start.
-//! They are predicted for pairs whose relative motion in the step is fast. Scenes without fast motion only
-//! pay for a comparison of speeds.
+//! Contacts that close within the step although their bodies are beyond the alert distance at its
+//! start. They are predicted for pairs whose relative motion in the step is fast. Scenes without
+//! fast motion only pay for a comparison of speeds.
 
 use super::extents::Extents;
 use super::margin::Stage;
@@ -15,7 +15,8 @@ use crate::geometry::shape::Shapes;
 use crate::geometry::space::{Space, VectorLike};
 use crate::threads;
 
-/// Factor on the required range of the neighbour list, so that the list stays valid while bodies accelerate.
+/// Factor on the required range of the neighbour list, so that the list stays valid while bodies
+/// accelerate.
 const HEADROOM: f64 = 1.5;
 /// Pairs per task.
 const CHUNK: usize = 256;
@@ -23,7 +24,8 @@ const CHUNK: usize = 256;
 const COST: f64 = 20.0;
 /// Time of a comparison of a body's displacement (ns).
 const COMPARE: f64 = 2.0;
-/// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a constant.
+/// Limits on the pairs of a widened neighbour list: a multiple of those of the plain list, plus a
+/// constant.
 const MAX_PAIRS: (f64, f64) = (4.0, 5e6);
 
 /// Motion of a step: velocities (m/s, rad/s) of all bodies, its start and length (s).
@@ -38,8 +40,8 @@ pub struct Motion<'a, S: Space> {
     pub parallel: bool,
 }
 
-/// Returns whether no two bodies can move fast relative to each other in the step, so that no contact has to
-/// be predicted. Cheap. `velocity` gives velocity and spin of a body.
+/// Returns whether no two bodies can move fast relative to each other in the step, so that no
+/// contact has to be predicted. Cheap. `velocity` gives velocity and spin of a body.
 pub fn is_calm<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -68,8 +70,8 @@ pub fn is_calm<S: Space>(
         let (lever, w) = (levers[b], velocity(b).1);
         lever * lever * w.dot(&w)
     });
-    // The bound is below what requires a wider list or a check of pairs. A rotating surface always requires
-    // them.
+    // The bound is below what requires a wider list or a check of pairs. A rotating surface always
+    // requires them.
     let still = shapes.surfaces.iter().all(|s| {
         let b = s.body as usize;
         let spin = S::unrotate_spin(&bodies.rotation[b], &bodies.spin[b]);
@@ -78,8 +80,8 @@ pub fn is_calm<S: Space>(
     still && 2.0 * h * (fastest.sqrt() + turning.sqrt()) <= network.fast.min(network.alert)
 }
 
-/// Adds the contacts that the free velocities close in the step and that detection at its start did not
-/// find.
+/// Adds the contacts that the free velocities close in the step and that detection at its start did
+/// not find.
 pub fn add_predicted<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -91,8 +93,9 @@ pub fn add_predicted<S: Space>(
     network.merge_contacts(found);
 }
 
-/// Returns the contacts that the velocities after a solve would close in the step and that were not part of
-/// it. If there are any, the step must be solved again with them; see [`Network::merge_contacts`].
+/// Returns the contacts that the velocities after a solve would close in the step and that were not
+/// part of it. If there are any, the step must be solved again with them; see
+/// [`Network::merge_contacts`].
 pub fn find_missed<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -116,8 +119,8 @@ pub fn report_passing<S: Space>(
     find_closing(network, shapes, bodies, laws, motion, Stage::Report);
 }
 
-/// Reports the pairs that penetrate in a move before detection, at the current velocities, which no previous
-/// step has checked.
+/// Reports the pairs that penetrate in a move before detection, at the current velocities, which no
+/// previous step has checked.
 pub fn report_first_move<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -147,8 +150,8 @@ fn longest(parallel: bool, list: &[f64]) -> f64 {
     threads::largest(parallel, list.len(), COMPARE, of)
 }
 
-/// Computes the displacement of each body in the step, and widens the neighbour list around fast bodies
-/// accordingly.
+/// Computes the displacement of each body in the step, and widens the neighbour list around fast
+/// bodies accordingly.
 fn widen<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -171,7 +174,8 @@ fn widen<S: Space>(
     if farthest <= half && widest == 0.0 && !turn_faster {
         return travels;
     }
-    // A margin for all bodies, so that a body that has just become fast does not require a new list.
+    // A margin for all bodies, so that a body that has just become fast does not require a new
+    // list.
     let room = network.alert;
     let wide = |travel: &f64| (HEADROOM * need(travel)).max(room);
     if farthest < 0.5 * half || 4.0 * wide(&farthest) < widest {
@@ -264,7 +268,8 @@ fn limit<S: Space>(network: &mut Network<S>, shapes: &Shapes<S>, centres: &[S::V
     network.widened.iter_mut().for_each(|w| *w = 0.0);
 }
 
-/// Finds the contacts of the pairs that meet in the step, in the order of the pairs, or reports the pairs.
+/// Finds the contacts of the pairs that meet in the step, in the order of the pairs, or reports the
+/// pairs.
 fn find_closing<S: Space>(
     network: &mut Network<S>,
     shapes: &Shapes<S>,
@@ -391,8 +396,8 @@ fn body_of<S: Space>(shapes: &Shapes<S>, name: u32) -> usize {
 }
 
 impl<S: Space> Network<S> {
-    /// Merges contacts that close in the step into the network; contacts that already exist get the new
-    /// geometry.
+    /// Merges contacts that close in the step into the network; contacts that already exist get the
+    /// new geometry.
     pub fn merge_contacts(&mut self, found: Vec<Contact<S>>) {
         let there = self.contacts.len();
         self.step_size.foreseen += found.len() as u64;

@@ -1,5 +1,5 @@
-//! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the old ones, so that a
-//! second list is not needed.
+//! Renewal of the contacts: those of each pair are replaced where they are, with the memory of the
+//! old ones, so that a second list is not needed.
 
 use super::narrow::{Narrow, Round};
 use super::partners::Partners;
@@ -343,7 +343,8 @@ pub(super) fn renew_contacts<S: Space>(network: &mut Network<S>, scene: &Scene<S
     network.cores = cores;
 }
 
-/// Returns the place of the first contact whose pair is not before this one: probably near the start.
+/// Returns the place of the first contact whose pair is not before this one: probably near the
+/// start.
 fn first_from<S: Space>(contacts: &[Contact<S>], pair: &(u32, u32)) -> usize {
     let before = |c: &Contact<S>| c.key.pair() < *pair;
     let mut end = 64;

@@ -34,7 +34,8 @@ impl Sorted {
         }
     }
 
-    /// All places that may lie within a distance of one, in the order of the list; some lie farther.
+    /// All places that may lie within a distance of one, in the order of the list; some lie
+    /// farther.
     pub fn near<V: VectorLike>(&self, at: &V, distance: f64, out: &mut Vec<u32>) {
         out.clear();
         // Rounding of coordinates must not lose one.
@@ -70,7 +71,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// With a period and without, for narrow and wide searches: none within the distance is missing, and the order is that of the list.
+    /// With a period and without, for narrow and wide searches: none within the distance is
+    /// missing, and the order is that of the list.
     #[test]
     fn none_within_the_distance_is_missing() {
         let places: Vec<_> = (0..200u32)

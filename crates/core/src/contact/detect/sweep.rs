@@ -1,9 +1,11 @@
-//! Continuous collision detection: follows two fast bodies through a step to find when and where they meet.
+//! Continuous collision detection: follows two fast bodies through a step to find when and where
+//! they meet.
 //!
-//! Conservative advancement: the gap cannot close faster than the bodies approach, so that the time in which
-//! they cannot meet is skipped (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996,
-//! section 2.3). Where that gives small increments, the motion advances by a fraction of the half thickness
-//! of the thinner body; a penetration missed in this way is shallower than that.
+//! Conservative advancement: the gap cannot close faster than the bodies approach, so that the time
+//! in which they cannot meet is skipped (Mirtich, "Impulse-based dynamic simulation of rigid body
+//! systems", 1996, section 2.3). Where that gives small increments, the motion advances by a
+//! fraction of the half thickness of the thinner body; a penetration missed in this way is
+//! shallower than that.
 
 use super::extents::Extents;
 use crate::bodies::Bodies;
@@ -74,7 +76,8 @@ impl<S: Space> Shape<'_, S> {
         }
     }
 
-    /// Returns its size in the reduced radius of a single-point contact (m), given the length of each body.
+    /// Returns its size in the reduced radius of a single-point contact (m), given the length of
+    /// each body.
     fn size(&self, lengths: &[f64]) -> f64 {
         match self {
             Self::Ball(b, _) => b.contact_radius(lengths),
@@ -95,7 +98,8 @@ struct Pose<S: Space> {
 struct Probe<V> {
     /// The gap, or a lower bound of it (m).
     gap: f64,
-    /// The normal if both shapes are convex: the gap closes along it no faster than the bodies approach.
+    /// The normal if both shapes are convex: the gap closes along it no faster than the bodies
+    /// approach.
     normal: Option<V>,
 }
 
@@ -122,7 +126,8 @@ pub(super) struct Pair<'a, S: Space> {
     image: S::Vector,
     /// Half thickness of the thinner shape (m).
     pub half_thickness: f64,
-    /// Penetration up to which a surface sees the other shape (m): behind it there may be another part of it.
+    /// Penetration up to which a surface sees the other shape (m): behind it there may be another
+    /// part of it.
     pub seen: f64,
     /// Largest relative displacement of two of their points in the step (m).
     pub travel: f64,
@@ -249,8 +254,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// Distance at which contact points with a surface are searched (m). What passed through a grain is behind its surface by more
-    /// than the alert distance.
+    /// Distance at which contact points with a surface are searched (m). What passed through a
+    /// grain is behind its surface by more than the alert distance.
     fn reach(&self, surface: &Carried<S>, half_thickness: f64) -> f64 {
         if surface.shape.is_closed() {
             self.alert.max(half_thickness)
@@ -265,7 +270,8 @@ impl<'a, S: Space> Sweep<'a, S> {
             return Course::Lost;
         }
         let travel = pair.travel;
-        // None is longer than half of the penetration in which the pair is both beyond the margin and seen.
+        // None is longer than half of the penetration in which the pair is both beyond the margin
+        // and seen.
         let left_to_see = SEEN * (pair.seen - margin).max(0.0);
         let stride = (STRIDE * pair.half_thickness).min(left_to_see.max(LEAST * pair.seen));
         let (mut before, mut s) = (0.0, 0.0);
@@ -349,7 +355,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         Probe { gap, normal }
     }
 
-    /// Finds the contact points of a pair in these poses, relative to the centres of the two bodies.
+    /// Finds the contact points of a pair in these poses, relative to the centres of the two
+    /// bodies.
     fn contact_points(
         &self,
         pair: &Pair<S>,
@@ -419,8 +426,8 @@ impl<'a, S: Space> Sweep<'a, S> {
         }
     }
 
-    /// Adds the contacts of a pair that meets after the fraction `s` of the step, as constraints of the
-    /// step: at its end the bodies must lie on their sides of the common tangent planes.
+    /// Adds the contacts of a pair that meets after the fraction `s` of the step, as constraints of
+    /// the step: at its end the bodies must lie on their sides of the common tangent planes.
     pub fn contacts(&self, pair: &Pair<S>, s: f64, law: u16, out: &mut Vec<Contact<S>>) {
         let poses = [0, 1].map(|k: usize| self.pose(&pair.shapes[k], s));
         let mut met = Vec::new();
@@ -468,8 +475,8 @@ impl<'a, S: Space> Sweep<'a, S> {
     }
 }
 
-/// Returns the contact point of two balls, the first at `apart` from the second, relative to the centre of the
-/// second.
+/// Returns the contact point of two balls, the first at `apart` from the second, relative to the
+/// centre of the second.
 fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> ContactPoint<S::Vector> {
     let distance = apart.norm();
     let normal = if distance > 0.0 {
@@ -488,8 +495,8 @@ fn point_of_balls<S: Space>(a: &Ball<S>, b: &Ball<S>, apart: S::Vector) -> Conta
     }
 }
 
-/// A ball near a thin part is also behind the part's other side: keeps the points on the side of the nearest
-/// one.
+/// A ball near a thin part is also behind the part's other side: keeps the points on the side of
+/// the nearest one.
 fn keep_same_side<V>(touches: &mut Vec<ClosestPoint<V>>) {
     let nearest = touches
         .iter()

@@ -40,7 +40,8 @@ fn predict(s: &mut Simulation<Dim2>, velocities: &[Vector2<f64>]) {
     add_predicted(network, &s.shapes, bodies, &s.table, &motion);
 }
 
-/// A pair whose bond broke is known as such in each new contact: when it has separated and meets again, and in a contact that is predicted.
+/// A pair whose bond broke is known as such in each new contact: when it has separated and meets
+/// again, and in a contact that is predicted.
 #[test]
 fn a_broken_pair_is_remembered_when_it_meets_again() {
     let disks = [([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5), ([2.0, 0.0], 0.5)];
@@ -81,8 +82,9 @@ fn a_broken_pair_is_remembered_when_it_meets_again() {
     assert_eq!(predicted[0].radius, 0.25);
 }
 
-/// A point of a body of 1 m goes fast towards a chain, which it sees from behind within the alert distance of 1 mm only: it is followed in parts
-/// of that, however large its body is, and meets the chain when it has made its way to it.
+/// A point of a body of 1 m goes fast towards a chain, which it sees from behind within the alert
+/// distance of 1 mm only: it is followed in parts of that, however large its body is, and meets the
+/// chain when it has made its way to it.
 #[test]
 fn a_point_is_followed_in_parts_of_the_alert_distance() {
     for (height, depth) in [(0.02, 0.5), (0.3, 0.01), (0.7, 2.0)] {
@@ -138,8 +140,8 @@ fn a_disk_in_a_groove_touches_two_faces() {
     }
 }
 
-/// A bond holds its contact however far its bodies move apart in a step, whichever of the two moves; without a bond the contact ends at the
-/// alert distance.
+/// A bond holds its contact however far its bodies move apart in a step, whichever of the two
+/// moves; without a bond the contact ends at the alert distance.
 #[test]
 fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
     for bonded in [true, false] {
@@ -171,7 +173,8 @@ fn a_bond_keeps_the_contact_of_bodies_that_part_fast() {
     }
 }
 
-/// Two disks, then two squares on bodies whose centres are beside theirs, in a row along x: neighbours touch, each square at its own place.
+/// Two disks, then two squares on bodies whose centres are beside theirs, in a row along x:
+/// neighbours touch, each square at its own place.
 #[test]
 fn disks_and_squares_touch_where_they_stand() {
     let mut s = Simulation::of_disks(&[([0.0, 0.0], 0.5), ([1.0, 0.0], 0.5)]);

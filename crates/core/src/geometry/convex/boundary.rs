@@ -39,8 +39,8 @@ impl Polygon {
     }
 }
 
-/// Tolerance for corners outside the plane of a face, relative to the size: the corners of a face are
-/// coplanar to rounding.
+/// Tolerance for corners outside the plane of a face, relative to the size: the corners of a face
+/// are coplanar to rounding.
 const OUT: f64 = 1e-6;
 
 impl Polyhedron {

@@ -1,5 +1,5 @@
-//! Area, centre and moment of inertia of a rounded convex polygon, composed of the polygon, a rectangle on
-//! each side and a disk sector at each corner.
+//! Area, centre and moment of inertia of a rounded convex polygon, composed of the polygon, a
+//! rectangle on each side and a disk sector at each corner.
 
 use nalgebra::Vector2;
 
@@ -14,8 +14,8 @@ pub struct MassProperties {
     pub polar: f64,
 }
 
-/// Computes the mass properties of the points within `rounding` (m) of the convex polygon with these corners
-/// (m), given anticlockwise. Two points are the core of a capsule.
+/// Computes the mass properties of the points within `rounding` (m) of the convex polygon with
+/// these corners (m), given anticlockwise. Two points are the core of a capsule.
 pub fn of(points: &[Vector2<f64>], rounding: f64) -> MassProperties {
     // Relative to the first corner, to avoid cancellation far from the origin.
     let origin = points[0];
@@ -130,8 +130,8 @@ mod tests {
         let (l, r) = (3.0, 0.5);
         let m = of(&[Vector2::new(1.0, 0.0), Vector2::new(1.0, l)], r);
         let half = 0.5 * PI * r * r;
-        // The centroid of a half disk is 4 r/(3 pi) from the cut, and its polar moment about the disk's
-        // centre is r^2/2 per area.
+        // The centroid of a half disk is 4 r/(3 pi) from the cut, and its polar moment about the
+        // disk's centre is r^2/2 per area.
         let c = 4.0 * r / (3.0 * PI);
         let about = half * (0.5 * r * r - c * c + (0.5 * l + c).powi(2));
         let polar = 2.0 * r * l * (l * l + 4.0 * r * r) / 12.0 + 2.0 * about;

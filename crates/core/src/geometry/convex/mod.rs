@@ -1,7 +1,7 @@
 //! Convex pieces: a convex core with a rounding radius, carried by a body.
 //!
-//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are polygons in
-//! 2D and polyhedra in 3D.
+//! Two points with a rounding are a capsule; several pieces on a body are a cluster. Cores are
+//! polygons in 2D and polyhedra in 3D.
 
 mod boundary;
 pub mod mass;
@@ -48,11 +48,13 @@ pub struct ConvexCollider<S: Space> {
     pub material: u16,
 }
 
-/// Depth up to which a corner behind a skin, a profile or facets is still pushed out, relative to the size
-/// of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another part of the surface.
+/// Depth up to which a corner behind a skin, a profile or facets is still pushed out, relative to
+/// the size of its piece, [`ConvexCollider::bound`]. A deeper corner may be in front of another
+/// part of the surface.
 pub const DEEP: f64 = 0.25;
 
-/// Least cosine of the angle between a side and a surface that deforms for the side to touch its vertices; a steeper side touches by its corners.
+/// Least cosine of the angle between a side and a surface that deforms for the side to touch its
+/// vertices; a steeper side touches by its corners.
 pub(super) const STEEPEST: f64 = 0.5;
 
 /// Shape and mass properties of a piece that is not yet part of a body.
@@ -113,8 +115,8 @@ pub struct ContactPoint<V> {
     pub gap: f64,
     /// Key of the corner in contact; stable while the bodies slide along each other.
     pub feature: u64,
-    /// Length of the face represented by this point (m); in 3D the radius of a disk of equal area; zero for
-    /// a corner.
+    /// Length of the face represented by this point (m); in 3D the radius of a disk of equal area;
+    /// zero for a corner.
     pub share: f64,
     /// Whether a bond can form here: two opposite faces, a ball, or the end of a capsule.
     pub facing: bool,
@@ -125,16 +127,16 @@ pub struct ContactPoint<V> {
 pub struct ContactTolerances {
     /// Largest gap that is searched (m).
     pub reach: f64,
-    /// Two corners no farther apart than this along a face count as corner on face (m), since coincident
-    /// corners define no direction.
+    /// Two corners no farther apart than this along a face count as corner on face (m), since
+    /// coincident corners define no direction.
     pub slack: f64,
-    /// Whether the pair is bonded: face contacts are then kept even if two corners are nearer, so that a
-    /// bond that is opened obliquely keeps its points.
+    /// Whether the pair is bonded: face contacts are then kept even if two corners are nearer, so
+    /// that a bond that is opened obliquely keeps its points.
     pub held: bool,
 }
 
-/// Operations of the narrow phase on a convex core. Vectors are in world axes, positions relative to the
-/// antagonist's centre.
+/// Operations of the narrow phase on a convex core. Vectors are in world axes, positions relative
+/// to the antagonist's centre.
 pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns the core of a rotated body.
     #[must_use]
@@ -143,11 +145,13 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Writes the core of a rotated body into `out`, whose buffers are used again.
     fn turn_into(&self, rotation: &S::Rotation, out: &mut Self);
 
-    /// Writes the core with all distances from its centre multiplied by `factor` into `out`, a core of the same corners.
+    /// Writes the core with all distances from its centre multiplied by `factor` into `out`, a core
+    /// of the same corners.
     fn scale_into(&self, factor: f64, out: &mut Self);
 
-    /// Finds contact points with another core, in the order of their features. `self` is the candidate, with
-    /// its centre at `apart`; `roundings` are those of candidate and antagonist (m).
+    /// Finds contact points with another core, in the order of their features. `self` is the
+    /// candidate, with its centre at `apart`; `roundings` are those of candidate and antagonist
+    /// (m).
     fn contact_points(
         &self,
         other: &Self,
@@ -157,8 +161,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
-    /// Returns the contact point with a ball whose centre is at `apart`; the ball is the candidate, and the
-    /// gap refers to the rounded core.
+    /// Returns the contact point with a ball whose centre is at `apart`; the ball is the candidate,
+    /// and the gap refers to the rounded core.
     fn contact_point_with_ball(
         &self,
         apart: &S::Vector,
@@ -186,7 +190,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
     /// Returns a corner of a face (m).
     fn corner_of(&self, face: usize) -> S::Vector;
 
-    /// Finds the points of a pair, as in [`Core::contact_points`], that touch the plane of a face of one of the two.
+    /// Finds the points of a pair, as in [`Core::contact_points`], that touch the plane of a face
+    /// of one of the two.
     fn points_on_face(
         &self,
         other: &Self,
@@ -197,17 +202,19 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
-    /// The name that a feature of a pair of cores has where the antagonist is taken for the candidate.
+    /// The name that a feature of a pair of cores has where the antagonist is taken for the
+    /// candidate.
     fn feature_from_other_side(feature: u64) -> u64;
 
-    /// Signed distance of a point from the core (m, negative inside) and the unit normal at the nearest point of it.
+    /// Signed distance of a point from the core (m, negative inside) and the unit normal at the
+    /// nearest point of it.
     fn outward(&self, point: &S::Vector) -> (f64, S::Vector);
 
     /// Returns half of the smallest width along its face normals (m); zero for a segment.
     fn half_thickness(&self) -> f64;
 
-    /// Finds contact points with a surface of a first body, in the order of their features. The core is in
-    /// the surface's frame, with its centre at `at`.
+    /// Finds contact points with a surface of a first body, in the order of their features. The
+    /// core is in the surface's frame, with its centre at `at`.
     fn contact_points_with_surface(
         &self,
         surface: &dyn Surface<S>,
@@ -217,8 +224,8 @@ pub trait Core<S: Space>: Clone + Debug + Send + Sync {
         out: &mut Vec<ContactPoint<S::Vector>>,
     );
 
-    /// Returns the outline of the rounded core for figures and files (m): in 2D one closed line without its
-    /// last point, in 3D one polygon per face.
+    /// Returns the outline of the rounded core for figures and files (m): in 2D one closed line
+    /// without its last point, in 3D one polygon per face.
     fn outline(&self, rounding: f64) -> Vec<Vec<S::Vector>>;
 
     /// Returns its corners and faces.

@@ -1,15 +1,18 @@
 //! Convex bodies that pass each other closer than they move in a step.
 //!
-//! The direction between two corners is the normal of the gap at hand, not of the one at the end of the step: kept from closing along
-//! it, a body would be stopped by what it passes, and a box that slides over flush boxes by the side of the next one. Every plane that
-//! has the bodies on its two sides keeps them apart. Where the nearest points would close within the step, the plane of the face that
-//! leaves most room at its end takes their place: the axis along which the bodies stay separate the longest.
+//! The direction between two corners is the normal of the gap at hand, not of the one at the end of
+//! the step: kept from closing along it, a body would be stopped by what it passes, and a box that
+//! slides over flush boxes by the side of the next one. Every plane that has the bodies on its two
+//! sides keeps them apart. Where the nearest points would close within the step, the plane of the
+//! face that leaves most room at its end takes their place: the axis along which the bodies stay
+//! separate the longest.
 
 use super::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::shape::{Fan, Surface};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Room that a plane must leave more than the nearest points do, as a fraction of the slack: half of a closing that is shallower.
+/// Room that a plane must leave more than the nearest points do, as a fraction of the slack: half
+/// of a closing that is shallower.
 pub(super) const ALIKE: f64 = 1e-3;
 
 /// Depth of a closing that is one of rounding, as a fraction of the slack.
@@ -37,7 +40,8 @@ impl<S: Space> PairMotion<S> {
         }
     }
 
-    /// Displacement of a point of the candidate relative to one of the antagonist, each from its centre (m).
+    /// Displacement of a point of the candidate relative to one of the antagonist, each from its
+    /// centre (m).
     fn of(&self, on_candidate: &S::Vector, on_antagonist: &S::Vector) -> S::Vector {
         let [turn, other] = &self.turns;
         self.shift + S::spin_velocity(turn, on_candidate) - S::spin_velocity(other, on_antagonist)
@@ -63,7 +67,8 @@ impl<S: Space> PairMotion<S> {
     }
 }
 
-/// Gap that a plane must leave at the end of the step to take the place of points that leave `least` (m).
+/// Gap that a plane must leave at the end of the step to take the place of points that leave
+/// `least` (m).
 fn room(least: f64, slack: f64) -> f64 {
     (least + ALIKE * slack).min(0.5 * least)
 }
@@ -93,12 +98,14 @@ struct Plane<V> {
     gap: f64,
     /// The face that it belongs to.
     face: Option<PairFace>,
-    /// The point of the candidate that is lowest along it, from the antagonist's centre, without its rounding (m).
+    /// The point of the candidate that is lowest along it, from the antagonist's centre, without
+    /// its rounding (m).
     lowest: V,
 }
 
 impl<S: Space> Pair<'_, S> {
-    /// Gap along a direction now (m), and the point of the candidate that is lowest along it; `None` where it is less than `least`.
+    /// Gap along a direction now (m), and the point of the candidate that is lowest along it;
+    /// `None` where it is less than `least`.
     pub(super) fn gap(&self, normal: &S::Vector, least: f64) -> Option<(f64, S::Vector)> {
         let [a, b] = self.corners;
         let top = b.iter().map(|q| normal.dot(q));
@@ -117,7 +124,8 @@ impl<S: Space> Pair<'_, S> {
         Some((gap, lowest))
     }
 
-    /// How low the candidate and how high the antagonist reach along a direction now, with these roundings (m).
+    /// How low the candidate and how high the antagonist reach along a direction now, with these
+    /// roundings (m).
     pub(super) fn ends(&self, normal: &S::Vector, roundings: [f64; 2]) -> [f64; 2] {
         let [a, b] = self.corners;
         let low = a.iter().map(|p| normal.dot(&(*p + self.apart)));
@@ -152,8 +160,8 @@ pub(super) fn faces<S: Space>(cores: [&S::Core; 2]) -> impl Iterator<Item = (S::
     of(true).chain(of(false))
 }
 
-/// Puts points on a plane that keeps a pair apart in place of those that close in the step although the pair passes; `apart` and
-/// `roundings` as in [`Core::contact_points`].
+/// Puts points on a plane that keeps a pair apart in place of those that close in the step although
+/// the pair passes; `apart` and `roundings` as in [`Core::contact_points`].
 pub fn keep_apart<S: Space>(
     cores: [&S::Core; 2],
     apart: &S::Vector,
@@ -230,8 +238,8 @@ fn beside<S: Space>(
     (length > ALIKE * way.norm()).then(|| across * (1.0 / length))
 }
 
-/// Keeps a ball (the candidate) apart from a convex core that it passes within the step: moves the contact to the plane
-/// between both.
+/// Keeps a ball (the candidate) apart from a convex core that it passes within the step: moves the
+/// contact to the plane between both.
 pub fn keep_ball_apart<S: Space>(
     core: &S::Core,
     apart: &S::Vector,
@@ -261,7 +269,8 @@ pub fn keep_ball_apart<S: Space>(
             room = left;
             *point = ContactPoint {
                 on_candidate: *apart - n * radius,
-                // On one line with it, so that what acts there turns the pair by nothing, even where this is beside the face.
+                // On one line with it, so that what acts there turns the pair by nothing, even
+                // where this is beside the face.
                 on_antagonist: *apart - n * (radius + gap),
                 normal: n,
                 gap,
@@ -273,8 +282,9 @@ pub fn keep_ball_apart<S: Space>(
     }
 }
 
-/// Keeps a core, centred at `at` in the frame of a surface, apart from the points of the surface that it passes within the
-/// step: by a plane through each point, if the faces around that point lie behind the plane.
+/// Keeps a core, centred at `at` in the frame of a surface, apart from the points of the surface
+/// that it passes within the step: by a plane through each point, if the faces around that point
+/// lie behind the plane.
 pub fn keep_apart_from_surface<S: Space>(
     core: &S::Core,
     surface: &dyn Surface<S>,

@@ -14,13 +14,14 @@ const FACING: f64 = 0.996;
 /// Bound of the rounding of rotations and distances, relative to the size.
 const ROUNDING: f64 = 1e-12;
 
-/// Anticlockwise corners, and the outward unit normals of the sides that start at them. Two points are a
-/// segment with two sides.
+/// Anticlockwise corners, and the outward unit normals of the sides that start at them. Two points
+/// are a segment with two sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     points: Vec<Vector2<f64>>,
     normals: Vec<Vector2<f64>>,
-    /// Least distance of a side from the origin (m), slightly less for rounding; none if that is outside. Rotation keeps it.
+    /// Least distance of a side from the origin (m), slightly less for rounding; none if that is
+    /// outside. Rotation keeps it.
     inner: f64,
     /// Distance of the farthest corner from the origin (m), up to rounding.
     far: f64,
@@ -107,8 +108,8 @@ impl Polygon {
         Self::with_normals(vec![from, to])
     }
 
-    /// Creates a regular polygon about the origin, with its first corner on the x axis at `radius` (m) and
-    /// at least three sides.
+    /// Creates a regular polygon about the origin, with its first corner on the x axis at `radius`
+    /// (m) and at least three sides.
     pub fn regular(sides: usize, radius: f64) -> Self {
         let angle = |k: usize| std::f64::consts::TAU * k as f64 / sides as f64;
         let corner = |k: usize| Vector2::new(angle(k).cos(), angle(k).sin()) * radius;
@@ -166,8 +167,8 @@ impl Polygon {
         &self.normals
     }
 
-    /// Returns whether a side with this outward normal is parallel to the opposite side, within about five
-    /// degrees. Always true for the round end of a capsule.
+    /// Returns whether a side with this outward normal is parallel to the opposite side, within
+    /// about five degrees. Always true for the round end of a capsule.
     pub fn faces(&self, normal: &Vector2<f64>) -> bool {
         self.points.len() == 2 || self.normals[self.facing(normal)].dot(normal) < -FACING
     }
@@ -184,12 +185,14 @@ impl Polygon {
         squared.fold(0.0, f64::max).sqrt()
     }
 
-    /// Returns the largest error of rounding of a distance to another polygon near it, with its centre at `apart` (m).
+    /// Returns the largest error of rounding of a distance to another polygon near it, with its
+    /// centre at `apart` (m).
     pub(super) fn rounding(&self, other: &Self, apart: &Vector2<f64>) -> f64 {
         ROUNDING * (self.far + other.far + apart.amax())
     }
 
-    /// Returns the radius of a circle about the origin within the polygon (m); minus infinity if the origin is not.
+    /// Returns the radius of a circle about the origin within the polygon (m); minus infinity if
+    /// the origin is not.
     pub fn inner(&self) -> f64 {
         self.inner
     }
@@ -206,8 +209,8 @@ impl Polygon {
         best.1
     }
 
-    /// Returns the signed distance of a point from the boundary (m, negative inside), the unit normal at the
-    /// nearest point, and the corner if that is one.
+    /// Returns the signed distance of a point from the boundary (m, negative inside), the unit
+    /// normal at the nearest point, and the corner if that is one.
     pub fn distance(&self, point: &Vector2<f64>) -> (f64, Vector2<f64>, Option<usize>) {
         let n = self.points.len();
         let (mut deepest, mut depth): (_, f64) = (0, f64::NEG_INFINITY);

@@ -7,8 +7,8 @@ use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Finds the points of a pair that touch the line of a side of one of the two: the opposite side clipped to it, and its lowest corner where
-/// that is beside the side and lower.
+/// Finds the points of a pair that touch the line of a side of one of the two: the opposite side
+/// clipped to it, and its lowest corner where that is beside the side and lower.
 pub fn points_on_line(
     a: &Polygon,
     b: &Polygon,

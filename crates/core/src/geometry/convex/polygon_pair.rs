@@ -1,10 +1,10 @@
-//! Contact of two convex polygons: the side with the greatest separation, and the opposite side clipped to
-//! it.
+//! Contact of two convex polygons: the side with the greatest separation, and the opposite side
+//! clipped to it.
 //!
-//! The distance of two disjoint polygons is the greatest separation over all directions (separating axes).
-//! It occurs either along the normal of a side, and then the opposite side clipped to that side gives one or
-//! two points, or between two corners, and then there is one point. Points are named after their corners, so
-//! that the names do not change when the two sides exchange roles.
+//! The distance of two disjoint polygons is the greatest separation over all directions (separating
+//! axes). It occurs either along the normal of a side, and then the opposite side clipped to that
+//! side gives one or two points, or between two corners, and then there is one point. Points are
+//! named after their corners, so that the names do not change when the two sides exchange roles.
 
 use super::polygon::Polygon;
 use super::{ContactPoint, ContactTolerances, PairFace};
@@ -12,8 +12,8 @@ use nalgebra::Vector2;
 
 type V = Vector2<f64>;
 
-/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
-/// order of their features; `roundings` are those of both (m).
+/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the
+/// origin, in the order of their features; `roundings` are those of both (m).
 pub fn contact_points(
     a: &Polygon,
     b: &Polygon,
@@ -71,7 +71,8 @@ pub fn contact_points(
     points_on_side(a, b, apart, roundings, tolerances, face, out);
 }
 
-/// Finds the points of a pair that touch the line of a side of one of the two: the opposite side clipped to it.
+/// Finds the points of a pair that touch the line of a side of one of the two: the opposite side
+/// clipped to it.
 pub fn points_on_side(
     a: &Polygon,
     b: &Polygon,
@@ -128,10 +129,12 @@ pub(super) fn name(corner: usize, of_candidate: bool) -> u64 {
     2 * corner as u64 + u64::from(!of_candidate)
 }
 
-/// Returns the greatest separation along a side of `of`, and that side; `to` is at `apart` relative to it.
+/// Returns the greatest separation along a side of `of`, and that side; `to` is at `apart` relative
+/// to it.
 ///
-/// A side is at most as far from `to` as from its centre, less the radius of a circle within it: only those that may be
-/// the best are compared with all corners, first the one that faces the centre.
+/// A side is at most as far from `to` as from its centre, less the radius of a circle within it:
+/// only those that may be the best are compared with all corners, first the one that faces the
+/// centre.
 fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
     let (points, normals) = (of.points(), of.normals());
     let heights = |k: usize| (apart - points[k]).dot(&normals[k]);
@@ -167,8 +170,8 @@ fn separation(of: &Polygon, to: &Polygon, apart: &V) -> (f64, usize) {
     best
 }
 
-/// Returns whether a corner of `to` lies before the inside of a side of `of` and not farther than two corners can be
-/// from each other where they define no direction: then none are nearer.
+/// Returns whether a corner of `to` lies before the inside of a side of `of` and not farther than
+/// two corners can be from each other where they define no direction: then none are nearer.
 fn lies_on_side(of: &Polygon, to: &Polygon, k: usize, apart: &V, best: f64, slack: f64) -> bool {
     let (from, end) = of.side(k);
     let (along, normal) = (end - from, of.normals()[k]);
@@ -180,8 +183,8 @@ fn lies_on_side(of: &Polygon, to: &Polygon, k: usize, apart: &V, best: f64, slac
     })
 }
 
-/// Returns the two nearest corners and the vector from that of `b` to that of `a`. A corner is at least as far from `b` as
-/// from the line through a side of it.
+/// Returns the two nearest corners and the vector from that of `b` to that of `a`. A corner is at
+/// least as far from `b` as from the line through a side of it.
 fn nearest_corners(
     a: &Polygon,
     b: &Polygon,
@@ -220,8 +223,8 @@ fn nearest_corners(
     best
 }
 
-/// Returns whether the inside of a side of `of` is as near to a corner of `to` as `distance` (m). A corner is at least as far
-/// from `of` as from the line through one of its sides.
+/// Returns whether the inside of a side of `of` is as near to a corner of `to` as `distance` (m). A
+/// corner is at least as far from `of` as from the line through one of its sides.
 fn is_nearer(
     of: &Polygon,
     to: &Polygon,
@@ -504,8 +507,8 @@ mod tests {
         assert!((out[0].normal - V::new(0.6, 0.8)).norm() < 1e-12);
     }
 
-    /// Opened obliquely about a corner that has slid past the other's end, two corners are nearest; a bond
-    /// over the face still needs its two points.
+    /// Opened obliquely about a corner that has slid past the other's end, two corners are nearest;
+    /// a bond over the face still needs its two points.
     #[test]
     fn what_a_bond_holds_keeps_its_face() {
         let square = |turn: f64| {
@@ -514,7 +517,8 @@ mod tests {
             polygon.turned(&turn)
         };
         let (low, top) = (square(0.0), square(-0.05));
-        // The lower right corner of the upper square is 0.02 above and 5e-4 beyond that of the lower one.
+        // The lower right corner of the upper square is 0.02 above and 5e-4 beyond that of the
+        // lower one.
         let right = top.points()[1];
         let apart = V::new(1.0 + 5e-4, 1.0 + 0.02) - right;
         for held in [false, true] {

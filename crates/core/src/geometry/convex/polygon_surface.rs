@@ -1,5 +1,5 @@
-//! Contact of a convex polygon and a surface of a first body: the polygon's corners on the surface's faces
-//! and corners, and the surface's corners on the polygon's sides.
+//! Contact of a convex polygon and a surface of a first body: the polygon's corners on the
+//! surface's faces and corners, and the surface's corners on the polygon's sides.
 
 use super::polygon::Polygon;
 use super::{ContactPoint, ContactTolerances, DEEP, STEEPEST};
@@ -11,12 +11,12 @@ type V = Vector2<f64>;
 
 /// Tolerance for a normal outside a corner's cone.
 const CONE: f64 = 1e-9;
-/// Two faces of a profile give one contact point if their points are closer than this fraction of the search
-/// distance.
+/// Two faces of a profile give one contact point if their points are closer than this fraction of
+/// the search distance.
 const SEAM: f64 = 1e-9;
 
-/// Finds the contact points of the polygon, centred at `at` in the surface's frame, in the order of their
-/// features.
+/// Finds the contact points of the polygon, centred at `at` in the surface's frame, in the order of
+/// their features.
 pub fn contact_points(
     polygon: &Polygon,
     surface: &dyn Surface<Dim2>,
@@ -96,8 +96,8 @@ pub fn contact_points(
 }
 
 /// Keeps the points of a corner within the search distance. If there are none, the corner may have
-/// penetrated deeper within a step: then keeps the nearest point if the corner is behind it. A corner near a
-/// thin part is far behind its other side.
+/// penetrated deeper within a step: then keeps the nearest point if the corner is behind it. A
+/// corner near a thin part is far behind its other side.
 fn keep_nearest(touches: &mut Vec<ClosestPoint<V>>, reach: f64) {
     let depth = |t: &ClosestPoint<V>| t.distance.abs();
     let nearest = touches.iter().map(depth).fold(f64::INFINITY, f64::min);

@@ -84,8 +84,8 @@ impl Polyhedron {
             .unwrap_or(0)
     }
 
-    /// Returns the face at the lowest corner along a direction whose normal is most opposed to it; `None`
-    /// for a segment.
+    /// Returns the face at the lowest corner along a direction whose normal is most opposed to it;
+    /// `None` for a segment.
     pub fn facing(&self, direction: &V) -> Option<usize> {
         let against = |f: &u32| self.normals[*f as usize].dot(direction);
         self.topology.about[self.lowest(direction)]
@@ -94,15 +94,15 @@ impl Polyhedron {
             .map(|f| *f as usize)
     }
 
-    /// Returns whether a face with this outward normal is parallel to the opposite face, within about five
-    /// degrees. Always true for a segment.
+    /// Returns whether a face with this outward normal is parallel to the opposite face, within
+    /// about five degrees. Always true for a segment.
     pub fn faces(&self, normal: &V) -> bool {
         self.facing(normal)
             .is_none_or(|f| self.normals[f].dot(normal) < -FACING)
     }
 
-    /// Returns the signed distance of a point from the boundary (m, negative inside) and the unit normal at
-    /// the nearest point.
+    /// Returns the signed distance of a point from the boundary (m, negative inside) and the unit
+    /// normal at the nearest point.
     pub fn distance(&self, point: &V) -> (f64, V) {
         let height = |f: usize| {
             let corner = self.topology.faces[f][0] as usize;

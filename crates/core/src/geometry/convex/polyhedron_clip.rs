@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 type V = Vector3<f64>;
 
-/// Names of contact points. A corner or a crossing of two edges has the same name for either reference face.
+/// Names of contact points. A corner or a crossing of two edges has the same name for either
+/// reference face.
 pub mod name {
     use super::super::polyhedron::MAX_EDGES;
 
@@ -76,8 +77,8 @@ struct Corner {
     side: Side,
 }
 
-/// Returns the points of the opposite face that are above the reference face, or beside it by at most
-/// `slack` (m).
+/// Returns the points of the opposite face that are above the reference face, or beside it by at
+/// most `slack` (m).
 pub fn clip(lead: &Lead, slack: f64) -> Vec<Point> {
     let normal = lead.own.normals()[lead.face];
     let mut polygon = facing(lead, &normal);
@@ -144,8 +145,8 @@ fn facing(lead: &Lead, normal: &V) -> Vec<Corner> {
 }
 
 impl Lead<'_> {
-    /// Returns the name of the point where a side of the current polygon crosses side `k` of the reference
-    /// face.
+    /// Returns the name of the point where a side of the current polygon crosses side `k` of the
+    /// reference face.
     fn name(&self, side: Side, k: usize, sides: &[u32]) -> u64 {
         let edge = |k: usize| sides[k] as usize;
         match side {

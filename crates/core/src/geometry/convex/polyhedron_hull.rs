@@ -1,4 +1,5 @@
-//! Construction of convex polyhedra: hulls of points, closed faces, cuboids, and the segments of capsules.
+//! Construction of convex polyhedra: hulls of points, closed faces, cuboids, and the segments of
+//! capsules.
 
 use super::polyhedron::Polyhedron;
 use super::topology::{Edge, MAX_EDGES, Topology};
@@ -112,8 +113,8 @@ impl Polyhedron {
         Ok(out)
     }
 
-    /// Creates a polyhedron from corners (m) and faces that are anticlockwise seen from outside and form a
-    /// convex body.
+    /// Creates a polyhedron from corners (m) and faces that are anticlockwise seen from outside and
+    /// form a convex body.
     ///
     /// # Errors
     /// The faces are not closed, or there are too many.
@@ -168,8 +169,8 @@ impl Polyhedron {
     }
 }
 
-/// Returns the outward normal of a face from its area vector, an average where the corners are not exactly
-/// coplanar.
+/// Returns the outward normal of a face from its area vector, an average where the corners are not
+/// exactly coplanar.
 pub fn normal(points: &[V], face: &[u32]) -> V {
     let origin = points[face[0] as usize];
     let at = |k: usize| points[face[k] as usize] - origin;

@@ -1,5 +1,5 @@
-//! Volume, centre and inertia tensor of a rounded convex polyhedron, composed of the polyhedron, a prism on
-//! each face, a cylinder wedge along each edge and a ball sector at each corner.
+//! Volume, centre and inertia tensor of a rounded convex polyhedron, composed of the polyhedron, a
+//! prism on each face, a cylinder wedge along each edge and a ball sector at each corner.
 
 use super::polyhedron::Polyhedron;
 use nalgebra::{Matrix3, Vector3};
@@ -19,8 +19,8 @@ pub struct MassProperties {
     pub inertia: M,
 }
 
-/// Computes the mass properties of the points within `rounding` (m) of a convex core; a segment gives a
-/// capsule.
+/// Computes the mass properties of the points within `rounding` (m) of a convex core; a segment
+/// gives a capsule.
 pub fn of(core: &Polyhedron, rounding: f64) -> MassProperties {
     // Relative to the first corner, to avoid cancellation far from the origin.
     let origin = core.points()[0];
@@ -186,10 +186,10 @@ struct Cone {
 impl Cone {
     /// Integrates over the cone of unit vectors given anticlockwise.
     ///
-    /// The solid angle follows van Oosterom and Strackee (1983); the others follow from Stokes' theorem on
-    /// the arcs, whose planes have the normals m: int u = sum angle m/2, and, since u u^T - 1/3 is a
-    /// spherical harmonic of degree 2, int (u u^T - 1/3) = sum (m N^T + N m^T)/6 with N = int u over the
-    /// arc.
+    /// The solid angle follows van Oosterom and Strackee (1983); the others follow from Stokes'
+    /// theorem on the arcs, whose planes have the normals m: int u = sum angle m/2, and, since u
+    /// u^T - 1/3 is a spherical harmonic of degree 2, int (u u^T - 1/3) = sum (m N^T + N m^T)/6
+    /// with N = int u over the arc.
     fn of(normals: &[V]) -> Self {
         let a = &normals[0];
         let mut angle = 0.0;
@@ -272,8 +272,8 @@ mod tests {
             r,
         );
         let (rod, half) = (PI * r * r * l, 2.0 / 3.0 * PI * r.powi(3));
-        // The centroid of a half ball is 3 r/8 from the cut, and its moment is 2/5 r^2 per volume about the
-        // ball's centre.
+        // The centroid of a half ball is 3 r/8 from the cut, and its moment is 2/5 r^2 per volume
+        // about the ball's centre.
         let c = 0.375 * r;
         let own = half * (0.4 * r * r - c * c + (0.5 * l + c).powi(2));
         let across = rod * (r * r / 4.0 + l * l / 12.0) + 2.0 * own;
@@ -286,8 +286,8 @@ mod tests {
 
     #[test]
     fn a_rounded_cuboid_is_measured_by_its_parts() {
-        // By symmetry only the second moments along the axes are nonzero: core, slabs, quarter cylinders,
-        // eighths of a ball.
+        // By symmetry only the second moments along the axes are nonzero: core, slabs, quarter
+        // cylinders, eighths of a ball.
         let (size, r) = ([1.0, 2.0, 3.0], 0.4);
         let m = of(&Polyhedron::cuboid(size), r);
         let volume: f64 = size.iter().product();
@@ -303,7 +303,8 @@ mod tests {
             let core = b * c * long;
             let slabs = 2.0 * b * c * beyond + 2.0 * (b + c) * r * long;
             let rods_along = PI * r * r * long;
-            // Four quarter disks at height h: area PI r^2/4, centre 4r/(3 PI), second moment PI r^4/16.
+            // Four quarter disks at height h: area PI r^2/4, centre 4r/(3 PI), second moment PI
+            // r^4/16.
             let quarter =
                 PI * r * r / 4.0 * h * h + 2.0 * h * r.powi(3) / 3.0 + PI * r.powi(4) / 16.0;
             let rods = 4.0 * (b + c) * quarter;

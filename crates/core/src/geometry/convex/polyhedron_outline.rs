@@ -1,5 +1,5 @@
-//! Faces of a rounded polyhedron for figures and files: its faces moved outwards, and the rounding of edges
-//! and corners.
+//! Faces of a rounded polyhedron for figures and files: its faces moved outwards, and the rounding
+//! of edges and corners.
 
 use super::polyhedron::Polyhedron;
 use nalgebra::Vector3;

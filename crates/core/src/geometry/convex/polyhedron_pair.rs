@@ -1,13 +1,13 @@
-//! Contact of two convex polyhedra: a face with the opposite face clipped to it, or the two nearest points
-//! of edges and corners.
+//! Contact of two convex polyhedra: a face with the opposite face clipped to it, or the two nearest
+//! points of edges and corners.
 //!
-//! The reference face is the one with the greatest separation. If the other polyhedron's lowest point is
-//! above it, that separation is the distance, and the opposite face, clipped to the sides of the reference
-//! face, gives the points. Otherwise two edges (including their corners) are nearest, and there is one
-//! point. For penetrating polyhedra the normal is the axis of least depth among face normals and edge
-//! products (separating axes); an edge pair counts if the normal cones of both contain the axis (D.
-//! Gregorius, GDC 2013). Points are named after their corners and edges, so that the names do not change
-//! when the two faces exchange roles.
+//! The reference face is the one with the greatest separation. If the other polyhedron's lowest
+//! point is above it, that separation is the distance, and the opposite face, clipped to the sides
+//! of the reference face, gives the points. Otherwise two edges (including their corners) are
+//! nearest, and there is one point. For penetrating polyhedra the normal is the axis of least depth
+//! among face normals and edge products (separating axes); an edge pair counts if the normal cones
+//! of both contain the axis (D. Gregorius, GDC 2013). Points are named after their corners and
+//! edges, so that the names do not change when the two faces exchange roles.
 
 use super::polyhedron::{Polyhedron, across};
 use super::polyhedron_clip::{self, Lead, name};
@@ -21,8 +21,8 @@ const ALIKE: f64 = 1e-3;
 /// plus, for rounding, this fraction of the distance of the centres.
 const ROUNDING: f64 = 1e-13;
 
-/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the origin, in the
-/// order of their features; `roundings` are those of both (m).
+/// Finds the contact points of the candidate `a`, whose centre is at `apart`, with `b` at the
+/// origin, in the order of their features; `roundings` are those of both (m).
 pub fn contact_points(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -63,8 +63,8 @@ pub fn contact_points(
     }
 }
 
-/// Finds the points of a pair that touch the plane of a face of one of the two: those of the opposite face above it, and its lowest corner
-/// where that is beside the face and lower.
+/// Finds the points of a pair that touch the plane of a face of one of the two: those of the
+/// opposite face above it, and its lowest corner where that is beside the face and lower.
 pub fn points_on_face(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -140,8 +140,9 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// Finds the reference face; `None` if the polyhedra are farther apart than `reach` (m). Of two faces that are
-    /// equally good within `alike` (m) the candidate's is used, independent of rounding.
+    /// Finds the reference face; `None` if the polyhedra are farther apart than `reach` (m). Of two
+    /// faces that are equally good within `alike` (m) the candidate's is used, independent of
+    /// rounding.
     fn reference_face(&self, reach: f64, alike: f64, slack: f64) -> Option<ReferenceFace> {
         let (a, b, apart) = (self.a, self.b, self.apart);
         let (from_a, face_a) = separation(a, b, &-apart, reach);
@@ -310,8 +311,9 @@ impl Pair<'_> {
     }
 }
 
-/// Returns the direction between two edges. Where it equals the edges' product up to rounding (m), the
-/// product is used: between edges almost in contact, the difference vector alone has no accurate direction.
+/// Returns the direction between two edges. Where it equals the edges' product up to rounding (m),
+/// the product is used: between edges almost in contact, the difference vector alone has no
+/// accurate direction.
 fn edge_normal(u: &V, v: &V, way: &V, rounding: f64) -> V {
     let distance = way.norm();
     let product = u.cross(v).try_normalize(1e-9 * u.norm() * v.norm());
@@ -327,8 +329,8 @@ fn edge_normal(u: &V, v: &V, way: &V, rounding: f64) -> V {
     }
 }
 
-/// Returns the greatest separation along a face of `of`, and that face; `to` is at `apart` relative to it.
-/// Minus infinity without faces; stops at the first face beyond `reach` (m).
+/// Returns the greatest separation along a face of `of`, and that face; `to` is at `apart` relative
+/// to it. Minus infinity without faces; stops at the first face beyond `reach` (m).
 fn separation(of: &Polyhedron, to: &Polyhedron, apart: &V, reach: f64) -> (f64, usize) {
     let mut best = (f64::NEG_INFINITY, 0);
     for (f, n) in of.normals().iter().enumerate() {
@@ -364,7 +366,8 @@ struct Crossing {
     feature: u64,
 }
 
-/// Returns the pair of edges with the greatest separation along their product; `None` if no pair counts.
+/// Returns the pair of edges with the greatest separation along their product; `None` if no pair
+/// counts.
 fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     let mut best: Option<Crossing> = None;
     for e in 0..a.topology().edges.len() {
@@ -401,8 +404,9 @@ fn crossing(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Option<Crossing> {
     best
 }
 
-/// Returns whether a plane perpendicular to a direction can contain a normal between those of an edge's
-/// faces, so that the arc between these crosses it. Results within rounding are verified later.
+/// Returns whether a plane perpendicular to a direction can contain a normal between those of an
+/// edge's faces, so that the arc between these crosses it. Results within rounding are verified
+/// later.
 fn may_cross_normals(of: &Polyhedron, edge: usize, direction: &V) -> bool {
     let Some(faces) = of.topology().edges[edge].faces else {
         return true;
@@ -419,8 +423,8 @@ pub fn is_between_normals(of: &Polyhedron, edge: usize, axis: &V) -> bool {
     let [m, n] = faces.map(|f| of.normals()[f as usize]);
     let [p, q] = of.ends(edge);
     let along = q - p;
-    // The first face is oriented along the edge: the normals rotate about it from that face's to the
-    // other's.
+    // The first face is oriented along the edge: the normals rotate about it from that face's to
+    // the other's.
     m.cross(axis).dot(&along) >= 0.0 && axis.cross(&n).dot(&along) >= 0.0
 }
 
@@ -445,8 +449,8 @@ struct Nearest {
     difference: V,
 }
 
-/// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best distance so
-/// far.
+/// Finds the nearest points, skipping edges whose bounding balls are farther apart than the best
+/// distance so far.
 fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     let mut best = Nearest {
         edges: [0, 0],
@@ -484,7 +488,8 @@ fn nearest(a: &Polyhedron, b: &Polyhedron, apart: &V) -> Nearest {
     best
 }
 
-/// Returns the nearest points of two segments. Ericson, Real-Time Collision Detection (2005), section 5.1.9.
+/// Returns the nearest points of two segments. Ericson, Real-Time Collision Detection (2005),
+/// section 5.1.9.
 fn nearest_on_segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     let (u, v, r) = (p1 - p0, q1 - q0, p0 - q0);
     let (a, e, f) = (u.norm_squared(), v.norm_squared(), v.dot(&r));
@@ -506,8 +511,8 @@ fn nearest_on_segments([p0, p1]: &[V; 2], [q0, q1]: &[V; 2]) -> [V; 2] {
     [p0 + u * s, q0 + v * t]
 }
 
-/// Returns the points of both segments at the two ends of their overlap, for parallel segments; `None` where
-/// the overlap is not longer than `slack` (m).
+/// Returns the points of both segments at the two ends of their overlap, for parallel segments;
+/// `None` where the overlap is not longer than `slack` (m).
 fn side_by_side([p0, p1]: [V; 2], [q0, q1]: [V; 2], slack: f64) -> Option<[[V; 2]; 2]> {
     let u = p1 - p0;
     let place = |x: &V| (x - p0).dot(&u) / u.norm_squared();

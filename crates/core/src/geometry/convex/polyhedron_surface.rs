@@ -1,9 +1,9 @@
 //! Contact of a convex polyhedron and a surface of a first body.
 //!
-//! Corners of the polyhedron touch the surface like small balls. A surface of facets has corners and edges
-//! of its own: sharp ones touch the polyhedron's faces and edges. A point counts if the facets around it lie
-//! behind its normal, so that there are no ghost contacts at seams, and none at a seam within one plane.
-//! Planes and the insides of drums are touched by corners only.
+//! Corners of the polyhedron touch the surface like small balls. A surface of facets has corners
+//! and edges of its own: sharp ones touch the polyhedron's faces and edges. A point counts if the
+//! facets around it lie behind its normal, so that there are no ghost contacts at seams, and none
+//! at a seam within one plane. Planes and the insides of drums are touched by corners only.
 
 use super::polyhedron::Polyhedron;
 use super::polyhedron_pair::is_between_normals;
@@ -18,8 +18,8 @@ type V = Vector3<f64>;
 /// Positions closer than this fraction of the size count as equal.
 const SAME: f64 = 1e-9;
 
-/// Finds the contact points of the polyhedron, centred at `at` in the surface's frame, in the order of their
-/// features.
+/// Finds the contact points of the polyhedron, centred at `at` in the surface's frame, in the order
+/// of their features.
 pub fn contact_points(
     core: &Polyhedron,
     surface: &dyn Surface<Dim3>,
@@ -80,7 +80,8 @@ impl Near<'_> {
             touches.clear();
             surface.touches(&p, reach, &mut touches);
             for touch in touches.iter().filter(|t| t.distance < self.reach) {
-                // Corners of the face opposite the surface; for a segment, which has no faces, both ends.
+                // Corners of the face opposite the surface; for a segment, which has no faces, both
+                // ends.
                 let facing = self.core.facing(&touch.normal);
                 let faces = &self.core.topology().faces;
                 if facing.is_some_and(|f| !faces[f].contains(&(k as u32))) {
@@ -156,7 +157,8 @@ impl Near<'_> {
         }
     }
 
-    /// Finds contacts of sharp edges of the surface with edges of the polyhedron; of all edges of a surface that deforms.
+    /// Finds contacts of sharp edges of the surface with edges of the polyhedron; of all edges of a
+    /// surface that deforms.
     fn edges(&self, ridges: &[Ridge], deforms: bool, out: &mut Vec<ContactPoint<V>>) {
         for ridge in ridges {
             let outward = ridge.outward();

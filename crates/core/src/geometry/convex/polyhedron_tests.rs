@@ -190,8 +190,8 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
         assert!((p.normal - V::z()).norm() < 1e-15 && (p.gap - 0.05).abs() < 1e-14);
         assert!((PI * p.share * p.share - 1.0).abs() < 1e-13);
     }
-    // Of equal width: no corner is outside the other face by more than the slack; names do not depend on the
-    // noise.
+    // Of equal width: no corner is outside the other face by more than the slack; names do not
+    // depend on the noise.
     let names = |points: &[ContactPoint<V>]| points.iter().map(|m| m.feature).collect::<Vec<_>>();
     let known = names(&met(&top, &top, V::new(0.0, 0.0, 2.0), [0.0; 2], &FINE));
     for shift in [0.0, 1e-12, -1e-9, 5e-7] {
@@ -208,7 +208,8 @@ fn stacked_boxes_touch_at_four_points_with_a_quarter_of_the_face_each() {
             assert!(points.iter().all(|m| (m.gap - gap).abs() < 1e-15));
         }
     }
-    // Rotated by 45 degrees the overlap is an octagon: the area of the smaller square without four corners.
+    // Rotated by 45 degrees the overlap is an octagon: the area of the smaller square without four
+    // corners.
     let turned = top.turned(&UnitQuaternion::from_scaled_axis(
         V::z() * (0.5 * FRAC_PI_2),
     ));
@@ -375,8 +376,8 @@ fn a_box_slides_over_the_seams_of_a_flat_mesh() {
 
 #[test]
 fn a_box_over_a_ridge_touches_along_it() {
-    // Flat, then down by 45 degrees: half over the ridge, it touches with two corners and where its long
-    // edges cross the ridge.
+    // Flat, then down by 45 degrees: half over the ridge, it touches with two corners and where its
+    // long edges cross the ridge.
     let ridge = floor(-1.0);
     let block = Polyhedron::cuboid([1.0, 1.3, 0.4]);
     let points = on(&block, &ridge, V::new(0.1, 0.1, 0.21), 0.0);
@@ -403,8 +404,8 @@ fn a_box_over_a_ridge_touches_along_it() {
 fn a_ball_shaped_corner_in_a_valley_touches_both_sides() {
     let valley = floor(1.0);
     let block = Polyhedron::cuboid([1.0, 1.0, 1.0]);
-    // Its lower right edge is near both sides of the bend: 0.05 above the floor, and equally far from the
-    // slope.
+    // Its lower right edge is near both sides of the bend: 0.05 above the floor, and equally far
+    // from the slope.
     let right = 0.5 + 0.05 * (2f64.sqrt() - 1.0);
     let points = on(&block, &valley, V::new(-right, 0.2, 0.55), 0.0);
     let flat = points

@@ -1,28 +1,34 @@
 //! Seams: pieces that lie beside each other, flush, are one surface.
 //!
-//! What lies on them a little too deep, as springs and the drift of rigid contacts have it, overlaps the piece that it has just reached less
-//! across the seam than from above: the pair alone is that of a body and the side of a step. A place of the pair that a third piece covers is
-//! on the surface of none. Where all places of a pair are covered, only faces keep the two apart that have an edge at one of them and do not
-//! lead into what covers it (the seam of a step is open above the piece beside it); which of three pieces lies beside which need not be known.
-//! A ball touches the nearer of two pieces alone.
+//! What lies on them a little too deep, as springs and the drift of rigid contacts have it,
+//! overlaps the piece that it has just reached less across the seam than from above: the pair alone
+//! is that of a body and the side of a step. A place of the pair that a third piece covers is on
+//! the surface of none. Where all places of a pair are covered, only faces keep the two apart that
+//! have an edge at one of them and do not lead into what covers it (the seam of a step is open
+//! above the piece beside it); which of three pieces lies beside which need not be known. A ball
+//! touches the nearer of two pieces alone.
 
 use super::passing::{ALIKE, Pair, PairMotion, faces};
 use super::{ContactPoint, ContactTolerances, Core};
 use crate::geometry::space::{Space, VectorLike};
 
-/// Depth below a face down to which it is one that a pair lies on, as a fraction of the size of the smaller: what springs ordinarily have.
+/// Depth below a face down to which it is one that a pair lies on, as a fraction of the size of the
+/// smaller: what springs ordinarily have.
 pub const DEEPEST: f64 = 0.05;
 
 /// Cosine of the angle from which a face is another one than that of a contact.
 const OTHER: f64 = 0.99;
 
-/// Cosine of the angle up to which a face goes on as that of the piece beside it: free pieces tilt a little under what they carry.
+/// Cosine of the angle up to which a face goes on as that of the piece beside it: free pieces tilt
+/// a little under what they carry.
 const PARALLEL: f64 = 0.9999;
 
-/// How far in front of a covered place a face must be open, in slacks: more than pieces that count as flush stand out.
+/// How far in front of a covered place a face must be open, in slacks: more than pieces that count
+/// as flush stand out.
 const OPEN: f64 = 4.0;
 
-/// A piece beside one of a pair, which also is near the other; places are relative to the antagonist's centre.
+/// A piece beside one of a pair, which also is near the other; places are relative to the
+/// antagonist's centre.
 pub struct Beside<'a, S: Space> {
     /// Its core.
     pub core: &'a S::Core,
@@ -73,8 +79,9 @@ fn apart_at_end<S: Space>(
     left.fold(f64::INFINITY, f64::min) >= -ALIKE * slack
 }
 
-/// Puts the points of an open face in place of those that lie across a seam; `apart` and `roundings` as in [`Core::contact_points`],
-/// `deepest` the depth to which the pair may lie below that face (m), and `beside` the pieces beside the two.
+/// Puts the points of an open face in place of those that lie across a seam; `apart` and
+/// `roundings` as in [`Core::contact_points`], `deepest` the depth to which the pair may lie below
+/// that face (m), and `beside` the pieces beside the two.
 #[expect(
     clippy::too_many_arguments,
     reason = "those of the pair, and what is beside it"
@@ -109,7 +116,8 @@ pub fn leave_seam<'a, S: Space + 'a>(
     if !out.iter().all(covered) {
         return;
     }
-    // Of the places on the side of a piece, the upper ones are at its edge, where the piece beside it goes on.
+    // Of the places on the side of a piece, the upper ones are at its edge, where the piece beside
+    // it goes on.
     let open = |n: &S::Vector| {
         let [low, top] = pair.ends(n, roundings);
         let at_edge = |b: &Beside<S>, m: &ContactPoint<S::Vector>| {
@@ -137,7 +145,8 @@ pub fn leave_seam<'a, S: Space + 'a>(
     }
 }
 
-/// An edge at which two pieces meet: one of the two lies on a third piece, whose face goes on as that of the other one.
+/// An edge at which two pieces meet: one of the two lies on a third piece, whose face goes on as
+/// that of the other one.
 #[derive(Clone, Copy, Debug)]
 pub struct Edge<S: Space> {
     /// The name of the piece that the body lies on.
@@ -150,8 +159,9 @@ pub struct Edge<S: Space> {
     pub height: f64,
 }
 
-/// The edges at which two pieces touch at a point, of heights up to `low`. The pieces beside them are within `near` of the point (m), and their faces
-/// differ in height by no more than `low`. `apart` and `roundings` as in [`Core::contact_points`].
+/// The edges at which two pieces touch at a point, of heights up to `low`. The pieces beside them
+/// are within `near` of the point (m), and their faces differ in height by no more than `low`.
+/// `apart` and `roundings` as in [`Core::contact_points`].
 pub fn edges_at<S: Space>(
     cores: [&S::Core; 2],
     apart: &S::Vector,
@@ -200,8 +210,8 @@ pub fn edges_at<S: Space>(
     out
 }
 
-/// Whether a ball, the candidate, meets a core across a seam: where that is nearest to it, another piece is as near. `name` is that of the
-/// core.
+/// Whether a ball, the candidate, meets a core across a seam: where that is nearest to it, another
+/// piece is as near. `name` is that of the core.
 pub fn ball_is_over_seam<'a, S: Space + 'a>(
     point: &ContactPoint<S::Vector>,
     apart: &S::Vector,

@@ -72,8 +72,8 @@ impl Topology {
         Ok(out)
     }
 
-    /// Returns the faces around a corner: each next face leaves along the edge on which the previous one
-    /// arrives.
+    /// Returns the faces around a corner: each next face leaves along the edge on which the
+    /// previous one arrives.
     fn around(&self, corner: u32) -> Result<Vec<u32>, PolyhedronError> {
         let place = |f: usize| self.faces[f].iter().position(|c| *c == corner);
         let first = (0..self.faces.len()).find(|f| place(*f).is_some());

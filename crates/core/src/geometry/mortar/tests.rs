@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// The weights of a point of a chain on another one; both go along the same line, the points against it.
+/// The weights of a point of a chain on another one; both go along the same line, the points
+/// against it.
 fn on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Vec<(u32, f64)>> {
     star_on_chain(points, k, vertices)?
         .faced(false)
@@ -22,7 +23,8 @@ fn star_on_chain(points: &[f64], k: usize, vertices: &[f64]) -> Option<Star> {
     Some(star)
 }
 
-/// What is worn off by the same depth at all points, on the lengths that these stand for, is the same depth at all vertices, of meshes of any sizes.
+/// What is worn off by the same depth at all points, on the lengths that these stand for, is the
+/// same depth at all vertices, of meshes of any sizes.
 #[test]
 fn an_even_depth_stays_even() {
     let coarse = [0.0, 0.8, 1.6];
@@ -50,7 +52,8 @@ fn an_even_depth_stays_even() {
     }
 }
 
-/// A point beside a surface faces what its facets face of it, up to half of one, and a linear function is met at the point.
+/// A point beside a surface faces what its facets face of it, up to half of one, and a linear
+/// function is met at the point.
 #[test]
 fn a_point_beyond_the_end_faces_what_its_facets_face() {
     let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
@@ -101,7 +104,8 @@ fn a_facet_that_is_turned_away_faces_nothing() {
     assert!(mean.abs() < 1e-14, "{weights:?}");
 }
 
-/// Triangles over a square whose lines have these places, by their corners, all anticlockwise; diagonals alternate.
+/// Triangles over a square whose lines have these places, by their corners, all anticlockwise;
+/// diagonals alternate.
 fn grid(lines: &[f64]) -> (Vec<Along>, Vec<[u32; 3]>) {
     let n = lines.len() as u32;
     let at = lines.iter().flat_map(|y| lines.iter().map(|x| [*x, *y]));
@@ -148,8 +152,8 @@ fn on_grid(
     (star.faced(false).map(|f| f.weights), area)
 }
 
-/// A uniform pressure p on the points, p times the length that each stands for, is a uniform pressure on the vertices; and the mean
-/// place of linear coordinates is that of the point.
+/// A uniform pressure p on the points, p times the length that each stands for, is a uniform
+/// pressure on the vertices; and the mean place of linear coordinates is that of the point.
 #[test]
 fn a_uniform_pressure_stays_uniform() {
     let points = [0.0, 0.3, 0.5, 0.9, 1.3, 1.6];
@@ -213,7 +217,8 @@ fn points_of_matching_meshes_face_one_vertex() {
     }
 }
 
-/// Where the other surface ends below facets of a point, linear functions are still met at the point, and weights stay small.
+/// Where the other surface ends below facets of a point, linear functions are still met at the
+/// point, and weights stay small.
 #[test]
 fn the_end_of_a_surface_below_the_facets_of_a_point() {
     let vertices: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();

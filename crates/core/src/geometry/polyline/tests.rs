@@ -12,7 +12,8 @@ fn chain(points: &[[f64; 2]], period: Option<f64>) -> Polyline {
     Polyline::new(points.iter().map(|p| Vector2::from(*p)).collect(), period).unwrap()
 }
 
-/// Points that lie on vertices of a flat chain to rounding, above it and in it, have one contact each with the normal of the chain.
+/// Points that lie on vertices of a flat chain to rounding, above it and in it, have one contact
+/// each with the normal of the chain.
 #[test]
 fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
     let size = 0.1;
@@ -38,8 +39,9 @@ fn points_at_vertices_of_a_flat_chain_touch_its_faces() {
     }
 }
 
-/// The ends of a surface that deforms are where its loads end and not its solid: a point that its strain carries beyond them by less than half a
-/// segment is above the line of the last segment, or behind it. The corner of a profile has a side.
+/// The ends of a surface that deforms are where its loads end and not its solid: a point that its
+/// strain carries beyond them by less than half a segment is above the line of the last segment, or
+/// behind it. The corner of a profile has a side.
 #[test]
 fn a_surface_goes_on_beyond_its_ends() {
     let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]];

@@ -1,4 +1,5 @@
-//! Fracture energy of a bond under any law: what the law declares, or the work of a slow pull to failure.
+//! Fracture energy of a bond under any law: what the law declares, or the work of a slow pull to
+//! failure.
 
 use super::{Answer, Bench, Motion};
 use crate::laws::{Interface, LawError};
@@ -10,17 +11,20 @@ const FIRST: f64 = 1e-13;
 const LAST: f64 = 1.0;
 /// Speed of a slow pull (m/s).
 const SLOW: f64 = 1e-6;
-/// Ratio of the speeds, and relative difference of the energies, at which a law is taken to depend on the speed.
+/// Ratio of the speeds, and relative difference of the energies, at which a law is taken to depend
+/// on the speed.
 const FASTER: f64 = 1e6;
 const SAME: f64 = 1e-3;
-/// Share of the peak traction below which a bond that does not break counts as broken; the tail of MAC has then released all but a thousandth.
+/// Share of the peak traction below which a bond that does not break counts as broken; the tail of
+/// MAC has then released all but a thousandth.
 const LITTLE: f64 = 1e-5;
 /// Steps of a pull up to just beyond its peak.
 const STEPS: usize = 2000;
 
 impl Interface {
-    /// Fracture energy (J/m^2) that the laws of the interface declare for an opening at an angle (rad) from the normal: the damage
-    /// law's, or without one the cohesion law's. `None` where none is declared, and where both laws damage the bond.
+    /// Fracture energy (J/m^2) that the laws of the interface declare for an opening at an angle
+    /// (rad) from the normal: the damage law's, or without one the cohesion law's. `None` where
+    /// none is declared, and where both laws damage the bond.
     pub fn declared_fracture_energy(&self, angle: f64) -> Option<f64> {
         let cohesion = self.cohesion()?;
         let law = match self.damage() {
@@ -31,15 +35,17 @@ impl Interface {
         law.plugin.fracture_energy(&law.parameters, angle)
     }
 
-    /// Whether laws that act on bonds have internal variables, so that the energy to break one depends on its history.
+    /// Whether laws that act on bonds have internal variables, so that the energy to break one
+    /// depends on its history.
     pub fn bonds_remember(&self) -> bool {
         self.variables_of_bonds().next().is_some()
     }
 }
 
 impl Bench {
-    /// Work (J/m^2) of opening a new bond slowly, at an angle (rad) from the normal, until it breaks: all of it is released by
-    /// damage, or by damping, which is negligible at this speed. `None` where the bond does not break within 1 m.
+    /// Work (J/m^2) of opening a new bond slowly, at an angle (rad) from the normal, until it
+    /// breaks: all of it is released by damage, or by damping, which is negligible at this speed.
+    /// `None` where the bond does not break within 1 m.
     ///
     /// # Errors
     /// The law's error.
@@ -47,7 +53,8 @@ impl Bench {
         self.work_to_break(&Direction::at(angle), SLOW, 0.0)
     }
 
-    /// The same for a bond that opens and turns in proportion: to an opening normal and across (m), with a twist and a bending (rad).
+    /// The same for a bond that opens and turns in proportion: to an opening normal and across (m),
+    /// with a twist and a bending (rad).
     ///
     /// # Errors
     /// The law's error.
@@ -59,7 +66,8 @@ impl Bench {
         self.work_to_break(&Direction { opening, rotation }, SLOW, 0.0)
     }
 
-    /// Whether the energy to break a new bond depends on neither speed nor pressure, by pulls in both modes.
+    /// Whether the energy to break a new bond depends on neither speed nor pressure, by pulls in
+    /// both modes.
     ///
     /// # Errors
     /// The law's error.
@@ -142,8 +150,8 @@ impl Bench {
     }
 }
 
-/// The direction of a pull: opening normal and across, twist and bending, per unit of the way. The way is the opening where that is of
-/// length one.
+/// The direction of a pull: opening normal and across, twist and bending, per unit of the way. The
+/// way is the opening where that is of length one.
 #[derive(Clone, Copy, Debug)]
 struct Direction {
     opening: [f64; 2],
@@ -159,7 +167,8 @@ impl Direction {
         }
     }
 
-    /// Traction along the opening, with the moment along the rotation: work per unit of the way (J/m^2).
+    /// Traction along the opening, with the moment along the rotation: work per unit of the way
+    /// (J/m^2).
     fn along(&self, answer: &Answer) -> f64 {
         let ([n, t], [twist, bend]) = (self.opening, self.rotation);
         answer.traction[0] * n

@@ -1,5 +1,5 @@
-//! Characteristic scales of a bond under any law: stiffness, strength, and the openings at peak traction and
-//! at failure, found by driving new bonds on the bench from 0.1 pm to 1 m.
+//! Characteristic scales of a bond under any law: stiffness, strength, and the openings at peak
+//! traction and at failure, found by driving new bonds on the bench from 0.1 pm to 1 m.
 
 use super::{Bench, Motion};
 use crate::laws::LawError;
@@ -18,10 +18,11 @@ const LITTLE: f64 = 0.01;
 pub struct Mode {
     /// Slope of the traction at the origin (Pa/m).
     pub stiffness: f64,
-    /// Largest traction (Pa) and its opening (m); `None` where traction rises to the end of the search.
+    /// Largest traction (Pa) and its opening (m); `None` where traction rises to the end of the
+    /// search.
     pub peak: Option<(f64, f64)>,
-    /// Opening (m) at which damage reaches 1, or beyond which the traction stays below a hundredth of the
-    /// peak; `None` where neither happens.
+    /// Opening (m) at which damage reaches 1, or beyond which the traction stays below a hundredth
+    /// of the peak; `None` where neither happens.
     pub broken: Option<f64>,
 }
 
@@ -57,7 +58,8 @@ impl Direction {
 type Point = (f64, f64, f64);
 
 impl Bench {
-    /// Returns the scales of a bond that is opened at a given speed (m/s); `None` if the law makes no bonds.
+    /// Returns the scales of a bond that is opened at a given speed (m/s); `None` if the law makes
+    /// no bonds.
     ///
     /// # Errors
     /// The law's error.
@@ -149,9 +151,9 @@ fn broken(points: &[Point]) -> Option<f64> {
     (last.2 >= 1.0 || last.1 < LITTLE * most).then_some(last.0)
 }
 
-/// Returns the gap (m) beyond which a law that attracts without bonds pulls with less than a hundredth of
-/// its maximum, when opened from contact at a given speed (m/s); `None` where there is no attraction, or
-/// where its range is unlimited.
+/// Returns the gap (m) beyond which a law that attracts without bonds pulls with less than a
+/// hundredth of its maximum, when opened from contact at a given speed (m/s); `None` where there is
+/// no attraction, or where its range is unlimited.
 ///
 /// # Errors
 /// The law's error.

@@ -1,4 +1,5 @@
-//! The spring of a compliant contact under any law: its force at an overlap, and the overlap under a force.
+//! The spring of a compliant contact under any law: its force at an overlap, and the overlap under
+//! a force.
 
 use super::{Bench, Motion};
 use crate::laws::{LawError, library::Call};
@@ -51,8 +52,8 @@ impl Bench {
         }))
     }
 
-    /// Returns the overlap (m) under a normal force (N; N/m in 2D), at most a thousand times the reduced radius; `None` if the contact law
-    /// is rigid.
+    /// Returns the overlap (m) under a normal force (N; N/m in 2D), at most a thousand times the
+    /// reduced radius; `None` if the contact law is rigid.
     ///
     /// # Errors
     /// The law's error.

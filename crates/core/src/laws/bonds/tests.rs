@@ -17,9 +17,10 @@ const INFO: StepInfo = StepInfo {
     correction: 0.0,
 };
 
-/// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 over a step at half of the final forces, k A x/2,
-/// while the contact presses, slides and rolls with friction: what the bond stores is k A x^2/2 of each, and the work of friction is
-/// none of its own.
+/// A bond of stiffness k = 2 Pa/m over an area of 1.5 m opens by 1, slides by 2 and turns by 3 over
+/// a step at half of the final forces, k A x/2, while the contact presses, slides and rolls with
+/// friction: what the bond stores is k A x^2/2 of each, and the work of friction is none of its
+/// own.
 #[test]
 fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     let (k, area) = (2.0, 1.5);
@@ -105,7 +106,8 @@ fn friction_of_a_bonded_contact_is_no_work_of_its_bond() {
     assert_eq!(network.contacts[0].moment.x, elastic[2] + rolling);
 }
 
-/// A step that stands for a number of cycles adds that number times the damage of one, up to all of it.
+/// A step that stands for a number of cycles adds that number times the damage of one, up to all of
+/// it.
 #[test]
 fn damage_of_a_step_counts_for_all_its_cycles() {
     for (cycles, damage, broken) in [(1.0, 0.25, 0), (2.0, 0.375, 0), (10.0, 1.0, 1)] {

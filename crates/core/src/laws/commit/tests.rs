@@ -72,8 +72,9 @@ fn commit(law: &Interface, network: &mut Network<Dim2>) {
     evaluator.commit(laws, history, network, &step).unwrap();
 }
 
-/// Where heat is computed a law of transport that counts the time counts each step, also those in which no heat flows; without heat it is not
-/// called. What it conducts is asked for where heat flows.
+/// Where heat is computed a law of transport that counts the time counts each step, also those in
+/// which no heat flows; without heat it is not called. What it conducts is asked for where heat
+/// flows.
 #[test]
 fn a_law_of_transport_remembers_steps_without_a_flow_of_heat() {
     let law = interface([growing()]);

@@ -1,4 +1,5 @@
-//! Damage laws: how a bond weakens. They see what the undamaged bond would carry and store, see `laws::bonds`.
+//! Damage laws: how a bond weakens. They see what the undamaged bond would carry and store, see
+//! `laws::bonds`.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, commit_record, templates};
 use crate::laws::columns::Outputs;

@@ -1,10 +1,12 @@
 //! Kinds of interface laws: a registry with one entry a kind.
 //!
-//! An interface is a list of slots, at most one law of each kind. All that depends on the kind stands in its
+//! An interface is a list of slots, at most one law of each kind. All that depends on the kind
+//! stands in its
 //! [`KindSpec`]: the word that cases, file names and the command line use, the code of the plugin table, the functions a law
-//! must have, at which contacts it acts, what it writes, what it needs of the other slots, what the host does with it at the
-//! end of a step, how it is certified, and the text that `fretwork law new` begins with. A further kind is one such
-//! entry, here or in another crate by [`Kind::register`].
+//! must have, at which contacts it acts, what it writes, what it needs of the other slots, what the
+//! host does with it at the end of a step, how it is certified, and the text that `fretwork law
+//! new` begins with. A further kind is one such entry, here or in another crate by
+//! [`Kind::register`].
 
 pub mod cohesion;
 pub mod contact;
@@ -24,7 +26,8 @@ use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::sync::{PoisonError, RwLock};
 
-/// A kind of interface law. Kinds are ordered by their codes; the laws of an interface are evaluated in this order.
+/// A kind of interface law. Kinds are ordered by their codes; the laws of an interface are
+/// evaluated in this order.
 #[derive(Clone, Copy)]
 pub struct Kind(&'static KindSpec);
 
@@ -44,8 +47,9 @@ pub struct KindSpec {
     pub outputs: for<'a> fn(&'a mut Outputs, Call) -> Vec<Output<'a>>,
     /// What it needs of the other slots of its interface.
     pub fits: fn(&Interface) -> Result<(), LawError>,
-    /// What the host does at the end of a step with the answers of a law of this kind that acts on contacts, not on bonds. Laws without a
-    /// `prepare` are given slip and friction work beside the state of the contacts; the others are called only if they have internal variables.
+    /// What the host does at the end of a step with the answers of a law of this kind that acts on
+    /// contacts, not on bonds. Laws without a `prepare` are given slip and friction work beside the
+    /// state of the contacts; the others are called only if they have internal variables.
     pub commit: CommitHook,
     /// How laws of this kind are certified.
     pub certificate: CertificateSpec,
@@ -132,8 +136,9 @@ macro_rules! commit_hook {
 /// How a law is certified.
 #[derive(Clone, Copy, Debug)]
 pub struct CertificateSpec {
-    /// Laws that stand beside it, by kind and name; the certificate is made with each of these sets. Where a set has no
-    /// contact law, and the law under test is none, a frictionless one is added.
+    /// Laws that stand beside it, by kind and name; the certificate is made with each of these
+    /// sets. Where a set has no contact law, and the law under test is none, a frictionless one is
+    /// added.
     pub partners: &'static [&'static [(Kind, &'static str)]],
     /// What is checked.
     pub checks: CheckSet,
@@ -144,15 +149,19 @@ pub struct CertificateSpec {
 pub enum CheckSet {
     /// Signs and objectivity of laws of contacts.
     Contact,
-    /// Work, damage and convergence of bonds, where the laws make bonds; else as [`CheckSet::Contact`].
+    /// Work, damage and convergence of bonds, where the laws make bonds; else as
+    /// [`CheckSet::Contact`].
     Bond,
-    /// As [`CheckSet::Contact`], and that the volume removed does not depend on the number of steps.
+    /// As [`CheckSet::Contact`], and that the volume removed does not depend on the number of
+    /// steps.
     Removal,
-    /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap, damage and temperature.
+    /// Conductances that are not negative, symmetric in the bodies, and continuous in force, gap,
+    /// damage and temperature.
     Transport,
 }
 
-/// What `fretwork law new` writes, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and `@VERSION@` are filled in.
+/// What `fretwork law new` writes, by language. `@NAME@`, `@TYPE@`, `@KIND@`, `@KINDUP@` and
+/// `@VERSION@` are filled in.
 #[derive(Clone, Copy, Debug)]
 pub struct Templates {
     /// Rust, with the crate `fretwork-law`.
@@ -209,8 +218,8 @@ pub fn no_outputs(_: &mut Outputs, _: Call) -> Vec<Output<'_>> {
     Vec::new()
 }
 
-/// For laws of which the host needs nothing but their new internal variables, which are stored: those whose answers it takes at the start
-/// of a step, and those that only watch contacts.
+/// For laws of which the host needs nothing but their new internal variables, which are stored:
+/// those whose answers it takes at the start of a step, and those that only watch contacts.
 ///
 /// # Errors
 /// Never.
@@ -243,12 +252,12 @@ impl Kind {
         Self::TRANSPORT,
     ];
 
-    /// Adds a kind, for the life of the program: from here on its word is one of the case's slots, and plugins may have
-    /// its code. A kind that is registered already is returned as it is.
+    /// Adds a kind, for the life of the program: from here on its word is one of the case's slots,
+    /// and plugins may have its code. A kind that is registered already is returned as it is.
     ///
     /// # Errors
-    /// A word of other letters than a-z, a word that another kind has, a code below those of other kinds or that another has, or
-    /// a domain of bonds.
+    /// A word of other letters than a-z, a word that another kind has, a code below those of other
+    /// kinds or that another has, or a domain of bonds.
     pub fn register(spec: &'static KindSpec) -> Result<Self, LawError> {
         let refuse = |reason: String| Err(LawError::Kind { reason });
         if spec.word.is_empty() || !spec.word.chars().all(|c| c.is_ascii_lowercase()) {

@@ -1,4 +1,5 @@
-//! Wear laws: the volume that a contact loses in a step, from slip, force, friction work and broken bonds.
+//! Wear laws: the volume that a contact loses in a step, from slip, force, friction work and broken
+//! bonds.
 
 use super::{CertificateSpec, CheckSet, Domain, Kind, KindSpec, Output, fits_always, templates};
 use crate::contact::Loss;

@@ -50,7 +50,8 @@ fn circuit(s: &Simulation<Dim2>) -> Circuit<Dim2> {
     Circuit::new(spec(), s)
 }
 
-/// Has the account see a step in which bonds formed and broke, these with so much work of opening and sliding and fracture energy (J/m).
+/// Has the account see a step in which bonds formed and broke, these with so much work of opening
+/// and sliding and fracture energy (J/m).
 fn step(
     circuit: &mut Circuit<Dim2>,
     s: &mut Simulation<Dim2>,
@@ -83,8 +84,8 @@ fn step(
     circuit.update(s);
 }
 
-/// Of the bonds to other bodies: the share of sliding in their work, their energy and number. Work that a bond gave back does not count, nor
-/// does one of two bonds inside the debris.
+/// Of the bonds to other bodies: the share of sliding in their work, their energy and number. Work
+/// that a bond gave back does not count, nor does one of two bonds inside the debris.
 #[test]
 fn debris_has_the_work_of_the_bonds_that_held_it() {
     let mut s = scene();
@@ -125,8 +126,8 @@ fn debris_of_one_mode() {
     }
 }
 
-/// A grain that was bonded again and breaks away again costs the new bond only, and stays bonded between: what was booked is not booked
-/// again.
+/// A grain that was bonded again and breaks away again costs the new bond only, and stays bonded
+/// between: what was booked is not booked again.
 #[test]
 fn bonds_of_earlier_debris_do_not_count_again() {
     let mut s = scene();
@@ -167,7 +168,8 @@ fn a_grain_that_is_tied_anew_forgets_what_broke_before() {
     );
 }
 
-/// Bonds of interfaces that are not the circuit's, and of first bodies that are not its bases, tie nothing.
+/// Bonds of interfaces that are not the circuit's, and of first bodies that are not its bases, tie
+/// nothing.
 #[test]
 fn other_bonds_do_not_tie() {
     let mut s = scene();
@@ -190,8 +192,8 @@ fn other_bonds_do_not_tie() {
     assert_eq!(circuit.place(1), Some(Place::Contact));
 }
 
-/// A zone of x from 0.5 to 1.5 m, which holds the first grain at first: after a time there the grain is lost, not before; one that left and
-/// came back begins anew.
+/// A zone of x from 0.5 to 1.5 m, which holds the first grain at first: after a time there the
+/// grain is lost, not before; one that left and came back begins anew.
 #[test]
 fn a_grain_is_lost_after_its_time_in_the_zone() {
     let mut s = scene();
@@ -234,8 +236,8 @@ fn a_grain_is_lost_after_its_time_in_the_zone() {
     assert_eq!(flows.wear.mass, mass);
 }
 
-/// An account begins at its time, where a bond has to tie a grain, is brought up to date every so many steps and at the end, and goes on from its
-/// bytes.
+/// An account begins at its time, where a bond has to tie a grain, is brought up to date every so
+/// many steps and at the end, and goes on from its bytes.
 #[test]
 fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     let intervals = Intervals {
@@ -281,7 +283,8 @@ fn an_account_is_kept_between_steps_and_goes_on_from_its_bytes() {
     assert!(new().restore(&bytes[..1]).is_err());
 }
 
-/// A zone from 0.5 to 1.5 m, in the frame of its carrier, holds what is in it or a period away; along a period without borders it holds all.
+/// A zone from 0.5 to 1.5 m, in the frame of its carrier, holds what is in it or a period away;
+/// along a period without borders it holds all.
 #[test]
 fn a_zone_holds_images_and_follows_its_carrier() {
     let mut s = scene();

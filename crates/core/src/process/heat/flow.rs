@@ -1,4 +1,5 @@
-//! The heat of a step: put in by dissipation, current and the surroundings, it flows through contacts and bodies.
+//! The heat of a step: put in by dissipation, current and the surroundings, it flows through
+//! contacts and bodies.
 
 use super::has_begun;
 use crate::contact::{ContactHeat, HeatSide};
@@ -119,7 +120,8 @@ fn conduct_pending(
         }
         for (a, one) in thermal.terms(sides[0]) {
             for (b, other) in thermal.terms(sides[1]) {
-                // Each pair by itself, so that no conductance is negative; rounding may make a shape function so.
+                // Each pair by itself, so that no conductance is negative; rounding may make a
+                // shape function so.
                 let weight = (one * other).max(0.0);
                 graph.edges.push(Edge {
                     nodes: [a as u32, b as u32],

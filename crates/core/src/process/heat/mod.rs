@@ -1,6 +1,7 @@
 //! Heat and current in the step: laws see the temperatures at its start, and at its end heat flows.
 //!
-//! Temperatures and the account of heat are in [`crate::step::State::heat`], so that a checkpoint holds them.
+//! Temperatures and the account of heat are in [`crate::step::State::heat`], so that a checkpoint
+//! holds them.
 
 mod flow;
 mod temperatures;

@@ -12,7 +12,8 @@ use std::sync::Arc;
 /// About what it takes to find the temperatures of a contact (ns).
 const SEES: f64 = 20.0;
 
-/// Where the heat of a contact enters one of its bodies, and the temperature there (K), without meaning where it is insulated.
+/// Where the heat of a contact enters one of its bodies, and the temperature there (K), without
+/// meaning where it is insulated.
 #[derive(Clone, Copy, Default)]
 struct End {
     side: HeatSide,
@@ -25,7 +26,8 @@ impl End {
     }
 }
 
-/// The nodes at which the heat of a contact enters a body that is a mesh of which the nodes begin at `first`.
+/// The nodes at which the heat of a contact enters a body that is a mesh of which the nodes begin
+/// at `first`.
 fn mesh_side<S: Space>(
     s: &Simulation<S>,
     first: u32,
@@ -35,7 +37,8 @@ fn mesh_side<S: Space>(
     let Some(carrier) = s.state.bodies.carrier(contact.bodies[side] as usize) else {
         return HeatSide::Insulated;
     };
-    // The nearest place of the facet, whose shape functions are not negative; weights of a mean place may be.
+    // The nearest place of the facet, whose shape functions are not negative; weights of a mean
+    // place may be.
     let systems = &s.state.systems;
     let nodes = systems.contact_nodes(carrier, &contact.arms[side]);
     let terms = nodes.terms().map(|(node, weight)| (first + node, weight));
@@ -146,8 +149,9 @@ pub(super) fn gather_temperatures<S: Space>(heat: &Heat, s: &mut Simulation<S>) 
     s.state.network.thermal = Some(thermal);
 }
 
-/// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the start of this one, both of thermal time; 0 where
-/// it does not slide, or a bond holds it, whose force is not friction.
+/// Flash temperature of a contact (K), by its force in the last step and its sliding speed at the
+/// start of this one, both of thermal time; 0 where it does not slide, or a bond holds it, whose
+/// force is not friction.
 fn flash_rise<S: Space>(s: &Simulation<S>, heat: &Heat, contact: &Contact<S>, h: f64) -> f64 {
     let bonded = s.state.network.bond(contact).is_some_and(Bond::intact);
     if !contact.slides || bonded {

@@ -49,8 +49,8 @@ impl Test {
         Self { s, jumps }
     }
 
-    /// Computes a cycle in which the number of each cycle that it stands for wears so much (m^2) in a form of its own and takes so much work
-    /// (J/m); returns how many it stood for.
+    /// Computes a cycle in which the number of each cycle that it stands for wears so much (m^2) in
+    /// a form of its own and takes so much work (J/m); returns how many it stood for.
     fn cycle(&mut self, wears: impl Fn(u32) -> f64, work: f64) -> u32 {
         let (s, jumps) = (&mut self.s, &mut self.jumps);
         let stands = s.state.network.cycle_multiplier as u32;
@@ -73,8 +73,9 @@ impl Test {
     }
 }
 
-/// Wear that grows by the same amount from cycle to cycle is summed exactly by a parabola, and by the straight line of the first jump, if the
-/// mean of control cycles stands for their middle: jumps have no error, and as many control cycles as are asked for follow each.
+/// Wear that grows by the same amount from cycle to cycle is summed exactly by a parabola, and by
+/// the straight line of the first jump, if the mean of control cycles stands for their middle:
+/// jumps have no error, and as many control cycles as are asked for follow each.
 #[test]
 fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
     for control in 1..=4 {
@@ -93,7 +94,8 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
             assert!(jump.error < 1e-12, "{control} control cycles: {jump:?}");
         }
         assert!(summary.error_estimate.unwrap() < 1e-11);
-        // Of the first one the length is that of the cycles before it; later ones are twice as long up to the limit.
+        // Of the first one the length is that of the cycles before it; later ones are twice as long
+        // up to the limit.
         let jumps: Vec<u32> = summary.jumps.iter().map(|j| j.cycles).collect();
         assert_eq!(jumps[..4], [5, 10, 20, 40]);
         assert!(stood[..5].iter().all(|n| *n == 1));
@@ -107,8 +109,8 @@ fn growth_in_a_straight_line_has_no_error_with_any_number_of_control_cycles() {
     }
 }
 
-/// After three cycles a fourth stands for three: half of it is 1.5 cycles, of which one is jumped over. At its end all six are done, of which
-/// two were.
+/// After three cycles a fourth stands for three: half of it is 1.5 cycles, of which one is jumped
+/// over. At its end all six are done, of which two were.
 #[test]
 fn cycles_are_counted_within_one_that_stands_for_several() {
     let mut test = Test::new(JumpSpec {
@@ -131,7 +133,8 @@ fn cycles_are_counted_within_one_that_stands_for_several() {
     assert_eq!(at(&test, 4.25), (6.25, 2.0));
 }
 
-/// The work of the cycles after a jump is compared with that of the one before it: 3 J/m, then twice 4 and 5, twice again.
+/// The work of the cycles after a jump is compared with that of the one before it: 3 J/m, then
+/// twice 4 and 5, twice again.
 #[test]
 fn the_change_of_work_is_that_of_the_mean_control_cycle() {
     let mut test = Test::new(JumpSpec {
@@ -155,8 +158,8 @@ fn the_change_of_work_is_that_of_the_mean_control_cycle() {
     );
 }
 
-/// A jump of n cycles of constant wear w in which the laws wore a share too much is off by that share of n w, and so is the whole run at
-/// least.
+/// A jump of n cycles of constant wear w in which the laws wore a share too much is off by that
+/// share of n w, and so is the whole run at least.
 #[test]
 fn what_a_jump_wears_too_much_is_its_error() {
     let mut test = Test::new(JumpSpec {

@@ -25,8 +25,9 @@ fn system() -> NodalSystem<Dim3> {
     NodalSystem::new(nodes, (0..NODES).map(free).collect(), &rows)
 }
 
-/// Impulses on points of a large system, of which new ones are loaded between two tests and after one: the velocities of loaded points
-/// are at all times those of the whole product, and those of all points once they are asked for.
+/// Impulses on points of a large system, of which new ones are loaded between two tests and after
+/// one: the velocities of loaded points are at all times those of the whole product, and those of
+/// all points once they are asked for.
 fn compare(terms: &[Vec<(u32, f64)>], by_nodes: bool) {
     let mut system = system();
     let points: Vec<u32> = terms.iter().map(|terms| system.add_point(terms)).collect();
@@ -105,7 +106,8 @@ fn loaded_points_move_as_with_the_whole_compliance() {
     compare(&points, false);
 }
 
-/// More points than nodes: the nodes are followed, so that memory does not grow with the square of the points.
+/// More points than nodes: the nodes are followed, so that memory does not grow with the square of
+/// the points.
 #[test]
 fn nodes_of_many_points_move_as_with_the_whole_compliance() {
     let points: Vec<_> = (0..400).map(|k| sum_of_nodes(k, 1)).collect();

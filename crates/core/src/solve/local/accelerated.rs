@@ -1,8 +1,9 @@
-//! Accelerated projected gradient with restarts (Nesterov 1983; O'Donoghue and Candes 2015; for cone
-//! complementarity Mazhar, Heyn, Negrut and Tasora 2015), with the De Saxce term evaluated at the iterate.
+//! Accelerated projected gradient with restarts (Nesterov 1983; O'Donoghue and Candes 2015; for
+//! cone complementarity Mazhar, Heyn, Negrut and Tasora 2015), with the De Saxce term evaluated at
+//! the iterate.
 //!
-//! Each contact has its own step length, theta / lambda_max(W_cc), a scalar so that the projection onto the
-//! cone stays exact; theta is reduced until the quadratic model bounds the energy.
+//! Each contact has its own step length, theta / lambda_max(W_cc), a scalar so that the projection
+//! onto the cone stays exact; theta is reduced until the quadratic model bounds the energy.
 
 use super::form::{Form, largest};
 use super::law::slip;

@@ -11,17 +11,19 @@ use pulp::{Arch, Simd, WithSimd};
 pub struct Anderson {
     /// Maximum number of stored iterations, after which the memory is restarted.
     pub memory: usize,
-    /// Iterations without a reduction of the smallest error by a fifth after which to end; none to go on to the end of the budget.
+    /// Iterations without a reduction of the smallest error by a fifth after which to end; none to
+    /// go on to the end of the budget.
     pub patience: Option<usize>,
 }
 
-/// Plain iterations before the acceleration: for problems that converge in a few, its cost would exceed its
-/// benefit.
+/// Plain iterations before the acceleration: for problems that converge in a few, its cost would
+/// exceed its benefit.
 const PLAIN: usize = 8;
 /// Over-relaxation of the plain iterations.
 const RELAXED: f64 = 1.3;
-/// Returns the number of additional windows of [`WINDOW`] iterations to wait for if they would converge at
-/// the last rate: in 2D an extrapolation costs as much as an iteration, in 3D less than half.
+/// Returns the number of additional windows of [`WINDOW`] iterations to wait for if they would
+/// converge at the last rate: in 2D an extrapolation costs as much as an iteration, in 3D less than
+/// half.
 const fn soon<const D: usize>() -> i32 {
     if D == 2 { 3 } else { 1 }
 }
@@ -31,8 +33,8 @@ const WINDOW: usize = 4;
 /// Share of an error below which a later one counts as progress.
 const PROGRESS: f64 = 0.8;
 
-/// Recovery from stagnation: where the error does not fall for long, extrapolation cycles between contact
-/// statuses, and plain iterations lead out.
+/// Recovery from stagnation: where the error does not fall for long, extrapolation cycles between
+/// contact statuses, and plain iterations lead out.
 struct Rest {
     error: f64,
     at: usize,
@@ -83,8 +85,8 @@ impl Default for Anderson {
     }
 }
 
-/// Sets p and the next point to the projection of the extrapolated point, for the vector instructions of
-/// this machine.
+/// Sets p and the next point to the projection of the extrapolated point, for the vector
+/// instructions of this machine.
 struct Adopt<'a, const D: usize>(&'a Form<'a, D>, &'a mut [f64], &'a mut [[f64; D]]);
 
 impl<const D: usize> WithSimd for Adopt<'_, D> {

@@ -1,10 +1,10 @@
 //! Automatic choice of the method for a problem given as a matrix.
 //!
-//! Gauss-Seidel with Anderson acceleration comes first and solves most problems. When it has cost about as
-//! much as some factorisations, or its error has not fallen for the cost of a few, Newton continues from its
-//! result; then long runs of Gauss-Seidel alternate with Newton, and after the first of them the interior
-//! point tries from its own start. The order and the lengths follow from problem sizes and errors alone, so
-//! that a problem takes the same path on any machine.
+//! Gauss-Seidel with Anderson acceleration comes first and solves most problems. When it has cost
+//! about as much as some factorisations, or its error has not fallen for the cost of a few, Newton
+//! continues from its result; then long runs of Gauss-Seidel alternate with Newton, and after the
+//! first of them the interior point tries from its own start. The order and the lengths follow from
+//! problem sizes and errors alone, so that a problem takes the same path on any machine.
 
 use super::anderson::Anderson;
 use super::form::Form;
@@ -21,8 +21,9 @@ pub struct Auto {
 
 /// Returns how many iterations cost as much as one factorisation of W.
 ///
-/// Fitted to the 41 local problems of the table in the docs: an iteration takes 1 ns per entry and 60 ns per
-/// contact, a factorisation 0.9 ns times entries^1.5 (sparse; about the same for small dense ones).
+/// Fitted to the 41 local problems of the table in the docs: an iteration takes 1 ns per entry and
+/// 60 ns per contact, a factorisation 0.9 ns times entries^1.5 (sparse; about the same for small
+/// dense ones).
 pub fn sweeps_per_factorisation(entries: f64, contacts: f64) -> f64 {
     0.9 * entries.powf(1.5) / (entries + 60.0 * contacts)
 }
@@ -95,7 +96,8 @@ impl<const D: usize> Solver<D> for Auto {
         }
         best.keep(state);
         if f64::from(left) > per {
-            // The error stalled, but Newton did not help: the rest of the sweeps, if they cost more than a step of Newton, and Newton from there.
+            // The error stalled, but Newton did not help: the rest of the sweeps, if they cost more
+            // than a step of Newton, and Newton from there.
             let rest = Anderson::default();
             if self.run("anderson", &rest, form, state, budget, left) {
                 return;
@@ -107,8 +109,8 @@ impl<const D: usize> Solver<D> for Auto {
             best.keep(state);
         }
         best.restore(form, state);
-        // The remaining problems have many solutions and local minima of the merit function: every round
-        // uses a different start.
+        // The remaining problems have many solutions and local minima of the merit function: every
+        // round uses a different start.
         let base = (worth * per).clamp(1000.0, 10_000.0) as u32;
         let mut round = 0u32;
         while !budget.ends(state) {
@@ -139,7 +141,8 @@ impl<const D: usize> Solver<D> for Auto {
                 return;
             }
             best.keep(state);
-            // From its own start, which rarely helps where Newton failed, and costs more than a round.
+            // From its own start, which rarely helps where Newton failed, and costs more than a
+            // round.
             if round == 0 && Interior::serves(form.laws).is_ok() {
                 if self.run("interior", &Interior, form, state, budget, INTERIOR) {
                     return;

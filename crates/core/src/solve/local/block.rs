@@ -52,7 +52,8 @@ impl<const D: usize> WithSimd for Product<'_, D> {
 }
 
 impl<const D: usize> BlockMatrix<D> {
-    /// Creates a matrix with these diagonal blocks; [`Self::push`] and [`Self::end_row`] add the others.
+    /// Creates a matrix with these diagonal blocks; [`Self::push`] and [`Self::end_row`] add the
+    /// others.
     pub fn new(diagonal: Vec<Block<D>>) -> Self {
         Self {
             diagonal,
@@ -75,7 +76,8 @@ impl<const D: usize> BlockMatrix<D> {
         self.starts.push(self.columns.len() as u32);
     }
 
-    /// Converts a matrix whose numbers of rows and columns are divisible by D; zero blocks are left out.
+    /// Converts a matrix whose numbers of rows and columns are divisible by D; zero blocks are left
+    /// out.
     pub fn from_csr(w: &Csr) -> Self {
         let count = w.rows / D;
         let mut out = Self::new(vec![[[0.0; D]; D]; count]);

@@ -1,4 +1,5 @@
-//! The methods on a block matrix, compiled once for each dimension, so that dependent crates do not compile them again.
+//! The methods on a block matrix, compiled once for each dimension, so that dependent crates do not
+//! compile them again.
 
 use super::block::BlockMatrix;
 use super::form::Form;
@@ -9,7 +10,8 @@ use crate::solve::error::Norm;
 
 /// Dimensions for which this crate compiles the methods; implemented for [`Method`].
 pub trait Solves<const D: usize> {
-    /// Solves from p = 0 the problem of matrix `w`, free velocities `q` and one law per contact, with errors in `norm`.
+    /// Solves from p = 0 the problem of matrix `w`, free velocities `q` and one law per contact,
+    /// with errors in `norm`.
     fn solve_blocks(
         self,
         w: &BlockMatrix<D>,

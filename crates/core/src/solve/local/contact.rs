@@ -1,7 +1,8 @@
-//! Exact solution of one contact with its own block of W: p with u = W_cc p + f under Coulomb's law.
+//! Exact solution of one contact with its own block of W: p with u = W_cc p + f under Coulomb's
+//! law.
 //!
-//! In 2D the law has four branches, each a linear equation. In 3D slip is the root of a scalar equation, see
-//! [`crate::solve::slide`].
+//! In 2D the law has four branches, each a linear equation. In 3D slip is the root of a scalar
+//! equation, see [`crate::solve::slide`].
 
 use super::block::{Block, times};
 use super::form::largest;
@@ -77,8 +78,8 @@ impl<const D: usize> Local<D> {
         }
     }
 
-    /// Solves in 2D: all four branches are computed and one is selected, because branch prediction would
-    /// fail.
+    /// Solves in 2D: all four branches are computed and one is selected, because branch prediction
+    /// would fail.
     #[inline(always)]
     fn solve_plane(&self, f: &[f64; D]) -> [f64; D] {
         let stick = times(&self.inverse, f);
@@ -121,9 +122,9 @@ impl<const D: usize> Local<D> {
         p
     }
 
-    /// Solves the other laws by projected iterations with the block's own step length; none of them couples
-    /// its directions strongly. `start` is the initial value, `all` holds the impulses on which bounds may
-    /// depend.
+    /// Solves the other laws by projected iterations with the block's own step length; none of them
+    /// couples its directions strongly. `start` is the initial value, `all` holds the impulses on
+    /// which bounds may depend.
     pub fn solve_rare(
         &self,
         f: &[f64; D],
@@ -164,8 +165,8 @@ impl<const D: usize> Local<D> {
         p
     }
 
-    /// Returns the solution without normal impulse and without slip; `None` if the tangential block is
-    /// singular.
+    /// Returns the solution without normal impulse and without slip; `None` if the tangential block
+    /// is singular.
     fn slack(&self, f: &[f64; D]) -> Option<[f64; D]> {
         let (w, mut p) = (&self.w, [0.0; D]);
         if D == 2 {
@@ -258,7 +259,8 @@ mod tests {
         random::<3>();
     }
 
-    /// A contact that sticks by its cohesion alone, of a block whose directions have other compliances: iterations go on until u = 0.
+    /// A contact that sticks by its cohesion alone, of a block whose directions have other
+    /// compliances: iterations go on until u = 0.
     #[test]
     fn rare_laws_are_iterated_to_the_end() {
         let w = [[1.0, 0.0], [0.0, 0.5]];

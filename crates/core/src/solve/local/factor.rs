@@ -1,7 +1,7 @@
 //! Factors of a square sparse matrix, one per connected component.
 //!
-//! The mass matrix of rigid bodies decomposes into blocks of 1 to 6 rows, which are factorised densely with
-//! full pivoting; larger components use faer's sparse LU.
+//! The mass matrix of rigid bodies decomposes into blocks of 1 to 6 rows, which are factorised
+//! densely with full pivoting; larger components use faer's sparse LU.
 
 use super::Csr;
 use faer::prelude::Solve;
@@ -41,8 +41,8 @@ impl std::fmt::Debug for Factors {
 struct Component {
     /// Its rows in K, increasing.
     rows: Vec<usize>,
-    /// Scaling by powers of two: rows and columns are scaled to about one before the LU, so that a tiny
-    /// pivot indicates a singular matrix and not a choice of units.
+    /// Scaling by powers of two: rows and columns are scaled to about one before the LU, so that a
+    /// tiny pivot indicates a singular matrix and not a choice of units.
     row_scale: Vec<f64>,
     column_scale: Vec<f64>,
     lu: Lu,
@@ -94,13 +94,14 @@ impl Factors {
         squares.fold(0, usize::saturating_add)
     }
 
-    /// Returns B^T K^-1 B, a square matrix with one row per column of B. An entry is left out where every
-    /// component contributes exactly zero.
+    /// Returns B^T K^-1 B, a square matrix with one row per column of B. An entry is left out where
+    /// every component contributes exactly zero.
     pub fn sandwich(&self, b: &Csr) -> Csr {
         let mut entries = Vec::new();
         for component in &self.components {
             let columns = component.columns(b);
-            // Processes a few columns at a time, so that memory stays close to that of B and the result.
+            // Processes a few columns at a time, so that memory stays close to that of B and the
+            // result.
             for part in columns.chunks(DENSE) {
                 let mut x = DMatrix::zeros(component.rows.len(), part.len());
                 for (i, row) in component.rows.iter().enumerate() {
@@ -161,9 +162,9 @@ impl Component {
             let a =
                 SparseColMat::try_new_from_triplets(size, size, &triplets).map_err(|_| singular)?;
             let lu = a.sp_lu().map_err(|_| singular)?;
-            // faer reports only structural singularity. Numerical singularity shows as a huge solution or a
-            // large residual. The fixed right-hand side has no reason to lie in the range of a singular
-            // matrix.
+            // faer reports only structural singularity. Numerical singularity shows as a huge
+            // solution or a large residual. The fixed right-hand side has no reason to lie in the
+            // range of a singular matrix.
             let b: Vec<f64> = (0..size)
                 .map(|i| ((i as u64 * 2_654_435_761) % 1009) as f64 / 1009.0 - 0.4)
                 .collect();
@@ -261,8 +262,8 @@ impl Component {
     }
 }
 
-/// Returns, for each row or column, the power of two that scales its largest entry to between 1 and 2; 1 for
-/// an empty one.
+/// Returns, for each row or column, the power of two that scales its largest entry to between 1 and
+/// 2; 1 for an empty one.
 fn scales(count: usize, entries: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
     let mut largest = vec![0.0f64; count];
     for (line, x) in entries {
@@ -281,8 +282,8 @@ fn scales(count: usize, entries: impl Iterator<Item = (usize, f64)>) -> Vec<f64>
         .collect()
 }
 
-/// Returns the connected components: lists of rows, increasing, that are linked by entries on either side of
-/// the diagonal.
+/// Returns the connected components: lists of rows, increasing, that are linked by entries on
+/// either side of the diagonal.
 fn linked(k: &Csr) -> Vec<Vec<usize>> {
     let mut parent: Vec<usize> = (0..k.rows).collect();
     fn root(parent: &mut [usize], mut i: usize) -> usize {

@@ -1,5 +1,5 @@
-//! The problem as a solver sees it: the operator W, the free velocities q, and the law of each block of
-//! unknowns.
+//! The problem as a solver sees it: the operator W, the free velocities q, and the law of each
+//! block of unknowns.
 
 use super::block::{Block, BlockMatrix};
 use super::factored;
@@ -20,10 +20,11 @@ pub trait Delassus<const D: usize> {
     fn diagonal(&self, c: usize) -> &Block<D>;
     /// Computes u = W p + q.
     fn velocity(&self, p: &[[f64; D]], q: &[[f64; D]], u: &mut [[f64; D]]);
-    /// W as a matrix, formed where needed; none of an operator that gives products alone. Methods that need one say so
-    /// ([`crate::solve::Operator`]) and leave a problem without one as it is.
+    /// W as a matrix, formed where needed; none of an operator that gives products alone. Methods
+    /// that need one say so ([`crate::solve::Operator`]) and leave a problem without one as it is.
     fn matrix(&self) -> Option<&BlockMatrix<D>>;
-    /// The factors of N W N + S; none where it is singular to rounding, or where W cannot be had as a matrix.
+    /// The factors of N W N + S; none where it is singular to rounding, or where W cannot be had as
+    /// a matrix.
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
         factored::factor(self.matrix()?, shift)
     }
@@ -42,8 +43,8 @@ pub struct Shift<'a, const D: usize> {
 
 /// Factors of N W N + S.
 pub trait Shifted<const D: usize> {
-    /// Computes x = (N W N + S)^-1 x, with zero in components outside the system; returns whether the result
-    /// is finite.
+    /// Computes x = (N W N + S)^-1 x, with zero in components outside the system; returns whether
+    /// the result is finite.
     fn solve(&self, x: &mut [[f64; D]]) -> bool;
 }
 
@@ -119,8 +120,8 @@ impl<'a, const D: usize> Form<'a, D> {
         self.w.velocity(p, self.q, u);
     }
 
-    /// Returns the parameter rho of the natural map: 1 in the norm `Field`, else 1 / lambda_max(W_cc), with
-    /// an upper bound of lambda_max.
+    /// Returns the parameter rho of the natural map: 1 in the norm `Field`, else 1 /
+    /// lambda_max(W_cc), with an upper bound of lambda_max.
     pub fn rho(&self, c: usize) -> f64 {
         match self.norm {
             Norm::Field => 1.0,
@@ -149,8 +150,8 @@ impl<'a, const D: usize> Form<'a, D> {
             work,
             contacts: self.len(),
         };
-        // The projection of NaN gives 0, and so does division by infinity: neither must pass as a zero
-        // error.
+        // The projection of NaN gives 0, and so does division by infinity: neither must pass as a
+        // zero error.
         finite &= (sums.residual + sums.velocity + sums.impulse + self.free).is_finite();
         Measure {
             error: if finite {
@@ -212,8 +213,8 @@ pub struct Measure {
     pub scale: f64,
 }
 
-/// Returns an upper bound of the largest eigenvalue of a block (largest absolute row sum of the symmetric
-/// part).
+/// Returns an upper bound of the largest eigenvalue of a block (largest absolute row sum of the
+/// symmetric part).
 pub fn largest<const D: usize>(w: &Block<D>) -> f64 {
     let mut most = 0.0f64;
     for i in 0..D {

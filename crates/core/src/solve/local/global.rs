@@ -3,8 +3,8 @@
 
 use super::{Csr, LocalProblem};
 
-/// A global problem: M v = H r + G l + f, G^T v + b = 0, u = H^T v + w, and the law of friction between
-/// u and r. Units are the file's own: velocities or displacements, impulses or forces.
+/// A global problem: M v = H r + G l + f, G^T v + b = 0, u = H^T v + w, and the law of friction
+/// between u and r. Units are the file's own: velocities or displacements, impulses or forces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GlobalProblem {
     /// Components of a contact: 2 or 3.
@@ -67,8 +67,8 @@ impl LocalProblem {
         u
     }
 
-    /// Scales the unit of impulses so that the mean normal diagonal entry of W is 1; returns the factor
-    /// applied to impulses, or 1 where nothing can move.
+    /// Scales the unit of impulses so that the mean normal diagonal entry of W is 1; returns the
+    /// factor applied to impulses, or 1 where nothing can move.
     pub fn normalise(&mut self) -> f64 {
         let diagonal: Vec<f64> = (0..self.mu.len())
             .map(|c| c * self.dimension)

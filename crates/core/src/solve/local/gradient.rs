@@ -1,19 +1,20 @@
-//! Projected gradient methods for the quasi-optimisation problem of Renouf and Alart (Comput. Methods Appl.
-//! Mech. Eng. 194, 2005): p = argmin over C(mu p_n) of p.W p / 2 + q.p, whose friction bounds s = mu p_n are
-//! updated in every iteration (the diagonalised Tresca fixed point).
+//! Projected gradient methods for the quasi-optimisation problem of Renouf and Alart (Comput.
+//! Methods Appl. Mech. Eng. 194, 2005): p = argmin over C(mu p_n) of p.W p / 2 + q.p, whose
+//! friction bounds s = mu p_n are updated in every iteration (the diagonalised Tresca fixed point).
 //!
-//! The predicted point is projected onto C^k; gradient and last direction are projected onto the tangent
-//! cone of C^k at the iterate. [`Kind::Plain`] uses the gradient, [`Kind::Conjugate`] conjugate directions,
-//! and [`Kind::Preconditioned`] conjugate directions in the metric of the diagonal of W.
+//! The predicted point is projected onto C^k; gradient and last direction are projected onto the
+//! tangent cone of C^k at the iterate. [`Kind::Plain`] uses the gradient, [`Kind::Conjugate`]
+//! conjugate directions, and [`Kind::Preconditioned`] conjugate directions in the metric of the
+//! diagonal of W.
 //!
-//! A contact that slips at the end of an iteration is moved to its new friction bound. If it stayed at the
-//! old bound while its normal part grows, it would stick in the next iteration and slip in the one after,
-//! together with its neighbours; conjugacy would be lost, and the method would be no faster than the plain
-//! gradient.
+//! A contact that slips at the end of an iteration is moved to its new friction bound. If it stayed
+//! at the old bound while its normal part grows, it would stick in the next iteration and slip in
+//! the one after, together with its neighbours; conjugacy would be lost, and the method would be no
+//! faster than the plain gradient.
 //!
-//! Projecting the end point of an exact line search can increase the energy p.W p / 2 + q.p at fixed bounds,
-//! and the basic method then cycles. Such a step is undone and replaced by one of the safe length 1 /
-//! lambda_max.
+//! Projecting the end point of an exact line search can increase the energy p.W p / 2 + q.p at
+//! fixed bounds, and the basic method then cycles. Such a step is undone and replaced by one of the
+//! safe length 1 / lambda_max.
 
 use super::form::{Form, dot, largest};
 use super::law::{Law, slip};
@@ -133,7 +134,8 @@ impl Set {
     }
 }
 
-/// Computes the friction bounds from the normal part of the prediction, then projects onto the sets.
+/// Computes the friction bounds from the normal part of the prediction, then projects onto the
+/// sets.
 fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     for c in 0..p.len() {
         let mut own = p[c];
@@ -142,13 +144,14 @@ fn project<const D: usize>(form: &Form<D>, p: &mut [[f64; D]]) {
     }
 }
 
-/// Returns the factor by which the tangential impulse of a contact at its old bound grows with the bound.
+/// Returns the factor by which the tangential impulse of a contact at its old bound grows with the
+/// bound.
 fn growth(at: f64, old: f64, new: f64) -> Option<f64> {
     (old > 0.0 && at >= old * SLIDES).then(|| new / old)
 }
 
-/// Projects a prediction onto the sets it was made for (`fixed`), then sets `p` to the admissible point for
-/// its own bounds: contacts that slip in the first slip in the second.
+/// Projects a prediction onto the sets it was made for (`fixed`), then sets `p` to the admissible
+/// point for its own bounds: contacts that slip in the first slip in the second.
 fn carry<const D: usize>(form: &Form<D>, sets: &[Set], fixed: &mut [[f64; D]], p: &mut [[f64; D]]) {
     fixed.copy_from_slice(p);
     for c in 0..p.len() {
@@ -206,7 +209,8 @@ fn safe_step<const D: usize>(form: &Form<D>, metric: &[[f64; D]]) -> f64 {
     if lambda > 0.0 { 0.9 / lambda } else { 1.0 }
 }
 
-/// A descent: the direction and the step of the current iteration, and what is kept from the last one.
+/// A descent: the direction and the step of the current iteration, and what is kept from the last
+/// one.
 struct Descent<'a, const D: usize> {
     form: &'a Form<'a, D>,
     kind: Kind,
@@ -293,7 +297,8 @@ impl<'a, const D: usize> Descent<'a, D> {
         self.restarts = true;
     }
 
-    /// Moves to the minimum along the direction, projected; returns by how much that raised the energy.
+    /// Moves to the minimum along the direction, projected; returns by how much that raised the
+    /// energy.
     fn step(&mut self, state: &mut State<D>, alpha: f64, energy: f64) -> f64 {
         for (p, d) in state.p.iter_mut().zip(&self.direction) {
             for k in 0..D {

@@ -1,12 +1,13 @@
 //! Interior-point method for the conic problem with the De Saxce correction.
 //!
-//! With r = (mu p_n, p_t) and v = (u_n / mu + |u_t|, u_t) the law reads: r, v in the Lorentz cone, r.v = 0
-//! (De Saxce and Feng 1998). Primal-dual steps in Nesterov-Todd scaling solve it even if W is rank deficient
-//! (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised as well. Mehrotra's
-//! predictor-corrector chooses the centring.
+//! With r = (mu p_n, p_t) and v = (u_n / mu + |u_t|, u_t) the law reads: r, v in the Lorentz cone,
+//! r.v = 0 (De Saxce and Feng 1998). Primal-dual steps in Nesterov-Todd scaling solve it even if W
+//! is rank deficient (Acary, Armand, Nguyen and Shpakovych 2024); here the term |u_t| is linearised
+//! as well. Mehrotra's predictor-corrector chooses the centring.
 //!
-//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the system. A
-//! bond is a block without a cone, u = 0; the normal part of a tension-only bond lies on the half line p_n
+//! Where mu = 0 the cone is the half line: p_t = 0 is known, and the tangents have no rows in the
+//! system. A bond is a block without a cone, u = 0; the normal part of a tension-only bond lies on
+//! the half line p_n
 //! <= 0.
 
 use super::block::Block;
@@ -21,8 +22,8 @@ const SMOOTH: f64 = 0.01;
 /// Iterations without a smaller error before the iterate is moved away from the cone boundaries.
 const STALLED: u32 = 15;
 
-/// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to rounding, long
-/// before the others, and then the step length vanishes or the scaling breaks down.
+/// Moves the iterate away from the cone boundaries: one contact may reach its boundary, to
+/// rounding, long before the others, and then the step length vanishes or the scaling breaks down.
 struct Inwards {
     /// Magnitudes of r and of v.
     magnitudes: [f64; 2],
@@ -59,8 +60,8 @@ pub struct Interior;
 /// Increments of r and of v.
 type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
 
-/// Fraction of the slope of |u_t| that is linearised: it is reduced, or set to zero, where it makes steps
-/// short.
+/// Fraction of the slope of |u_t| that is linearised: it is reduced, or set to zero, where it makes
+/// steps short.
 struct Slope {
     share: f64,
     /// Whether the fraction changes gradually, or only between all and nothing.
@@ -69,9 +70,9 @@ struct Slope {
 }
 
 impl Slope {
-    /// With bonds the full slope fails repeatedly: in the fretting case two steps of three are shorter than
-    /// 1e-2 with all-or-nothing, and the error stays at 2e-4, where the gradual variant reaches 7e-5 in 70
-    /// steps.
+    /// With bonds the full slope fails repeatedly: in the fretting case two steps of three are
+    /// shorter than 1e-2 with all-or-nothing, and the error stays at 2e-4, where the gradual
+    /// variant reaches 7e-5 in 70 steps.
     fn new(gradual: bool) -> Self {
         Self {
             share: 1.0,
@@ -99,12 +100,13 @@ impl Slope {
 /// velocity.
 #[derive(Clone, Copy, Debug)]
 struct Part {
-    /// Components in the cone: all for a contact with friction, one without friction or for a tension-only
-    /// bond.
+    /// Components in the cone: all for a contact with friction, one without friction or for a
+    /// tension-only bond.
     cone: usize,
     /// Components with a row in the system.
     size: usize,
-    /// Factor from the cone's axis to the normal: 1/mu, 1 without friction, -1 for a tension-only bond.
+    /// Factor from the cone's axis to the normal: 1/mu, 1 without friction, -1 for a tension-only
+    /// bond.
     over: f64,
 }
 
@@ -180,7 +182,8 @@ impl Cones {
         self.blocks.len() < self.parts.len() || self.parts.iter().any(|part| part.over < 0.0)
     }
 
-    /// Returns the magnitudes of r and of v in a problem; `None` if nothing can move, or values are out of range.
+    /// Returns the magnitudes of r and of v in a problem; `None` if nothing can move, or values are
+    /// out of range.
     fn magnitudes<const D: usize>(&self, form: &Form<D>) -> Option<[f64; 2]> {
         let measured: Vec<usize> = if self.blocks.is_empty() {
             (0..form.len()).collect()
@@ -253,7 +256,8 @@ struct Linearised<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Linearised<'a, D> {
-    /// Linearises at an iterate with the velocities `u` of its impulses; `share` is the fraction of the slope of
+    /// Linearises at an iterate with the velocities `u` of its impulses; `share` is the fraction of
+    /// the slope of
     /// |u_t| that is taken.
     fn new(cones: &'a Cones, at: &'a Iterate<D>, u: &[[f64; D]], share: f64) -> Self {
         let n = u.len();
@@ -312,7 +316,8 @@ impl<'a, const D: usize> Linearised<'a, D> {
         self.scalings.push(scaling);
     }
 
-    /// Solves (W + A P^2) dr = A P d + residual, dv = P d - P^2 dr; `None` if the solution is not finite.
+    /// Solves (W + A P^2) dr = A P d + residual, dv = P d - P^2 dr; `None` if the solution is not
+    /// finite.
     fn direction(&self, factor: &dyn Shifted<D>, d: &[[f64; D]]) -> Option<Pair<D>> {
         let (n, parts) = (d.len(), &self.cones.parts);
         let (scalings, residual, tau) = (&self.scalings, &self.residual, &self.tau);
@@ -357,8 +362,8 @@ impl<'a, const D: usize> Linearised<'a, D> {
         self.cones.blocks.iter().map(ends).fold(unbounded, nearer)
     }
 
-    /// Returns the centring parameter that the predictor suggests: the cube of the fraction of r.v that would be
-    /// left at the end of its longest step.
+    /// Returns the centring parameter that the predictor suggests: the cube of the fraction of r.v
+    /// that would be left at the end of its longest step.
     fn centring(&self, predictor: &Pair<D>) -> f64 {
         let (a, b) = self.longest_steps(predictor);
         let (a, b) = (a.min(1.0), b.min(1.0));
@@ -375,7 +380,8 @@ impl<'a, const D: usize> Linearised<'a, D> {
         (ahead / self.gap).clamp(0.0, 1.0).powi(3).clamp(1e-6, 0.9)
     }
 
-    /// Returns the right-hand side of the corrector: centring, and the second-order term of the predictor.
+    /// Returns the right-hand side of the corrector: centring, and the second-order term of the
+    /// predictor.
     fn corrected(&self, lambda: &[[f64; D]], predictor: &Pair<D>) -> Vec<[f64; D]> {
         let sigma = self.centring(predictor);
         let ((dr, dv), parts) = (predictor, &self.cones.parts);
@@ -474,7 +480,8 @@ impl<const D: usize> Solver<D> for Interior {
 mod tests {
     use super::*;
 
-    /// With bonds the share of the slope shrinks to 0.3 after a short step, and about doubles after a long one; without them it is all or nothing.
+    /// With bonds the share of the slope shrinks to 0.3 after a short step, and about doubles after
+    /// a long one; without them it is all or nothing.
     #[test]
     fn the_slope_follows_the_length_of_steps() {
         let shares = |gradual| {

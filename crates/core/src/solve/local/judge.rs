@@ -1,5 +1,5 @@
-//! Sums of the error for problems in which all blocks obey Coulomb's law and rho is 1, as for problems from
-//! files: four contacts at a time.
+//! Sums of the error for problems in which all blocks obey Coulomb's law and rho is 1, as for
+//! problems from files: four contacts at a time.
 
 use super::law::{Law, natural};
 use crate::solve::error::{Sums, lost};

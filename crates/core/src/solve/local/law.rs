@@ -42,8 +42,8 @@ pub enum Law {
     Free,
     /// A bond in tension only: u = 0 where p_n <= 0, and p = 0 otherwise.
     Pull,
-    /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, where P is the normal impulse of block
-    /// `of`.
+    /// Moments (twist, bending): |p_n| <= twist P, |p_t| <= bend P, where P is the normal impulse
+    /// of block `of`.
     Moment {
         /// The block whose normal impulse bounds the moment.
         of: u32,
@@ -55,8 +55,8 @@ pub enum Law {
 }
 
 impl Law {
-    /// Returns the admissible point nearest to z; `p` holds all impulses, for laws whose bounds depend on
-    /// other blocks.
+    /// Returns the admissible point nearest to z; `p` holds all impulses, for laws whose bounds
+    /// depend on other blocks.
     #[inline(always)]
     pub fn project<const D: usize>(&self, z: &[f64; D], p: &[[f64; D]]) -> [f64; D] {
         match self {

@@ -30,8 +30,8 @@ pub enum Factor {
 }
 
 impl Factor {
-    /// Computes an LU factorisation with partial pivoting; `None` where the matrix is singular or not
-    /// finite.
+    /// Computes an LU factorisation with partial pivoting; `None` where the matrix is singular or
+    /// not finite.
     pub fn new(a: &Rows) -> Option<Self> {
         let n = a.starts.len() - 1;
         if a.values.iter().any(|x| !x.is_finite()) {

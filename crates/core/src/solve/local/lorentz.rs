@@ -1,4 +1,5 @@
-//! Algebra of the Lorentz cone x0 >= |x1|: the Jordan product, the Nesterov-Todd scaling, and step lengths.
+//! Algebra of the Lorentz cone x0 >= |x1|: the Jordan product, the Nesterov-Todd scaling, and step
+//! lengths.
 
 use super::block::Block;
 use super::law::slip;

@@ -1,7 +1,8 @@
-//! Contact problems given as a matrix: u = W p + q, K* contains u + mu |u_t| n, perpendicular to p in K.
+//! Contact problems given as a matrix: u = W p + q, K* contains u + mu |u_t| n, perpendicular to p
+//! in K.
 //!
-//! This is the form of the public collection FCLIB. Components are (n, t) or (n, t1, t2), contact after
-//! contact.
+//! This is the form of the public collection FCLIB. Components are (n, t) or (n, t1, t2), contact
+//! after contact.
 #![allow(
     clippy::needless_range_loop,
     reason = "loops over the components of blocks read like their formulas"
@@ -40,8 +41,8 @@ pub use reduce::{Elimination, ReduceError, Reduction};
 pub struct LocalProblem {
     /// Components of a contact: 2 or 3.
     pub dimension: usize,
-    /// The Delassus operator, a square matrix of size `dimension * mu.len()` (1/kg, or the unit of the
-    /// file).
+    /// The Delassus operator, a square matrix of size `dimension * mu.len()` (1/kg, or the unit of
+    /// the file).
     pub w: Csr,
     /// Free relative velocities.
     pub q: Vec<f64>,

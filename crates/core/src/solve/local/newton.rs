@@ -1,10 +1,10 @@
 //! Semi-smooth Newton method on the Alart-Curnier function, inside a proximal-point iteration.
 //!
-//! With z = p - rho u, F_n = p_n - max(z_n, 0) and F_t = p_t - proj(z_t; |.| <= mu max(z_n, 0)) (Alart and
-//! Curnier 1991). Rigid packings have a rank-deficient W, so Newton solves u = W p + q + alpha (p - p_k),
-//! and the outer loop updates p_k (proximal point around Newton: Acary, Bremond and Huber 2018); alpha is
-//! reduced while this converges well. Contacts that are open in the prediction are eliminated from the
-//! linear system.
+//! With z = p - rho u, F_n = p_n - max(z_n, 0) and F_t = p_t - proj(z_t; |.| <= mu max(z_n, 0))
+//! (Alart and Curnier 1991). Rigid packings have a rank-deficient W, so Newton solves u = W p + q +
+//! alpha (p - p_k), and the outer loop updates p_k (proximal point around Newton: Acary, Bremond
+//! and Huber 2018); alpha is reduced while this converges well. Contacts that are open in the
+//! prediction are eliminated from the linear system.
 
 use super::form::{Form, largest, squared};
 use super::law::{Law, slip};
@@ -262,14 +262,14 @@ impl<const D: usize> Point<D> {
 
 /// Maximum number of Newton steps of one proximal problem.
 const INNER: u32 = 16;
-/// Number of full steps accepted although the merit function grows: between kinks the line search makes
-/// little progress, while the full step reaches the right branch.
+/// Number of full steps accepted although the merit function grows: between kinks the line search
+/// makes little progress, while the full step reaches the right branch.
 const BOLD: u32 = 8;
 /// A line-search step shorter than this is replaced by the full step.
 const SHORT: f64 = 0.1;
 
-/// Solves one proximal problem from its centre; returns whether the residual is well below the change due to
-/// alpha.
+/// Solves one proximal problem from its centre; returns whether the residual is well below the
+/// change due to alpha.
 fn inner<const D: usize>(
     prox: &Prox<D>,
     mean: f64,
@@ -371,8 +371,8 @@ impl<const D: usize> Solver<D> for Newton {
             let good = inner(&prox, mean, &mut at, &mut trial, state, budget);
             // Newton's iterate may lie slightly outside the cones.
             for c in 0..n {
-                // Contacts between immovable bodies keep their impulse, which would otherwise grow without
-                // bound.
+                // Contacts between immovable bodies keep their impulse, which would otherwise grow
+                // without bound.
                 if largest(form.w.diagonal(c)) > 0.0 {
                     state.p[c] = form.laws[c].project(&at.p[c], &at.p);
                 }

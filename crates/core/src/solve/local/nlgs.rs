@@ -27,7 +27,8 @@ pub struct Nlgs {
     pub order: Order,
     /// Over-relaxation factor, from 1 (no relaxation) to below 2.
     pub relaxation: f64,
-    /// Whether to end with the last iterate instead of the best, for iterations that are continued later.
+    /// Whether to end with the last iterate instead of the best, for iterations that are continued
+    /// later.
     pub last: bool,
 }
 
@@ -143,8 +144,8 @@ impl<const D: usize> WithSimd for Forward<'_, '_, D> {
     }
 }
 
-/// Decides when to evaluate the error, which costs about half an iteration: when it may have reached the
-/// tolerance, if it decreased like the change per iteration since the last evaluation.
+/// Decides when to evaluate the error, which costs about half an iteration: when it may have
+/// reached the tolerance, if it decreased like the change per iteration since the last evaluation.
 #[derive(Default)]
 pub struct Tests {
     done: u32,
@@ -154,13 +155,14 @@ pub struct Tests {
 }
 
 impl Tests {
-    /// Maximum number of iterations between two evaluations; fewer at first, when impulses may still change
-    /// in directions that the error does not detect.
+    /// Maximum number of iterations between two evaluations; fewer at first, when impulses may
+    /// still change in directions that the error does not detect.
     const MAX_SWEEPS_APART: u32 = 10;
     /// Ratio of expected error to tolerance from which the error is evaluated.
     const NEAR: f64 = 1.5;
 
-    /// Returns, after an iteration, whether to evaluate the error. The first iteration often converges.
+    /// Returns, after an iteration, whether to evaluate the error. The first iteration often
+    /// converges.
     pub fn due<const D: usize>(
         &mut self,
         sweep: &Sweep<D>,
@@ -180,8 +182,8 @@ impl Tests {
         due
     }
 
-    /// Returns the squared error expected after an iteration; 0 where nothing changes any more, so that it
-    /// is evaluated.
+    /// Returns the squared error expected after an iteration; 0 where nothing changes any more, so
+    /// that it is evaluated.
     pub fn expected<const D: usize>(&self, sweep: &Sweep<D>, state: &State<D>) -> f64 {
         if sweep.change == 0.0 {
             return 0.0;

@@ -1,9 +1,9 @@
 //! Reduction of a global problem, or a local one with multipliers, to the local form u = W p + q.
 //!
-//! Global: W = H^T M^-1 H, q = H^T M^-1 f + w. With equality constraints, M v = H r + G l + f and G^T v + b
-//! = 0, the matrix is the saddle-point matrix K = [M, -G; G^T, 0] of (v, l), and H is padded with zero rows:
-//! W = [H; 0]^T K^-1 [H; 0], q = [H; 0]^T K^-1 (f, -b) + w. Local with multipliers: W - V R^-1 V^T and q - V
-//! R^-1 s.
+//! Global: W = H^T M^-1 H, q = H^T M^-1 f + w. With equality constraints, M v = H r + G l + f and
+//! G^T v + b = 0, the matrix is the saddle-point matrix K = [M, -G; G^T, 0] of (v, l), and H is
+//! padded with zero rows: W = [H; 0]^T K^-1 [H; 0], q = [H; 0]^T K^-1 (f, -b) + w. Local with
+//! multipliers: W - V R^-1 V^T and q - V R^-1 s.
 //!
 //! M need not be symmetric.
 

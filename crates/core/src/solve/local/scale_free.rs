@@ -1,8 +1,8 @@
 //! A second error measure: the error in velocities, which does not depend on units.
 //!
-//! The error measure of the literature divides by max(|q|, |p|, |u|). Where W is far from 1, impulses
-//! dominate velocities, and an error of 1e-8 may hide velocities that are entirely wrong. The scale-free
-//! error is [`Norm::Velocity`] of [`crate::solve::error`]:
+//! The error measure of the literature divides by max(|q|, |p|, |u|). Where W is far from 1,
+//! impulses dominate velocities, and an error of 1e-8 may hide velocities that are entirely wrong.
+//! The scale-free error is [`Norm::Velocity`] of [`crate::solve::error`]:
 //!
 //! ```text
 //! |r| / max(|u|, |q|),   r_c = (p_c - proj_Kc(p_c - rho_c (u_c + mu_c |u_t,c| n))) / rho_c,   rho_c = 1 /
@@ -24,13 +24,15 @@ pub const FORMULA: &str = "|r| / max(|u|, |q|), r = (p - proj_K(p - rho (u + mu 
 /// Maximum number of alternations between the two error measures.
 const TURNS: u32 = 6;
 
-/// Returns the scale-free error above which a solution that meets the usual error measure is reported as
-/// doubtful, if no tolerance is given: a hundred times the tolerance, but at least 1e-3 and at most 0.1.
+/// Returns the scale-free error above which a solution that meets the usual error measure is
+/// reported as doubtful, if no tolerance is given: a hundred times the tolerance, but at least 1e-3
+/// and at most 0.1.
 pub fn usual_limit(tolerance: f64) -> f64 {
     (100.0 * tolerance).clamp(1e-3, 0.1)
 }
 
-/// Returns the scale-free error of impulses p, with u = W p + q; infinite where a number is not finite.
+/// Returns the scale-free error of impulses p, with u = W p + q; infinite where a number is not
+/// finite.
 pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p),
@@ -40,8 +42,8 @@ pub fn scale_free_error(problem: &LocalProblem, p: &[f64]) -> f64 {
 
 fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
     let w = BlockMatrix::<D>::from_csr(&problem.w);
-    // In units of the largest free velocity, rounded to a power of two, so that no bit changes and no square
-    // overflows.
+    // In units of the largest free velocity, rounded to a power of two, so that no bit changes and
+    // no square overflows.
     let unit = magnitude(problem.q.iter());
     let scaled = |x: &[f64]| -> Vec<[f64; D]> {
         let blocks = x.as_chunks::<D>().0.iter();
@@ -55,9 +57,9 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> f64 {
     form.error(&p, &u).error
 }
 
-/// Reduces both the usual and, if requested, the scale-free error of a state below their tolerances by
-/// alternating between them, always continuing with the larger one. `solve` runs the method; the budget
-/// limits the work.
+/// Reduces both the usual and, if requested, the scale-free error of a state below their tolerances
+/// by alternating between them, always continuing with the larger one. `solve` runs the method; the
+/// budget limits the work.
 pub(super) fn meet<'a, const D: usize>(
     field: &Form<'a, D>,
     velocity: &Form<'a, D>,
@@ -70,8 +72,8 @@ pub(super) fn meet<'a, const D: usize>(
     let Some(limit) = limits.scale_free else {
         return;
     };
-    // Slightly below the tolerance, so that errors recomputed in another order of summation are still within
-    // it.
+    // Slightly below the tolerance, so that errors recomputed in another order of summation are
+    // still within it.
     let within = 1.0 - 1e-9;
     let mut tighter = 1.0;
     for _ in 0..TURNS {

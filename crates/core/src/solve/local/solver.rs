@@ -163,8 +163,9 @@ pub struct Outcome {
     pub u: Vec<f64>,
     /// Its [`field_error`].
     pub error: f64,
-    /// The larger of two additional errors, not contained in `error`, that must be within the tolerance too:
-    /// violation of Signorini's law hidden by friction, and unbounded impulses. See [`crate::solve::error`].
+    /// The larger of two additional errors, not contained in `error`, that must be within the
+    /// tolerance too: violation of Signorini's law hidden by friction, and unbounded impulses. See
+    /// [`crate::solve::error`].
     pub beside: f64,
     /// The error in velocities, independent of units; see [`scale_free`].
     pub scale_free_error: f64,
@@ -178,9 +179,9 @@ pub struct Outcome {
     pub converged: bool,
 }
 
-/// Solves a problem from p = 0. Solves of a few milliseconds are repeated and the best time is reported,
-/// since the first one runs with cold caches. For a problem that [`LocalProblem::check`] rejects, the result
-/// is p = 0 with an infinite error.
+/// Solves a problem from p = 0. Solves of a few milliseconds are repeated and the best time is
+/// reported, since the first one runs with cold caches. For a problem that [`LocalProblem::check`]
+/// rejects, the result is p = 0 with an infinite error.
 pub fn solve(problem: &LocalProblem, method: Method, limits: &Limits) -> Outcome {
     if problem.check().is_err() {
         let p = vec![0.0; problem.q.len()];
@@ -226,8 +227,8 @@ fn solve_in<const D: usize>(problem: &LocalProblem, method: Method, limits: &Lim
         let form = Form::new(&w, &q, &laws, Norm::Field);
         solver.used.clear();
         let mut now = State::new(&form, vec![[0.0; D]; laws.len()]);
-        // Slightly below the tolerance, so that the error recomputed in another order of summation is still
-        // within it.
+        // Slightly below the tolerance, so that the error recomputed in another order of summation
+        // is still within it.
         let tolerance = limits.tolerance * (1.0 - 1e-9);
         let mut budget = Budget::new(tolerance, limits.max_iterations, limits.seconds);
         let step = |f: &Form<D>, s: &mut State<D>, b: &mut Budget| solver.solve(f, s, b);
@@ -307,9 +308,9 @@ impl<const D: usize> Choice<D> {
     }
 }
 
-/// Returns the error measure of the literature: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|, |u|),
-/// Euclidean norms of whole vectors, u = W p + q; not divided when the maximum is 0. Infinite where a number
-/// is not finite.
+/// Returns the error measure of the literature: |p - proj_K(p - (u + mu |u_t| n))| / max(|q|, |p|,
+/// |u|), Euclidean norms of whole vectors, u = W p + q; not divided when the maximum is 0. Infinite
+/// where a number is not finite.
 pub fn field_error(problem: &LocalProblem, p: &[f64]) -> f64 {
     match problem.dimension {
         2 => measured::<2>(problem, p).error,
@@ -337,8 +338,8 @@ fn measured<const D: usize>(problem: &LocalProblem, p: &[f64]) -> Measured {
             worst: None,
         };
     }
-    // Scaling all vectors by one number does not change the error: a power of two, so that no bit changes
-    // and no square overflows.
+    // Scaling all vectors by one number does not change the error: a power of two, so that no bit
+    // changes and no square overflows.
     let unit = magnitude(all());
     let norm = |x: &[f64]| x.iter().map(|x| (x / unit).powi(2)).sum::<f64>().sqrt();
     let velocity = norm(&problem.q).max(norm(&u));
@@ -414,7 +415,8 @@ mod tests {
         assert!(error.starts_with("there is no solver `gauss`; there are "));
     }
 
-    /// Two coupled contacts, solved to a tenth by the first measure and to 1e-10 by the second: it goes on until both are met, and says so.
+    /// Two coupled contacts, solved to a tenth by the first measure and to 1e-10 by the second: it
+    /// goes on until both are met, and says so.
     #[test]
     fn both_tolerances_are_met() {
         let (a, b) = (1.0, 0.3);

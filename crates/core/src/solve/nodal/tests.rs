@@ -33,7 +33,8 @@ fn free(k: usize) -> Vector2<f64> {
     Vector2::new(0.3 - 0.2 * k as f64, -1.0 - 0.1 * k as f64)
 }
 
-/// Three bodies that do not turn, one on the other on a plane; as nodes of a system where they are not rigid.
+/// Three bodies that do not turn, one on the other on a plane; as nodes of a system where they are
+/// not rigid.
 fn stack(rigid: bool) -> (Problem<Dim2>, Vec<ContactForm<Dim2>>) {
     let mut problem = Problem::default();
     for (k, mass) in MASSES.iter().enumerate() {
@@ -117,8 +118,9 @@ fn motions_of_nodes_count_as_those_of_bodies() {
     assert_eq!(of_bodies, of_nodes);
 }
 
-/// A rigid disk and a fixed plane on two systems of full compliance, which touch each other too, by sums of nodes: W as
-/// a matrix, its products, and velocities updated contact by contact are the same.
+/// A rigid disk and a fixed plane on two systems of full compliance, which touch each other too, by
+/// sums of nodes: W as a matrix, its products, and velocities updated contact by contact are the
+/// same.
 #[test]
 fn matrix_products_and_sweeps_agree() {
     let mut problem = Problem::<Dim2>::default();

@@ -22,8 +22,8 @@ pub trait Visit {
     );
 }
 
-/// Visits a block of rows, given with the bodies of each, the starts of its groups and the end of the last; contacts of a
-/// group share no movable body.
+/// Visits a block of rows, given with the bodies of each, the starts of its groups and the end of
+/// the last; contacts of a group share no movable body.
 pub fn visit<S: Space, K: Kind<S>>(
     (rows, pairs): (&mut [Row<S, K>], &[[u32; 2]]),
     groups: &[u32],

@@ -1,7 +1,8 @@
-//! W of a step, applied matrix-free from its bodies and dynamical systems, and assembled only when a method needs the matrix.
+//! W of a step, applied matrix-free from its bodies and dynamical systems, and assembled only when
+//! a method needs the matrix.
 //!
-//! A side that is a dynamical system acts on nodes: its body, which stands for a contactor, has no inertia and no velocity
-//! here.
+//! A side that is a dynamical system acts on nodes: its body, which stands for a contactor, has no
+//! inertia and no velocity here.
 
 use super::motion::Pattern;
 use crate::geometry::space::{MatrixLike, Space, VectorLike};
@@ -30,8 +31,8 @@ impl<S: Space> Axis<S> {
         self.linear != S::Vector::zero() || self.angular != [S::Spin::zero(); 2]
     }
 
-    /// Returns the component with the compliance of a bond of stiffness `b` over the step; absent for zero
-    /// stiffness.
+    /// Returns the component with the compliance of a bond of stiffness `b` over the step; absent
+    /// for zero stiffness.
     pub fn bonded(&self, b: f64) -> Self {
         if b > 0.0 {
             Self {
@@ -114,7 +115,8 @@ pub struct Bodies<'a, S: Space, const D: usize> {
 }
 
 impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
-    /// Creates an operator for bodies with these inverse masses and inertias and for systems, without unknowns.
+    /// Creates an operator for bodies with these inverse masses and inertias and for systems,
+    /// without unknowns.
     pub fn new(masses: &'a [Mobility<S>], systems: &'a [NodalSystem<S>]) -> Self {
         Self {
             masses,
@@ -140,7 +142,8 @@ impl<'a, S: Space, const D: usize> Bodies<'a, S, D> {
         self.masses[body as usize].apply(&p, &m)
     }
 
-    /// Adds the velocities that the impulses of a block give to its bodies, and its impulses on nodes to those there.
+    /// Adds the velocities that the impulses of a block give to its bodies, and its impulses on
+    /// nodes to those there.
     pub fn push(&self, c: usize, p: &[f64; D], motions: &mut Motions<S>) {
         let unknown = &self.unknowns[c];
         for (side, sign) in [(0, 1.0), (1, -1.0)] {
@@ -297,7 +300,8 @@ impl<S: Space, const D: usize> Delassus<D> for Bodies<'_, S, D> {
     }
 
     fn shifted(&self, shift: &Shift<D>) -> Option<Box<dyn Shifted<D> + '_>> {
-        // With more motions than impulses the body form gains nothing and adds rounding errors; of systems it knows no masses.
+        // With more motions than impulses the body form gains nothing and adds rounding errors; of
+        // systems it knows no masses.
         if self.systems.is_empty() && self.pattern().rows() < D * self.len() {
             self.factor(shift)
         } else {

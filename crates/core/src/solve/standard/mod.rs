@@ -1,10 +1,10 @@
-//! The problem of a step for the solvers of [`super::local`]: blocks of unknowns, each with its law, and W
-//! applied matrix-free from bodies.
+//! The problem of a step for the solvers of [`super::local`]: blocks of unknowns, each with its
+//! law, and W applied matrix-free from bodies.
 //!
-//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as u + (p_el + a)/B =
-//! 0, is a law without friction whose compliance 1/B is added to the diagonal of W. Rolling friction and the
-//! moments of a bond are treated likewise. Tension c_n and terms that do not depend on velocities are part
-//! of the free velocities.
+//! A contact gives one block. Its bond gives a second one: p_el = -(a + B u), written as u + (p_el
+//! + a)/B = 0, is a law without friction whose compliance 1/B is added to the diagonal of W.
+//! Rolling friction and the moments of a bond are treated likewise. Tension c_n and terms that do
+//! not depend on velocities are part of the free velocities.
 
 mod bodies;
 mod motion;
@@ -161,7 +161,8 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
         }
         self.open[k] = open(problem, form, row);
         if self.open[k] {
-            // It carries no normal impulse at any velocity: w p = 0, without coupling to the bodies.
+            // It carries no normal impulse at any velocity: w p = 0, without coupling to the
+            // bodies.
             let mobility = |b: &u32| {
                 form.normal
                     .dot(&form.normal.scaled_by(&problem.masses[*b as usize].mass))
@@ -434,8 +435,9 @@ impl<'a, S: Space, const D: usize> Standard<'a, S, D> {
     }
 }
 
-/// Returns whether a contact carries nothing along its normal: it has a gap and may close freely, and its impact follows when it closes; or it
-/// is rigid, and both bodies are held along the normal.
+/// Returns whether a contact carries nothing along its normal: it has a gap and may close freely,
+/// and its impact follows when it closes; or it is rigid, and both bodies are held along the
+/// normal.
 fn open<S: Space>(problem: &Problem<S>, form: &ContactForm<S>, row: Option<&SystemRow<S>>) -> bool {
     let n = &form.normal;
     let free = |body: &u32| {
@@ -471,8 +473,8 @@ fn offset<S: Space, const D: usize>(q: &mut [f64; D], unknown: &Unknown<'_, S, D
     }
 }
 
-/// Improves the impulses of a problem by a method, from the impulses stored in the problem. Returns the
-/// iterations.
+/// Improves the impulses of a problem by a method, from the impulses stored in the problem. Returns
+/// the iterations.
 pub fn improve<S: Space, const D: usize>(
     problem: &mut Problem<S>,
     forms: &[ContactForm<S>],

@@ -1,9 +1,9 @@
 //! Solution of (N W N + S) x = b, with block-diagonal S, in terms of the motions of the bodies.
 //!
-//! Divide S and b by N, so that the matrix is W + S. W = H^T M^-1 H + C with the compliances C, so with y =
-//! M^-1 H x and R = (S + C)^-1: (M + H R H^T) y = H R b and x = R (b - H^T y) (Woodbury). Hyperstatic or
-//! bonded sets have fewer motions than impulses, and the matrix is sparser: a body is coupled to its
-//! neighbours only, a contact to all contacts of both its bodies.
+//! Divide S and b by N, so that the matrix is W + S. W = H^T M^-1 H + C with the compliances C, so
+//! with y = M^-1 H x and R = (S + C)^-1: (M + H R H^T) y = H R b and x = R (b - H^T y) (Woodbury).
+//! Hyperstatic or bonded sets have fewer motions than impulses, and the matrix is sparser: a body
+//! is coupled to its neighbours only, a contact to all contacts of both its bodies.
 #![allow(
     clippy::needless_range_loop,
     reason = "loops over the components of blocks read like their formulas"
@@ -78,7 +78,8 @@ fn mass<S: Space>(mobility: &Mobility<S>) -> [[f64; 6]; 6] {
     out
 }
 
-/// Returns the inverse of the leading block of `size` rows, padded with zeros; `None` where it is singular.
+/// Returns the inverse of the leading block of `size` rows, padded with zeros; `None` where it is
+/// singular.
 fn invert<const D: usize>(s: &Block<D>, size: usize) -> Option<Block<D>> {
     let (mut a, mut out) = (*s, [[0.0; D]; D]);
     for (k, row) in out.iter_mut().enumerate().take(size) {
@@ -194,7 +195,8 @@ impl<S: Space, const D: usize> Bodies<'_, S, D> {
         }))
     }
 
-    /// Returns M with the sparsity pattern of the system; an imposed degree of freedom has a decoupled row.
+    /// Returns M with the sparsity pattern of the system; an imposed degree of freedom has a
+    /// decoupled row.
     fn masses_alone(&self, pattern: &Pattern) -> Rows {
         let d = size::<S>();
         let mut a = Rows::default();

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum GravityDrive {
-    /// The case's gravity rotated by an angle (rad) about an axis: 0, 1 or 2, by default z, which is the
-    /// only axis in 2D. A positive angle turns x towards y (y towards z about x, z towards x about y).
+    /// The case's gravity rotated by an angle (rad) about an axis: 0, 1 or 2, by default z, which
+    /// is the only axis in 2D. A positive angle turns x towards y (y towards z about x, z towards x
+    /// about y).
     Turned {
         /// Angle (rad).
         angle: TimeFunction,
@@ -60,8 +61,8 @@ impl GravityDrive {
         }
     }
 
-    /// Returns the error of this drive in a case of the given dimension, if any, with the key at which it
-    /// occurs.
+    /// Returns the error of this drive in a case of the given dimension, if any, with the key at
+    /// which it occurs.
     pub fn fault(&self, dimension: usize) -> Option<(String, String)> {
         match self {
             Self::Turned { angle, about } => {

@@ -1,8 +1,9 @@
 //! Imposed motion in the time step: the velocity jumps between steps and their work.
 //!
-//! Where the velocity of an imposed degree of freedom jumps (see [`crate::bodies::path`]), its drive
-//! supplies the impulse and does the work m (v_s^2 - v_e^2)/2. At time zero there is no previous drive: a
-//! body that starts moving is taken to have moved before, and its energy is initial kinetic energy.
+//! Where the velocity of an imposed degree of freedom jumps (see [`crate::bodies::path`]), its
+//! drive supplies the impulse and does the work m (v_s^2 - v_e^2)/2. At time zero there is no
+//! previous drive: a body that starts moving is taken to have moved before, and its energy is
+//! initial kinetic energy.
 
 use super::loads;
 use crate::bodies::Dof;
@@ -66,8 +67,8 @@ pub(in crate::step) fn begin_motion<S: Space>(s: &mut Simulation<S>) {
 /// Counts the step, advances the time and puts imposed degrees of freedom on their paths.
 pub(in crate::step) fn end_motion<S: Space>(s: &mut Simulation<S>) {
     let (from, h) = (s.state.time, s.options.scheme.h);
-    // Kahan summation: the time after n steps equals n h to rounding, so that functions of time do not
-    // drift.
+    // Kahan summation: the time after n steps equals n h to rounding, so that functions of time do
+    // not drift.
     let part = h - s.state.time_excess;
     s.state.time = from + part;
     s.state.time_excess = (s.state.time - from) - part;

@@ -1,4 +1,5 @@
-//! Imposed motions that nothing can obey: bodies driven into each other, or into others that have nowhere to go.
+//! Imposed motions that nothing can obey: bodies driven into each other, or into others that have
+//! nowhere to go.
 
 use crate::bodies::Bodies;
 use crate::contact::Contact;
@@ -6,19 +7,20 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::step::{DrivenOverlap, Impossible, Simulation, StepReport};
 use serde::{Deserialize, Serialize};
 
-/// Residual velocities over those of the contacts from which impulses do not do what they should: a thousand layers share the motion of a lid.
+/// Residual velocities over those of the contacts from which impulses do not do what they should: a
+/// thousand layers share the motion of a lid.
 const NOT_OBEYED: f64 = 0.03;
 /// Iterations below which a step that ended at their limit says nothing of its motions.
 const LEAST_ITERATIONS: u32 = 100;
-/// Share of the work of the drives that goes into the residuals, at least, and how much of it is not accounted for by these and by slip,
-/// at most, where they squeeze what does not yield.
+/// Share of the work of the drives that goes into the residuals, at least, and how much of it is
+/// not accounted for by these and by slip, at most, where they squeeze what does not yield.
 const WASTED: f64 = 0.2;
 const UNEXPLAINED: f64 = 0.3;
-/// Share of the work of all drives from which a body is named, and of the largest impulse on a body from which a contact passes on what
-/// presses on it.
+/// Share of the work of all drives from which a body is named, and of the largest impulse on a body
+/// from which a contact passes on what presses on it.
 const NAMED: f64 = 0.05;
-/// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be rounding of their places, and share of what
-/// they travel by which they may close by rounding.
+/// Overlap of two bodies with imposed motion, over the length of the smaller one, that may be
+/// rounding of their places, and share of what they travel by which they may close by rounding.
 const ROUNDING: f64 = 1e-9;
 const GRAZING: f64 = 1e-6;
 
@@ -105,7 +107,8 @@ struct Push {
     work: f64,
 }
 
-/// Looks whether the imposed motions of the step could be obeyed, given the impulses and moments on the driven bodies.
+/// Looks whether the imposed motions of the step could be obeyed, given the impulses and moments on
+/// the driven bodies.
 pub(in crate::step) fn watch_imposed<S: Space>(
     s: &Simulation<S>,
     received: &[(S::Vector, S::Spin)],
@@ -152,8 +155,8 @@ fn squeezing<S: Space>(
     first.chain(then).map(|p| p.body).collect()
 }
 
-/// Which bodies some press on through chains of contacts. Far from where a motion is imposed impulses may be small when the iterations
-/// end, so links are compared with those before them.
+/// Which bodies some press on through chains of contacts. Far from where a motion is imposed
+/// impulses may be small when the iterations end, so links are compared with those before them.
 fn pressed_by<S: Space>(s: &Simulation<S>, those: impl Iterator<Item = usize>) -> Vec<bool> {
     let (bodies, contacts) = (&s.state.bodies, &s.state.network.contacts);
     let mut largest = vec![0.0f64; bodies.len()];
@@ -204,8 +207,8 @@ fn pushes<S: Space>(s: &Simulation<S>, received: &[(S::Vector, S::Spin)]) -> Vec
     bodies.driven.iter().zip(received).map(of).collect()
 }
 
-/// The deepest overlap that grows of two bodies whose motions are imposed and whose contacts are rigid. (Springs and bonds between such
-/// bodies carry.)
+/// The deepest overlap that grows of two bodies whose motions are imposed and whose contacts are
+/// rigid. (Springs and bonds between such bodies carry.)
 fn driven_overlap<S: Space>(s: &Simulation<S>) -> Option<DrivenOverlap> {
     let bodies = &s.state.bodies;
     let at_rest =
@@ -263,7 +266,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::{Vector1, Vector2};
 
-    /// A body that is driven along x and turned, and free along y: only the imposed motions do work on others, against what they receive.
+    /// A body that is driven along x and turned, and free along y: only the imposed motions do work
+    /// on others, against what they receive.
     #[test]
     fn imposed_motions_push() {
         let mut s = Simulation::<Dim2>::of_disks(&[([0.0, 0.0], 0.5)]);

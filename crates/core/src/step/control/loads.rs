@@ -1,5 +1,5 @@
-//! A step begins by applying the schedule: first the current phase, then removals, then gravity, loaded
-//! areas and drives; and ends the phase.
+//! A step begins by applying the schedule: first the current phase, then removals, then gravity,
+//! loaded areas and drives; and ends the phase.
 
 use super::phases;
 use super::schedule::set_parameter;
@@ -121,7 +121,8 @@ fn loads<S: Space>(s: &mut Simulation<S>) {
     s.state.bodies.engage_stages(soon);
 }
 
-/// What a condition of rest looks at: the grains, first bodies and dynamical systems of which nothing is imposed.
+/// What a condition of rest looks at: the grains, first bodies and dynamical systems of which
+/// nothing is imposed.
 fn motion_of_free<S: Space>(s: &Simulation<S>) -> phases::Motion {
     let bodies = &s.state.bodies;
     let free = |b: &usize| (0..S::D).all(|k| bodies.inverse_mass[*b][k] > 0.0);

@@ -15,10 +15,11 @@ pub enum Until {
     After(f64),
     /// After a number of steps.
     Steps(u64),
-    /// When the kinetic energy of the grains has stayed below a bound; and that of first bodies and dynamical systems of which
-    /// nothing is imposed.
+    /// When the kinetic energy of the grains has stayed below a bound; and that of first bodies and
+    /// dynamical systems of which nothing is imposed.
     AtRest {
-        /// Bound as a fraction of m g d, summed over them; d is twice [`crate::bodies::DynamicalSystem::length`] of a system.
+        /// Bound as a fraction of m g d, summed over them; d is twice
+        /// [`crate::bodies::DynamicalSystem::length`] of a system.
         #[serde(default)]
         share: Option<f64>,
         /// Bound as an energy (J; J/m in 2D).
@@ -35,8 +36,8 @@ pub enum Until {
 /// Changes at the start of a phase; everything else keeps its value.
 #[derive(Clone, Debug)]
 pub struct Changes<S: Space> {
-    /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time since the
-    /// phase began.
+    /// Drives: index among the driven bodies, degree of freedom, drive as a function of the time
+    /// since the phase began.
     pub drives: Vec<(usize, usize, Dof)>,
     /// The same of what holds deformable bodies.
     pub holders: Vec<(HeldAxis, Dof)>,
@@ -138,7 +139,8 @@ impl Clock {
         }
     }
 
-    /// When the phase ends at the latest (s), and the longest step (s) after which its end is judged: infinite where there is none.
+    /// When the phase ends at the latest (s), and the longest step (s) after which its end is
+    /// judged: infinite where there is none.
     pub fn bounds(&self, until: &Until) -> [f64; 2] {
         let Some(begun) = self.begun.last() else {
             return [f64::INFINITY; 2];
@@ -156,7 +158,8 @@ impl Clock {
         }
     }
 
-    /// Returns why the phase ends now, or `None`; `motion` is evaluated only if the condition depends on it.
+    /// Returns why the phase ends now, or `None`; `motion` is evaluated only if the condition
+    /// depends on it.
     pub fn ends(
         &mut self,
         until: &Until,
@@ -234,7 +237,8 @@ mod tests {
         assert_eq!(still.bounds(&rest(Some(5.0))), [8.0, 0.5]);
     }
 
-    /// Times are reached within half a step of 1 s; rest has to last for 2 s, and a motion in between begins it anew.
+    /// Times are reached within half a step of 1 s; rest has to last for 2 s, and a motion in
+    /// between begins it anew.
     #[test]
     fn phases_end_when_their_conditions_say() {
         let now = |time: f64| Moment {

@@ -102,8 +102,9 @@ mod tests {
     use crate::laws::sample_laws::interface;
     use crate::step::Simulation;
 
-    /// A state that was read is refused where it names a phase, a body, an axis or a parameter that the case has not. The case has no phases,
-    /// a body that is driven along x and y, and a law with one parameter.
+    /// A state that was read is refused where it names a phase, a body, an axis or a parameter that
+    /// the case has not. The case has no phases, a body that is driven along x and y, and a law
+    /// with one parameter.
     #[test]
     fn a_schedule_of_another_case_does_not_fit() {
         let mut s = Simulation::<Dim2>::of_disks(&[]);

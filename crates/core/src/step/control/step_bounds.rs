@@ -9,7 +9,8 @@ use crate::step::Simulation;
 /// What a step must not pass, and how long it may be, as known from drives, gates and phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepBounds {
-    /// Time of the next event (s): a gate, the end of a phase or stage, a kink of a drive; infinite if there is none.
+    /// Time of the next event (s): a gate, the end of a phase or stage, a kink of a drive; infinite
+    /// if there is none.
     pub event: f64,
     /// Longest step that resolves what changes smoothly (s); infinite where nothing does.
     pub longest: f64,
@@ -60,8 +61,8 @@ impl StepBounds {
         self.longest = self.longest.min(drive.resolved_step(t));
     }
 
-    /// Steps of `h` (s) from `time` on to the event, or to the step in which it falls; and those that one step may span, as far as what
-    /// changes smoothly goes. Both are at least 1.
+    /// Steps of `h` (s) from `time` on to the event, or to the step in which it falls; and those
+    /// that one step may span, as far as what changes smoothly goes. Both are at least 1.
     pub fn steps(&self, time: f64, h: f64) -> [u64; 2] {
         let whole = |t: f64| {
             let steps = t / h;

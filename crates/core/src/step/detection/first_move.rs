@@ -7,10 +7,10 @@ use crate::step::{Scheme, Simulation};
 /// Relative change of a surface's spin from which it counts as a jump.
 const TURNS: f64 = 0.01;
 
-/// Reports tunnelling during the first half move. Each step checks the paths of the bodies between two
-/// detections at its final velocities; this misses the very first move and the velocity added by a jump
-/// of an imposed motion. `before` holds the velocities and spins of the driven bodies before their
-/// jumps.
+/// Reports tunnelling during the first half move. Each step checks the paths of the bodies between
+/// two detections at its final velocities; this misses the very first move and the velocity added
+/// by a jump of an imposed motion. `before` holds the velocities and spins of the driven bodies
+/// before their jumps.
 pub(in crate::step) fn watch_first_move<S: Space>(
     s: &mut Simulation<S>,
     before: &[(S::Vector, S::Spin)],
@@ -36,7 +36,8 @@ pub(in crate::step) fn watch_first_move<S: Space>(
     );
 }
 
-/// Reports penetrations and passages in the move before detection if a process has applied an impulse.
+/// Reports penetrations and passages in the move before detection if a process has applied an
+/// impulse.
 pub(in crate::step) fn watch_push<S: Space>(s: &mut Simulation<S>) {
     let Scheme { h, theta } = s.options.scheme;
     let length = (1.0 - theta) * h;
@@ -48,7 +49,8 @@ pub(in crate::step) fn watch_push<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Returns whether the jumps of imposed velocities give a body a large displacement within a time (s).
+/// Returns whether the jumps of imposed velocities give a body a large displacement within a time
+/// (s).
 fn velocities_jump<S: Space>(
     s: &Simulation<S>,
     before: &[(S::Vector, S::Spin)],

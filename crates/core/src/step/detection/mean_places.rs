@@ -1,5 +1,6 @@
-//! Contacts of the points of one mesh with the surface of another act on the place that a point faces on average over the facets at it,
-//! see [`crate::geometry::mortar`]. Other contacts act on the nearest place.
+//! Contacts of the points of one mesh with the surface of another act on the place that a point
+//! faces on average over the facets at it, see [`crate::geometry::mortar`]. Other contacts act on
+//! the nearest place.
 
 use crate::bodies::Nodes;
 use crate::contact::Contact;
@@ -16,8 +17,9 @@ const STEEPEST: f64 = 0.2;
 /// Largest difference of the cells of two grids that are equal, as a share.
 const EQUAL: f64 = 1e-9;
 
-/// The coordinates along a contact of a place from its point: in the plane to the right of the normal, in space such that triangles that are
-/// anticlockwise seen from the tip of the normal are so in these.
+/// The coordinates along a contact of a place from its point: in the plane to the right of the
+/// normal, in space such that triangles that are anticlockwise seen from the tip of the normal are
+/// so in these.
 fn along<S: Space>(normal: &S::Vector) -> impl Fn(S::Vector) -> Along {
     let [first, second] = S::tangents(normal);
     let sign = if S::D == 2 { -1.0 } else { 1.0 };
@@ -33,8 +35,8 @@ fn size<S: Space>([a, b, c]: &[S::Vector; 3]) -> f64 {
     }
 }
 
-/// Has a star face the facets of a surface from one of them on, of which `project` gives the coordinates along the contact. None where one
-/// that it faces is steep.
+/// Has a star face the facets of a surface from one of them on, of which `project` gives the
+/// coordinates along the contact. None where one that it faces is steep.
 fn face<S: Space>(
     star: &mut Star,
     surface: &dyn Surface<S>,
@@ -106,7 +108,8 @@ pub(in crate::step) fn acted_on_mean_places<S: Space>(
     })
 }
 
-/// What a contact acts on: the nodes of the antagonist that a point of a mesh faces on average, and their mean place.
+/// What a contact acts on: the nodes of the antagonist that a point of a mesh faces on average, and
+/// their mean place.
 fn reach<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> Reach<S> {
     let carriers = contact.bodies.map(|b| s.state.bodies.carrier(b as usize));
     let ([Some(point), Some(carrier)], Some(surface)) = (carriers, contact.key.surface()) else {
@@ -213,7 +216,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::Vector2;
 
-    /// The mean place of a point above the foot of a flank of length one, whose cosine against the contact is this.
+    /// The mean place of a point above the foot of a flank of length one, whose cosine against the
+    /// contact is this.
     fn below(cosine: f64) -> Option<Faced> {
         let top = Vector2::new(cosine, (1.0 - cosine * cosine).sqrt());
         let ends = [Vector2::new(-2.0, 0.0), top + Vector2::new(2.0, 0.0)];

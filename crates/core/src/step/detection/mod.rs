@@ -29,8 +29,8 @@ pub(super) fn predict_contacts<S: Space>(s: &mut Simulation<S>, free: &[Motion<S
 }
 
 fn add_predicted<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>]) {
-    // Over a step that has grown nothing moves: what falls without contacts is held by those at hand. The velocities after the
-    // solve tell whether that is so.
+    // Over a step that has grown nothing moves: what falls without contacts is held by those at
+    // hand. The velocities after the solve tell whether that is so.
     if s.options.grown > 0 {
         return;
     }
@@ -54,7 +54,8 @@ pub(super) fn add_contacts<S: Space>(s: &mut Simulation<S>, found: Vec<Contact<S
     mean_places::find_of_new_contacts(s);
 }
 
-/// Has processes see the contacts of the step, gives new ones their memory, and forms the bonds that are due.
+/// Has processes see the contacts of the step, gives new ones their memory, and forms the bonds
+/// that are due.
 pub(super) fn prepare_contacts<S: Space>(
     s: &mut Simulation<S>,
     info: &StepInfo,

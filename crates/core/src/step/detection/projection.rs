@@ -1,14 +1,15 @@
-//! Projection of positions: penetrations are removed by displacing bodies, without changing velocities.
+//! Projection of positions: penetrations are removed by displacing bodies, without changing
+//! velocities.
 //!
-//! The smallest displacement that leaves no penetration, min 1/2 |dq|_M^2 with g + n . (relative dq) >= 0,
-//! is the frictionless contact problem of bodies at rest over a unit of time, and is solved by the same
-//! solver. An intact bond keeps its two sides together (u = 0). Moreau, "Numerical aspects of the sweeping
-//! process", Comput. Methods Appl. Mech. Eng. 177 (1999), projects in every step; here a step is projected
-//! only when a penetration exceeds a bound.
+//! The smallest displacement that leaves no penetration, min 1/2 |dq|_M^2 with g + n . (relative
+//! dq) >= 0, is the frictionless contact problem of bodies at rest over a unit of time, and is
+//! solved by the same solver. An intact bond keeps its two sides together (u = 0). Moreau,
+//! "Numerical aspects of the sweeping process", Comput. Methods Appl. Mech. Eng. 177 (1999),
+//! projects in every step; here a step is projected only when a penetration exceeds a bound.
 //!
-//! Velocities do not change, so that kinetic energy is kept; bond openings do not change, so that elastic
-//! energy is kept. Work against gravity and imposed forces is booked in the ledger as work of the
-//! correction.
+//! Velocities do not change, so that kinetic energy is kept; bond openings do not change, so that
+//! elastic energy is kept. Work against gravity and imposed forces is booked in the ledger as work
+//! of the correction.
 //!
 //! Dynamical systems do not take part: a scene with one is refused.
 
@@ -115,7 +116,8 @@ pub(in crate::step) fn deepest_overlap<S: Space>(s: &Simulation<S>) -> f64 {
     })
 }
 
-/// The overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` tells which bodies are grains.
+/// The overlap of one contact, see [`Simulation::deepest_overlap`]; `grain` tells which bodies are
+/// grains.
 #[inline]
 pub(in crate::step) fn overlap<S: Space>(
     c: &Contact<S>,
@@ -160,8 +162,8 @@ fn book_moves<S: Space>(s: &mut Simulation<S>, moves: &[Move<S>]) -> f64 {
     -external
 }
 
-/// Displaces and rotates a body. For anisotropic inertia its spin rotates with it, so that kinetic energy is
-/// kept.
+/// Displaces and rotates a body. For anisotropic inertia its spin rotates with it, so that kinetic
+/// energy is kept.
 fn displace<S: Space>(bodies: &mut Bodies<S>, b: usize, shift: &S::Vector, turn: &S::Spin) {
     bodies.position[b] += *shift;
     if *turn == S::Spin::zero() {

@@ -178,9 +178,9 @@ fn frame<S: Space>() -> Vec<Field<S, Contact<S>>> {
     fields
 }
 
-/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give: kind and number of the contactor of
-/// each of these bodies, in the same order, and the feature of the name. For programs that match contacts of several files; of
-/// the present shapes and bodies.
+/// The parts of a [`ContactId`](crate::contact::ContactId) that `body_1` and `body_2` do not give:
+/// kind and number of the contactor of each of these bodies, in the same order, and the feature of
+/// the name. For programs that match contacts of several files; of the present shapes and bodies.
 pub fn id_fields<S: Space>(s: &Simulation<S>) -> Vec<Field<S, Contact<S>>> {
     let names = std::sync::Arc::new(ContactNames::of(&s.shapes, &s.state.bodies));
     let side = |name, doc, side: usize, number: bool| {

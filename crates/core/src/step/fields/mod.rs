@@ -1,7 +1,8 @@
-//! What grains and contacts carry for output, each field registered once with its name, unit and a line of explanation.
+//! What grains and contacts carry for output, each field registered once with its name, unit and a
+//! line of explanation.
 //!
-//! The views of `results.h5`, pictures and the test of the documentation draw from the list; a program adds its own fields to
-//! [`Simulation::fields`] before the first state is written:
+//! The views of `results.h5`, pictures and the test of the documentation draw from the list; a
+//! program adds its own fields to [`Simulation::fields`] before the first state is written:
 //!
 //! ```
 //! use fretwork_core::contact::Contact;

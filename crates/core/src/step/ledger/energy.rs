@@ -99,8 +99,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use nalgebra::{Vector1, Vector2};
 
-    /// A driven candidate receives impulse and moment of its contact, a driven antagonist the opposite: r x p + M about its own centre. About a
-    /// common point both cancel.
+    /// A driven candidate receives impulse and moment of its contact, a driven antagonist the
+    /// opposite: r x p + M about its own centre. About a common point both cancel.
     #[test]
     fn driven_bodies_receive_the_moments_of_their_contacts() {
         let centres = [[0.0, 2.0], [1.0, -1.0]];

@@ -4,8 +4,8 @@ use crate::geometry::space::{Space, VectorLike};
 use crate::step::{Simulation, StepError};
 use crate::threads::any;
 
-/// Motion lost to rounding from which a warning is issued, as a fraction of the alert distance: for spheres,
-/// a millionth of the radius.
+/// Motion lost to rounding from which a warning is issued, as a fraction of the alert distance: for
+/// spheres, a millionth of the radius.
 const LOST: f64 = 2e-5;
 /// About what it takes to look at a position (ns).
 const LOOK: f64 = 2.0;
@@ -69,8 +69,8 @@ fn find_overflow<S: Space>(s: &Simulation<S>) -> Result<(), StepError> {
     }
 }
 
-/// Records bodies whose displacement in a step is below the floating-point spacing of their position, so
-/// that they do not move although they should.
+/// Records bodies whose displacement in a step is below the floating-point spacing of their
+/// position, so that they do not move although they should.
 fn watch_rounding<S: Space>(s: &mut Simulation<S>) {
     if s.state.bodies.lost.is_empty() {
         return;

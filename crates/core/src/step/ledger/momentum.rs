@@ -9,12 +9,13 @@ use crate::threads::{map_ranges, pays};
 
 /// Bodies and contacts of a task.
 const CHUNK: usize = 1024;
-/// About what it takes to find the momentum of a body, and to look whether a contact acts from outside (ns).
+/// About what it takes to find the momentum of a body, and to look whether a contact acts from
+/// outside (ns).
 const BODY: f64 = 10.0;
 const CONTACT: f64 = 4.0;
 
-/// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the angular momentum of a step by its moment,
-/// whatever theta is.
+/// Books what the free rigid bodies gained in the step, at q_m: there an impulse changes the
+/// angular momentum of a step by its moment, whatever theta is.
 pub(in crate::step) fn book_momentum<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
@@ -52,7 +53,8 @@ pub(in crate::step) fn book_momentum<S: Space>(
         }
         sum
     });
-    // What is less deep than the deepest share of the smallest body is not the deepest of any, and is not looked into.
+    // What is less deep than the deepest share of the smallest body is not the deepest of any, and
+    // is not looked into.
     let smallest = bodies.length.iter().copied().fold(f64::INFINITY, f64::min);
     let divide = pays(parallel, network.contacts.len(), CONTACT);
     let of_contacts = map_ranges(divide, network.contacts.len(), CHUNK, |some| {

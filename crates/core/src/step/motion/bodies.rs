@@ -1,7 +1,7 @@
 //! Motion of the bodies in the Moreau-Jean theta-scheme: half moves, free velocities, work.
 //!
-//! For anisotropic inertia the spin changes as the body rotates: half moves integrate the free rotation, and
-//! the velocities of the step are those at q_m.
+//! For anisotropic inertia the spin changes as the body rotates: half moves integrate the free
+//! rotation, and the velocities of the step are those at q_m.
 
 use crate::bodies::Bodies;
 use crate::energy::BodyWork;
@@ -60,8 +60,8 @@ pub fn advance<S: Space>(bodies: &mut Bodies<S>, time: f64, parallel: bool) {
     });
 }
 
-/// Computes v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are evaluated
-/// at the theta-point, t + theta h.
+/// Computes v_free = v + h M^-1 F, and the imposed velocities at the end of the step. Forces are
+/// evaluated at the theta-point, t + theta h.
 pub fn free_velocities<S: Space>(
     bodies: &Bodies<S>,
     gravity: &S::Vector,
@@ -156,8 +156,8 @@ impl<S: Space> StepStart<S> {
         self.spin[body]
     }
 
-    /// Computes the work done over the step. `received` holds the contact impulses and moments on the driven
-    /// bodies in their order (N s, N m s).
+    /// Computes the work done over the step. `received` holds the contact impulses and moments on
+    /// the driven bodies in their order (N s, N m s).
     ///
     /// An imposed degree of freedom receives J = m (v+ - v) - h F - (H p), which works at v_theta.
     pub fn work(

@@ -1,5 +1,5 @@
-//! Motion of the bodies in a step: to q_m, where contacts are, and to its end. Rigid bodies are columns,
-//! all others dynamical systems.
+//! Motion of the bodies in a step: to q_m, where contacts are, and to its end. Rigid bodies are
+//! columns, all others dynamical systems.
 
 mod bodies;
 mod systems;
@@ -21,7 +21,8 @@ pub(super) fn move_to_detection<S: Space>(s: &mut Simulation<S>) {
     systems::begin_systems(s, time);
 }
 
-/// The velocities without contacts at the end of the step, from bodies at q_m. `start` takes the spins that they have there.
+/// The velocities without contacts at the end of the step, from bodies at q_m. `start` takes the
+/// spins that they have there.
 pub(super) fn free_motion<S: Space>(
     s: &mut Simulation<S>,
     start: &mut StepStart<S>,

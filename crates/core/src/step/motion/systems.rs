@@ -106,7 +106,8 @@ pub(super) fn restart_systems<S: Space>(s: &mut Simulation<S>) {
     }
 }
 
-/// Takes all systems through the last part of a step (s) and adds their work; gives their kinetic and stored energy.
+/// Takes all systems through the last part of a step (s) and adds their work; gives their kinetic
+/// and stored energy.
 pub(in crate::step) fn end_systems<S: Space>(
     s: &mut Simulation<S>,
     time: f64,

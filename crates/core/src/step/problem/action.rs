@@ -17,9 +17,9 @@ struct Across {
     bond: bool,
 }
 
-/// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act on each other when they touch, on
-/// their surfaces: that these are apart at q_m is an error of the step. A bond, a spring or an attraction acts across the gap, or
-/// the overlap, that there is.
+/// Finds where each contact acts, once contacts and bonds of the step are known. Rigid bodies act
+/// on each other when they touch, on their surfaces: that these are apart at q_m is an error of the
+/// step. A bond, a spring or an attraction acts across the gap, or the overlap, that there is.
 pub(super) fn place_actions<S: Space>(s: &mut Simulation<S>) {
     let across = s.laws.iter().map(|law| Across {
         spring: law.compliant(),
@@ -64,8 +64,8 @@ mod tests {
     use crate::geometry::space::Dim2;
     use crate::laws::sample_laws::{bond, interface, sticky};
 
-    /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond it; friction acts on the surfaces, also where
-    /// another interface attracts.
+    /// What attracts without a bond acts in the middle of the gap, unless the contact is one beyond
+    /// it; friction acts on the surfaces, also where another interface attracts.
     #[test]
     fn attraction_acts_across_the_gap() {
         for (law, acts) in [

@@ -8,10 +8,11 @@ use crate::step::motion::StepStart;
 use crate::step::{Agreement, Simulation, StepError, StepReport};
 use std::time::Instant;
 
-/// Difference between the attraction used and that over the gaps passed, over the load of the contact, that is let stand.
+/// Difference between the attraction used and that over the gaps passed, over the load of the
+/// contact, that is let stand.
 const TOLERANCE: f64 = 1e-4;
-/// Solves of a step, at most, and those in which attractions follow: one contact takes up to eight, and among many some may jump between
-/// gaps that hold and gaps that do not.
+/// Solves of a step, at most, and those in which attractions follow: one contact takes up to eight,
+/// and among many some may jump between gaps that hold and gaps that do not.
 const MOST: u32 = 40;
 const MOST_OF_ATTRACTION: u32 = 12;
 /// Iterations of a solve whose laws are not those of the solution yet.

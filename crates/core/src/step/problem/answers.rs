@@ -1,5 +1,5 @@
-//! Contact states of a step: the relative velocities before it, and the solver's results in the form in
-//! which the laws commit them.
+//! Contact states of a step: the relative velocities before it, and the solver's results in the
+//! form in which the laws commit them.
 
 use super::swerve::shift_of_gap;
 use super::{systems, turning};
@@ -11,8 +11,8 @@ use crate::step::{Scheme, Simulation};
 use crate::threads::fill;
 use std::sync::{Mutex, PoisonError};
 
-/// Least overlap, over the reduced radius, for which a law is asked at a contact that closes within the step: its velocity before may not tell
-/// of that.
+/// Least overlap, over the reduced radius, for which a law is asked at a contact that closes within
+/// the step: its velocity before may not tell of that.
 const CLOSING_OVERLAP: f64 = 1e-3;
 
 /// The velocities of the candidates relative to their antagonists, at the current velocities.
@@ -51,8 +51,8 @@ pub(super) fn relative_velocities<S: Space>(s: &mut Simulation<S>) {
         let (divide, count) = (s.divides_contacts(), network.contacts.len());
         let relative = &before.relative;
         fill(divide, &mut before.overlap, count, |k| {
-            // Not below the overlap at hand: a body that moves apart by more than that in a step would find no spring, and
-            // stiff contacts no equilibrium.
+            // Not below the overlap at hand: a body that moves apart by more than that in a step
+            // would find no spring, and stiff contacts no equilibrium.
             let contact = &network.contacts[k];
             let gap = network.spring_gap(contact);
             let end = gap + h * contact.normal.dot(&relative[k]);
@@ -116,8 +116,8 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
                 e.lost(&solution, n, opening, [&average, &after_all[k]], h)
             }
         };
-        // The shift comes from the position correction unless restitution replaced it; a bounce does no
-        // correction work.
+        // The shift comes from the position correction unless restitution replaced it; a bounce
+        // does no correction work.
         let of_gap = shift_of_gap(network, contact, correction, h);
         let swerve = swerves.get(k).map_or(0.0, |s| s / h);
         let lifts = of_gap < 0.0
@@ -152,8 +152,8 @@ pub(super) fn collect_contact_steps<S: Space>(s: &mut Simulation<S>) {
     s.workspace.solved.begin = begin;
 }
 
-/// Whether a contact begins to slide in a set that was too large to seek another solution, and one of a body that controlled bodies
-/// squeeze.
+/// Whether a contact begins to slide in a set that was too large to seek another solution, and one
+/// of a body that controlled bodies squeeze.
 pub(super) fn is_not_searched<S: Space>(s: &mut Simulation<S>) -> [bool; 2] {
     let workspace = &mut s.workspace;
     let (begin, forms) = (&workspace.solved.begin, &workspace.forms);

@@ -1,13 +1,16 @@
 //! Attraction that depends on the gap, over the gaps that a contact passes in the step.
 //!
-//! Over a step in which the gap at detection g changes by x until the next detection the attraction is G(x): its mean over the gaps passed from the
-//! start of the step to its end, g - (1 - theta) h u^- to g + theta x, which does the work of its potential whatever the step; or its value at
-//! g + x where that holds back more. The latter is a state of equilibrium on the branch on which attraction grows with the gap, as on a neck before
-//! pull-off; it loses a little energy there, where the mean would swing about that state.
+//! Over a step in which the gap at detection g changes by x until the next detection the attraction
+//! is G(x): its mean over the gaps passed from the start of the step to its end, g - (1 - theta) h
+//! u^- to g + theta x, which does the work of its potential whatever the step; or its value at g +
+//! x where that holds back more. The latter is a state of equilibrium on the branch on which
+//! attraction grows with the gap, as on a neck before pull-off; it loses a little energy there,
+//! where the mean would swing about that state.
 //!
-//! A solve with the attraction R found x_s. A contact of the effective mass m would be at x under R(x) = R + (x_s - x) m/h^2. The step ends at
-//! the first x on the way at which G(x) holds it, or, if there is none, at x_s or beyond. There the attraction is linearised: by its value, and,
-//! where it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
+//! A solve with the attraction R found x_s. A contact of the effective mass m would be at x under
+//! R(x) = R + (x_s - x) m/h^2. The step ends at the first x on the way at which G(x) holds it, or,
+//! if there is none, at x_s or beyond. There the attraction is linearised: by its value, and, where
+//! it grows with the gap, by its slope, which the standard form has as the single-valued part b_n.
 
 use super::asking::asks;
 use crate::geometry::space::{Space, VectorLike};
@@ -16,7 +19,8 @@ use crate::laws::columns::StepInfo;
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 
-/// The nodes at which an attraction is asked for: powers of two of the distance from the smallest gap, and parts of each.
+/// The nodes at which an attraction is asked for: powers of two of the distance from the smallest
+/// gap, and parts of each.
 const OCTAVES: usize = 18;
 const PARTS: usize = 8;
 /// Nodes at gaps below zero, where bodies overlap.
@@ -44,7 +48,8 @@ impl Linear {
 #[derive(Clone, Copy, Debug)]
 struct Pull {
     at: usize,
-    /// What the form has beside the attraction: tension (N s), and the shift without what a tension adds to it (m/s).
+    /// What the form has beside the attraction: tension (N s), and the shift without what a tension
+    /// adds to it (m/s).
     tension: f64,
     shift: f64,
     /// Attraction at the gap of detection (N).
@@ -81,7 +86,8 @@ struct Group {
 /// How attractions differ from those over the gaps that a solve led to.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Differences {
-    /// The largest difference, over the load of its contact, to which a hundredth of all load is added.
+    /// The largest difference, over the load of its contact, to which a hundredth of all load is
+    /// added.
     pub worst: f64,
     /// Sum of the differences, and of the loads of all contacts of the scene (N).
     all: f64,
@@ -134,7 +140,8 @@ impl Path {
         [least, all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
     }
 
-    /// Gaps at which to ask for the attraction, in ascending order: close to each other where they are small.
+    /// Gaps at which to ask for the attraction, in ascending order: close to each other where they
+    /// are small.
     fn nodes(&self) -> Vec<f64> {
         let [low, high] = self.bounds();
         let near = 0f64.clamp(low, high);
@@ -226,7 +233,8 @@ impl Passed {
         all
     }
 
-    /// Where to linearise, see the module, under `needed` R(x), and whether that is before x_s, by more than a force `margin`.
+    /// Where to linearise, see the module, under `needed` R(x), and whether that is before x_s, by
+    /// more than a force `margin`.
     fn first_hold(&self, needed: impl Fn(f64) -> f64, margin: f64) -> (Linear, bool) {
         let nodes = self.changes();
         let given: Vec<f64> = nodes.iter().map(|x| self.given(*x)).collect();
@@ -280,8 +288,8 @@ pub(super) fn begin_attractions<S: Space>(s: &Simulation<S>) -> Attractions {
     }
 }
 
-/// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by more than the tolerance, attractions are
-/// linearised anew.
+/// Compares the attraction of a solve with that over the gaps which it led to. Where one differs by
+/// more than the tolerance, attractions are linearised anew.
 pub(super) fn compare_attractions<S: Space>(
     s: &mut Simulation<S>,
     attractions: &mut Attractions,
@@ -439,8 +447,8 @@ fn attraction_at<S: Space>(
     evaluator.attraction_at(&mut step, group.interface, places, gaps)
 }
 
-/// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a body deforms, of which only the answer of a
-/// solve tells.
+/// The least mass with which a contact can resist along its normal (kg; kg/m in 2D): zero where a
+/// body deforms, of which only the answer of a solve tells.
 fn inertia_of<S: Space>(s: &Simulation<S>, at: usize) -> f64 {
     let (bodies, contact) = (&s.state.bodies, &s.state.network.contacts[at]);
     let deforms = |b: &u32| bodies.carrier(*b as usize).is_some();
@@ -481,7 +489,8 @@ mod tests {
         Passed::of(path, &gaps, &force)
     }
 
-    /// The mean over the gaps passed has the work of the potential, whatever the distance over the range.
+    /// The mean over the gaps passed has the work of the potential, whatever the distance over the
+    /// range.
     #[test]
     fn the_mean_does_the_work_of_the_potential() {
         for (start, gap, x) in [

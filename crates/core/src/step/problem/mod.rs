@@ -1,5 +1,5 @@
-//! The contact problem of a step: contacts in the standard form, solved until laws, damage and contacts
-//! agree with the velocities that they lead to.
+//! The contact problem of a step: contacts in the standard form, solved until laws, damage and
+//! contacts agree with the velocities that they lead to.
 
 mod action;
 mod agreement;
@@ -25,12 +25,13 @@ use std::time::Instant;
 
 /// Maximum number of solves of a step: each may close contacts that the previous one did not.
 const MAX_SOLVES: usize = 6;
-/// About what it takes to copy the velocity of a body, and to look whether a contact carries an impulse (ns).
+/// About what it takes to copy the velocity of a body, and to look whether a contact carries an
+/// impulse (ns).
 const COPY: f64 = 3.0;
 const ACTS: f64 = 5.0;
 
-/// Solves the step, and repeats while the resulting velocities close contacts that were not part of the
-/// problem.
+/// Solves the step, and repeats while the resulting velocities close contacts that were not part of
+/// the problem.
 pub(super) fn solve<S: Space>(
     s: &mut Simulation<S>,
     start: &StepStart<S>,
@@ -99,8 +100,8 @@ fn solve_with_all<S: Space>(
     Ok(())
 }
 
-/// Reports impacts with restitution that were only kept from closing, because other impacts of the step
-/// preceded them.
+/// Reports impacts with restitution that were only kept from closing, because other impacts of the
+/// step preceded them.
 fn report_held_back<S: Space>(s: &mut Simulation<S>) {
     for k in &s.workspace.evaluator.held_back {
         if s.workspace.solved.contact_steps[*k].solution.impulse != S::Vector::zero() {

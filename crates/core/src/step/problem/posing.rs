@@ -1,4 +1,5 @@
-//! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities taken over.
+//! The contact problem of a step: set up from bodies, contacts and laws, solved, and its velocities
+//! taken over.
 
 use super::swerve::shift_of_gap;
 use super::{swerve, systems, turning};
@@ -15,8 +16,8 @@ const CHUNK: usize = 1024;
 /// About what it takes to adopt the velocity of a body (ns).
 const ADOPT: f64 = 5.0;
 
-/// Solves the contacts with the current forms, and again while dynamical systems linearise anew at the velocities that they
-/// reach.
+/// Solves the contacts with the current forms, and again while dynamical systems linearise anew at
+/// the velocities that they reach.
 pub(super) fn solve_contacts<S: Space>(
     s: &mut Simulation<S>,
     free: &[(S::Vector, S::Spin)],
@@ -52,8 +53,8 @@ pub(super) fn solve_contacts<S: Space>(
     }
 }
 
-/// Checks that the method supports the current forms; some requirements of laws appear only during a
-/// step.
+/// Checks that the method supports the current forms; some requirements of laws appear only during
+/// a step.
 fn check_method<S: Space>(s: &Simulation<S>) -> Result<(), StepError> {
     let (method, operator) = (s.options.solver.method, s.workspace.problem.operator());
     let by_law = matches!(method, Method::Newton | Method::Interior);

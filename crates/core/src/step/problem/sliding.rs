@@ -1,13 +1,16 @@
 //! Friction that depends on the velocity of sliding, at the velocity at the end of the step.
 //!
-//! A law is linearised at a velocity V: |p_t| = (mu + m (|u_t| - V)) P. Where it rises (m > 0) this is Coulomb's law with the coefficient
-//! mu - m V beside a damper m P, which the standard form has as the single-valued part b_t, and Newton's iteration follows: a law that rises
-//! cannot make a step unstable, however long. Where friction falls with the velocity the coefficient is that at the last velocity found; the
-//! iteration then goes to the next state of equilibrium, stick or slip, in the direction in which the step sets out.
+//! A law is linearised at a velocity V: |p_t| = (mu + m (|u_t| - V)) P. Where it rises (m > 0) this
+//! is Coulomb's law with the coefficient mu - m V beside a damper m P, which the standard form has
+//! as the single-valued part b_t, and Newton's iteration follows: a law that rises cannot make a
+//! step unstable, however long. Where friction falls with the velocity the coefficient is that at
+//! the last velocity found; the iteration then goes to the next state of equilibrium, stick or
+//! slip, in the direction in which the step sets out.
 //!
-//! Laws in the logarithm of the velocity rise without bound towards rest, m P then being far above all masses, and a network of such dampers is
-//! as good as glued. Velocities below the floor V_0, the tolerance of the solver times the root mean square of the velocities of all contacts,
-//! are none that a solution could tell from rest: laws are asked at max(|u_t|, V_0).
+//! Laws in the logarithm of the velocity rise without bound towards rest, m P then being far above
+//! all masses, and a network of such dampers is as good as glued. Velocities below the floor V_0,
+//! the tolerance of the solver times the root mean square of the velocities of all contacts, are
+//! none that a solution could tell from rest: laws are asked at max(|u_t|, V_0).
 
 use super::asking::asks;
 use crate::contact::Contact;
@@ -18,19 +21,21 @@ use crate::laws::{FrictionAt, LawError};
 use crate::solve::form::{ContactForm, Elastic};
 use crate::step::Simulation;
 
-/// Share of the friction of a contact by which that of a law which rises may differ, and share of the friction of all contacts that counts with
-/// its own.
+/// Share of the friction of a contact by which that of a law which rises may differ, and share of
+/// the friction of all contacts that counts with its own.
 const TOLERANCE: f64 = 1e-4;
 const NEXT_TO_NOTHING: f64 = 1e-2;
-/// Share of the friction of all contacts by which that of laws which fall may differ; that of laws which rise, too, after a number of solves:
-/// among many contacts some always turn.
+/// Share of the friction of all contacts by which that of laws which fall may differ; that of laws
+/// which rise, too, after a number of solves: among many contacts some always turn.
 const TOLERANCE_OF_ALL: f64 = 1e-3;
-/// Solves after which laws that fall may differ by more: a contact that jumps between stick and slip has no state in between.
+/// Solves after which laws that fall may differ by more: a contact that jumps between stick and
+/// slip has no state in between.
 const MANY: u32 = 8;
-/// Share of the velocity of linearisation below which Newton's step is taken in the logarithm of the velocity: laws that rise do so ever
-/// slower, and their tangent leads to rest.
+/// Share of the velocity of linearisation below which Newton's step is taken in the logarithm of
+/// the velocity: laws that rise do so ever slower, and their tangent leads to rest.
 const FAR_BELOW: f64 = 0.1;
-/// Largest step of that (powers of e): among many contacts one that is held now may have to slide in the next solve.
+/// Largest step of that (powers of e): among many contacts one that is held now may have to slide
+/// in the next solve.
 const LONGEST: f64 = 4.0;
 /// Largest tolerance that the floor of velocities is taken from.
 const COARSEST: f64 = 1e-4;
@@ -174,7 +179,8 @@ fn floor<S: Space>(tolerance: f64, relative: &[S::Vector]) -> f64 {
     tolerance.min(COARSEST) * (squared / relative.len().max(1) as f64).sqrt()
 }
 
-/// Finds the contacts whose friction depends on the velocity of sliding, and linearises it at the velocities at the start of the step.
+/// Finds the contacts whose friction depends on the velocity of sliding, and linearises it at the
+/// velocities at the start of the step.
 pub(super) fn begin_sliding<S: Space>(
     s: &mut Simulation<S>,
     info: &StepInfo,
@@ -226,8 +232,8 @@ pub(super) fn begin_sliding<S: Space>(
     Ok(all)
 }
 
-/// Compares the friction of a solve with that of the laws at the velocities which it led to. Unless they agree, the laws are linearised
-/// anew if `again`.
+/// Compares the friction of a solve with that of the laws at the velocities which it led to. Unless
+/// they agree, the laws are linearised anew if `again`.
 pub(super) fn compare_sliding<S: Space>(
     s: &mut Simulation<S>,
     laws: &mut SlidingLaws<S>,
@@ -353,7 +359,8 @@ fn linearise_sliding<S: Space>(
     Ok(())
 }
 
-/// Writes what the laws came to as friction alone: forms have its coefficient and no damper, solutions all of it.
+/// Writes what the laws came to as friction alone: forms have its coefficient and no damper,
+/// solutions all of it.
 pub(super) fn settle_sliding<S: Space>(s: &mut Simulation<S>, laws: SlidingLaws<S>) {
     let contacts = laws.groups.into_iter().flat_map(|group| group.contacts);
     for sliding in contacts {

@@ -1,10 +1,10 @@
 //! Surfaces that move on their bodies, as those of bodies that expand do.
 //!
-//! At a contact the surfaces have the velocity u_surface = u_bodies + w relative to each other. Laws
-//! see u_surface. The solver, which knows bodies, gets w with what else is added to its velocities:
-//! s becomes s + w, and the impulse of a bond -(a + B u) becomes -(a + B w + B u). Contacts then work
-//! on bodies by sum p.u_bodies and take sum p.u_surface; the difference is the work of what moves the
-//! surfaces.
+//! At a contact the surfaces have the velocity u_surface = u_bodies + w relative to each other.
+//! Laws see u_surface. The solver, which knows bodies, gets w with what else is added to its
+//! velocities: s becomes s + w, and the impulse of a bond -(a + B u) becomes -(a + B w + B u).
+//! Contacts then work on bodies by sum p.u_bodies and take sum p.u_surface; the difference is the
+//! work of what moves the surfaces.
 
 use crate::contact::Contact;
 use crate::geometry::space::{Space, VectorLike};
@@ -13,8 +13,8 @@ use crate::solve::ContactForm;
 /// How surfaces move on their bodies in a step.
 #[derive(Debug)]
 pub(crate) struct Surfaces<S: Space> {
-    /// Velocities of both surfaces of each contact on their bodies (m/s), in the order of the network;
-    /// empty where none moves.
+    /// Velocities of both surfaces of each contact on their bodies (m/s), in the order of the
+    /// network; empty where none moves.
     pub velocities: Vec<[S::Vector; 2]>,
     /// Work that this does in the step (J; J/m in 2D).
     pub work: f64,

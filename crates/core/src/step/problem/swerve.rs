@@ -1,13 +1,15 @@
-//! What a gap closes in a step beyond its velocity: bodies move on straight lines, while a hollow surface bends towards them, and walls
-//! that turn carry what rests on them round.
+//! What a gap closes in a step beyond its velocity: bodies move on straight lines, while a hollow
+//! surface bends towards them, and walls that turn carry what rests on them round.
 //!
-//! A velocity along the tangent plane leaves a circle of radius R by (h u)^2/(2 R) in each step, and since u_n >= 0 is all that is asked of
-//! what overlaps, these sum up. The contact is therefore asked for the velocity that leaves no gap closed at the end of the step,
-//! h u_n + g >= s. A body that follows the surface then turns round from u_n = -s/h to +s/h at each step, and keeps its energy.
-//! Surfaces that bend away need nothing: their gap opens, and closes in the next step.
+//! A velocity along the tangent plane leaves a circle of radius R by (h u)^2/(2 R) in each step,
+//! and since u_n >= 0 is all that is asked of what overlaps, these sum up. The contact is therefore
+//! asked for the velocity that leaves no gap closed at the end of the step, h u_n + g >= s. A body
+//! that follows the surface then turns round from u_n = -s/h to +s/h at each step, and keeps its
+//! energy. Surfaces that bend away need nothing: their gap opens, and closes in the next step.
 //!
-//! Where material passes through a surface that stays in place ([`crate::bodies::DynamicalSystem::passing`]) it moves along the surface, and the
-//! velocity along the normal that it seems to have on a slope closes no gap either.
+//! Where material passes through a surface that stays in place
+//! ([`crate::bodies::DynamicalSystem::passing`]) it moves along the surface, and the velocity along
+//! the normal that it seems to have on a slope closes no gap either.
 
 use crate::bodies::{Bodies, DynamicalSystem};
 use crate::contact::{Contact, Key, Network};
@@ -20,8 +22,9 @@ use crate::threads::fill;
 /// Velocity and spin of a body.
 type Motion<S> = (<S as Space>::Vector, <S as Space>::Spin);
 
-/// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the velocities without contacts; leaves the
-/// list empty where nothing is hollow, no driven body turns and no material passes.
+/// Finds by how much the motion closes each gap beyond its velocity (m), `free` being the
+/// velocities without contacts; leaves the list empty where nothing is hollow, no driven body turns
+/// and no material passes.
 pub(super) fn find_swerves<S: Space>(s: &mut Simulation<S>, free: &[Motion<S>], h: f64) {
     let mut swerves = std::mem::take(&mut s.workspace.swerves);
     swerves.clear();
@@ -79,7 +82,8 @@ impl<S: Space> Scene<'_, S> {
 
     fn swerve(&self, contact: &Contact<S>, free: &[Motion<S>], h: f64) -> f64 {
         let network = self.network;
-        // A spring pushes out what it lets in, a bond holds what it joins; a contact found on the way has the place where it closes.
+        // A spring pushes out what it lets in, a bond holds what it joins; a contact found on the
+        // way has the place where it closes.
         let held = network.bond(contact).is_some_and(|b| b.intact());
         if contact.closing || held || self.laws[usize::from(contact.law)].compliant() {
             return 0.0;
@@ -98,8 +102,8 @@ impl<S: Space> Scene<'_, S> {
         (-rise).max(0.0)
     }
 
-    /// How much a point of a body rises along the tangent plane of the other by moving along it (m). `arm` is from the body's centre to
-    /// the point, `place` from that of the other.
+    /// How much a point of a body rises along the tangent plane of the other by moving along it
+    /// (m). `arm` is from the body's centre to the point, `place` from that of the other.
     fn rise(
         &self,
         contact: &Contact<S>,
@@ -111,7 +115,8 @@ impl<S: Space> Scene<'_, S> {
     ) -> f64 {
         let bodies = self.bodies;
         let [i, j] = sides.map(|side| contact.bodies[side] as usize);
-        // Contacts change the motion along the surface little; loads without them may change it much.
+        // Contacts change the motion along the surface little; loads without them may change it
+        // much.
         let motion = |b: usize| {
             if bodies.immovable(b) {
                 free[b]
@@ -146,8 +151,8 @@ impl<S: Space> Scene<'_, S> {
     }
 }
 
-/// The velocity at which a step may close the gap of a contact; for a penetration, the (negative) velocity at which the correction
-/// removes its share (m/s).
+/// The velocity at which a step may close the gap of a contact; for a penetration, the (negative)
+/// velocity at which the correction removes its share (m/s).
 pub(super) fn shift_of_gap<S: Space>(
     network: &Network<S>,
     contact: &Contact<S>,

@@ -13,8 +13,9 @@ use std::sync::Arc;
 /// Of a contact without systems.
 const RIGID: u32 = u32::MAX;
 
-/// The different points in an order of their own, where they are fewer than the nodes that they are sums of, and not these
-/// themselves: a contact on a facet is then one unknown of the solver and not one for each vertex.
+/// The different points in an order of their own, where they are fewer than the nodes that they are
+/// sums of, and not these themselves: a contact on a facet is then one unknown of the solver and
+/// not one for each vertex.
 fn fewer_points(mut points: Vec<Nodes>, nodes: usize) -> Vec<Nodes> {
     if points.iter().all(|point| point.count() == 1) {
         return Vec::new();
@@ -63,8 +64,8 @@ pub(super) fn forget_system_contacts<S: Space>(s: &mut Simulation<S>) {
     s.workspace.systems.turned.clear();
 }
 
-/// Finds what the current contacts act on. Asked again in the same step, for more contacts, it keeps the compliance of
-/// systems of which no other nodes are touched.
+/// Finds what the current contacts act on. Asked again in the same step, for more contacts, it
+/// keeps the compliance of systems of which no other nodes are touched.
 pub(super) fn find_system_contacts<S: Space>(s: &mut Simulation<S>) {
     find_touched_nodes(s, &[]);
 }
@@ -144,7 +145,8 @@ fn find_touched_nodes<S: Space>(s: &mut Simulation<S>, moments: &[MomentForm<S>]
     s.workspace.systems = found;
 }
 
-/// A system as the solver sees it, by all nodes of the compliance that it keeps, by touched nodes, or, where there are any, by points.
+/// A system as the solver sees it, by all nodes of the compliance that it keeps, by touched nodes,
+/// or, where there are any, by points.
 fn nodal<S: Space>(
     s: &Simulation<S>,
     system: usize,
@@ -238,8 +240,9 @@ pub(super) fn adopt_system_velocities<S: Space>(s: &mut Simulation<S>) -> Result
     Ok(())
 }
 
-/// Has systems whose forces are not linear linearise at the velocities that they reached; whether one did, so that the contacts
-/// are to be solved again. Their next impulses start from the current ones.
+/// Has systems whose forces are not linear linearise at the velocities that they reached; whether
+/// one did, so that the contacts are to be solved again. Their next impulses start from the current
+/// ones.
 ///
 /// # Errors
 /// A system that finds no balance.
@@ -290,7 +293,8 @@ fn velocity_of_side<S: Space>(s: &Simulation<S>, side: &Side<S>) -> S::Vector {
     }
 }
 
-/// Velocity of the candidate of the `k`-th contact relative to its antagonist where a system is one of them (m/s).
+/// Velocity of the candidate of the `k`-th contact relative to its antagonist where a system is one
+/// of them (m/s).
 pub(super) fn relative_velocity_of_sides<S: Space>(
     s: &Simulation<S>,
     k: usize,

@@ -1,4 +1,5 @@
-//! Moments of contacts with dynamical systems: what of a system turns where a contact acts, and the spins that laws are told of.
+//! Moments of contacts with dynamical systems: what of a system turns where a contact acts, and the
+//! spins that laws are told of.
 
 use crate::bodies::{Nodes, TurningNode};
 use crate::contact::Contact;
@@ -17,8 +18,8 @@ pub(super) fn turned<S: Space>(
     })
 }
 
-/// Spin of the candidate of a contact relative to its antagonist at the start of the step, and now (rad/s), with the nodes that turn.
-/// `start` gives the spin of a rigid body at the start.
+/// Spin of the candidate of a contact relative to its antagonist at the start of the step, and now
+/// (rad/s), with the nodes that turn. `start` gives the spin of a rigid body at the start.
 fn relative_spins<S: Space>(
     s: &Simulation<S>,
     contact: &Contact<S>,
@@ -44,8 +45,8 @@ pub(super) fn relative_spin_before<S: Space>(s: &Simulation<S>, contact: &Contac
     relative_spins(s, contact, &turned, now)[0]
 }
 
-/// The same over the step of the `k`-th contact that resists rotation, at its start and its end. `start` gives the spin of a rigid body
-/// at the start.
+/// The same over the step of the `k`-th contact that resists rotation, at its start and its end.
+/// `start` gives the spin of a rigid body at the start.
 pub(super) fn relative_spins_of_moment<S: Space>(
     s: &Simulation<S>,
     k: usize,

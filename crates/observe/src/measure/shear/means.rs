@@ -1,4 +1,5 @@
-//! Means of plane shear from a time on, with the error of averaging and the strains before and during it.
+//! Means of plane shear from a time on, with the error of averaging and the strains before and
+//! during it.
 
 use crate::quantity::Unit;
 use crate::quantity::unit::{ONE, PASCAL};
@@ -23,8 +24,9 @@ pub(super) struct Means {
 }
 
 impl Means {
-    /// From the columns rate, p, tau and phi, and the kinetic parts of p and tau, whose rows are means over the time since the
-    /// row before. `inertial` is the inertial number at a rate and a pressure. `None` without rows after `start`.
+    /// From the columns rate, p, tau and phi, and the kinetic parts of p and tau, whose rows are
+    /// means over the time since the row before. `inertial` is the inertial number at a rate and a
+    /// pressure. `None` without rows after `start`.
     pub fn new(
         time: &[f64],
         columns: &[Vec<f64>; 4],
@@ -67,7 +69,8 @@ impl Means {
             let (Some(r), Some(q), Some(t), Some(f)) = (of(0), of(1), of(2), of(3)) else {
                 break;
             };
-            // Ratios to first order in the deviations from the means, so that the mean of the blocks is the value above.
+            // Ratios to first order in the deviations from the means, so that the mean of the
+            // blocks is the value above.
             blocks[0].push(q);
             blocks[1].push(mu + (t * tau.signum() - mu * q) / p);
             blocks[2].push(f);
@@ -172,7 +175,8 @@ mod tests {
 
     #[test]
     fn ratios_are_of_means_that_rows_of_any_length_give() {
-        // From 1 s on rows of 0.1 and 0.3 s in turn: p 100 and 300 Pa, tau 50 and 90 Pa, so that p = 250, tau = 80 Pa.
+        // From 1 s on rows of 0.1 and 0.3 s in turn: p 100 and 300 Pa, tau 50 and 90 Pa, so that p
+        // = 250, tau = 80 Pa.
         let mut time = vec![0.0, 1.0];
         let mut columns = [
             vec![0.0, 7.0],

@@ -1,14 +1,16 @@
 //! Plane shear of the grains between two heights, away from the walls.
 //!
-//! The shear rate is the slope of v_x over height. The stress is that of the contacts and that of the motion (da Cruz et al.,
-//! Phys. Rev. E 72 (2005) 021309, section II), the sum of what crosses a layer in momentum: (sum f l + sum m v' v')/V, with the
-//! part of each branch l that lies between the heights, and v' relative to the mean velocity of the layers, a straight line
-//! over the height. The solid fraction counts the part of each grain between the heights. The inertial number is rate sqrt(m/p)
-//! with the mean mass in 2D, and rate d sqrt(density/p) in 3D.
+//! The shear rate is the slope of v_x over height. The stress is that of the contacts and that of
+//! the motion (da Cruz et al., Phys. Rev. E 72 (2005) 021309, section II), the sum of what crosses
+//! a layer in momentum: (sum f l + sum m v' v')/V, with the part of each branch l that lies between
+//! the heights, and v' relative to the mean velocity of the layers, a straight line over the
+//! height. The solid fraction counts the part of each grain between the heights. The inertial
+//! number is rate sqrt(m/p) with the mean mass in 2D, and rate d sqrt(density/p) in 3D.
 //!
-//! A row of the statistics has means over the steps since the row before: contacts between rigid grains carry impulses, and
-//! the pressure of one step differs from that of the next by as much as its mean. In the summary mu and I are computed from
-//! the mean stresses and the mean rate, with confidence intervals from blocks of time.
+//! A row of the statistics has means over the steps since the row before: contacts between rigid
+//! grains carry impulses, and the pressure of one step differs from that of the next by as much as
+//! its mean. In the summary mu and I are computed from the mean stresses and the mean rate, with
+//! confidence intervals from blocks of time.
 
 mod means;
 mod sums;

@@ -1,5 +1,5 @@
-//! Sums over steps of what plane shear is measured by: momentum that contacts carry across the layers, momentum that grains
-//! carry by their motion, shear rate and solid fraction.
+//! Sums over steps of what plane shear is measured by: momentum that contacts carry across the
+//! layers, momentum that grains carry by their motion, shear rate and solid fraction.
 
 use super::below;
 use crate::measure::{Grain, grains, line};
@@ -13,7 +13,8 @@ use std::ops::AddAssign;
 pub(super) struct Sums {
     /// Duration (s).
     pub time: f64,
-    /// Impulses of the contacts times their branches, over the volume: across the layers and along (Pa s).
+    /// Impulses of the contacts times their branches, over the volume: across the layers and along
+    /// (Pa s).
     pub contacts: [f64; 2],
     /// The same of the motion of the grains, m v' v' h.
     pub motion: [f64; 2],
@@ -52,8 +53,8 @@ impl Sums {
         self.motion.map(|m| m / self.time)
     }
 
-    /// Inertial number at a shear rate and a pressure: rate sqrt(m/p) in 2D, rate d sqrt(density/p) in 3D; zero without
-    /// pressure.
+    /// Inertial number at a shear rate and a pressure: rate sqrt(m/p) in 2D, rate d sqrt(density/p)
+    /// in 3D; zero without pressure.
     pub fn inertial<S: Space>(&self, rate: f64, p: f64) -> f64 {
         let (mass, radius) = (self.mass / self.time, self.radius / self.time);
         if p <= 0.0 || mass <= 0.0 {
@@ -119,8 +120,9 @@ impl Layer {
         }
     }
 
-    /// Sums of impulse times branch of the contacts, across the layers and along, each by the part of its branch that lies in
-    /// the layer; the shear is the traction of the upper side on the lower.
+    /// Sums of impulse times branch of the contacts, across the layers and along, each by the part
+    /// of its branch that lies in the layer; the shear is the traction of the upper side on the
+    /// lower.
     fn impulses<S: Space>(self, s: &Simulation<S>) -> [f64; 2] {
         let up = S::D - 1;
         let mut sum = [0.0; 2];
@@ -135,8 +137,9 @@ impl Layer {
     }
 }
 
-/// Sums m v_y' v_y' and m v_x' v_y' over grains given by mass, height and velocity (x, y): v' is relative to the straight line
-/// through the velocities over the height, so that an affine field has none.
+/// Sums m v_y' v_y' and m v_x' v_y' over grains given by mass, height and velocity (x, y): v' is
+/// relative to the straight line through the velocities over the height, so that an affine field
+/// has none.
 fn fluctuations(grains: impl Iterator<Item = (f64, f64, [f64; 2])> + Clone) -> [f64; 2] {
     let (mut mass, mut height, mut momentum) = (0.0, 0.0, [0.0; 2]);
     for (m, y, v) in grains.clone() {
@@ -181,7 +184,8 @@ mod tests {
 
     #[test]
     fn pairs_of_opposite_velocity_carry_momentum_across_the_layers() {
-        // Two grains of 2 kg/m at each height, v = U(y) +- (0.3, -0.2) m/s: m v_y' v_y' = 0.08, m v_x' v_y' = -0.12 each.
+        // Two grains of 2 kg/m at each height, v = U(y) +- (0.3, -0.2) m/s: m v_y' v_y' = 0.08, m
+        // v_x' v_y' = -0.12 each.
         let grains: Vec<_> = (0..4)
             .flat_map(|k| {
                 let y = f64::from(k);

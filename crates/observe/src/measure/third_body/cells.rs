@@ -40,8 +40,8 @@ pub(super) struct Cell {
     pub bonds: f64,
     /// Number of their broken bonds.
     pub broken: f64,
-    /// Sums f l (N m; N), see [`STRESSES`]. In time averages the shear is multiplied by the sign of the
-    /// sliding.
+    /// Sums f l (N m; N), see [`STRESSES`]. In time averages the shear is multiplied by the sign of
+    /// the sliding.
     pub moment: [f64; STRESSES],
     /// Dissipated energy by mechanism (J; J/m).
     pub energy: [f64; MECHANISMS.len()],
@@ -95,8 +95,8 @@ impl Cell {
         self.warmth / self.mass
     }
 
-    /// Velocity over that of the second body, weighted by its square: <v V>/<V^2>, which is also defined for
-    /// reciprocating sliding.
+    /// Velocity over that of the second body, weighted by its square: <v V>/<V^2>, which is also
+    /// defined for reciprocating sliding.
     pub fn carried(&self) -> f64 {
         self.drive / self.square
     }
@@ -123,7 +123,8 @@ pub(super) struct Block {
     pub thickness: f64,
     /// Sum of the mean cluster sizes.
     pub cluster: f64,
-    /// The bins, with one cell before the first and one after the last for material beyond the faces.
+    /// The bins, with one cell before the first and one after the last for material beyond the
+    /// faces.
     pub cells: Vec<Cell>,
 }
 
@@ -161,7 +162,8 @@ impl Block {
         self.time[1] - self.time[0]
     }
 
-    /// Pairs (depth over thickness, velocity over the second body's) of bins with mass, if there is sliding.
+    /// Pairs (depth over thickness, velocity over the second body's) of bins with mass, if there is
+    /// sliding.
     pub fn profile(&self) -> Vec<(f64, f64)> {
         let full = self
             .bins()
@@ -171,7 +173,8 @@ impl Block {
     }
 }
 
-/// History of blocks with equal numbers of samples; adjacent blocks are merged when there are too many.
+/// History of blocks with equal numbers of samples; adjacent blocks are merged when there are too
+/// many.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct History {
     /// The blocks so far.

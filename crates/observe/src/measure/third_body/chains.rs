@@ -1,10 +1,11 @@
 //! Force chains after Peters, Muthuswamy, Wibowo, Tordesillas, Phys. Rev. E 72 (2005) 041307.
 //!
-//! The load of a grain is its own stress, sum f (x) l over its contacts divided by its volume. Candidates are
-//! the grains whose major principal stress is at least the mean over those that carry load. Two of them are
-//! linked if the line between them is within 45 degrees of the major principal directions of both. If there
-//! are several such neighbours on one side of a grain, the one with the largest force is chosen, and the link
-//! must be chosen from both ends, so that chains do not branch. A chain has at least three grains.
+//! The load of a grain is its own stress, sum f (x) l over its contacts divided by its volume.
+//! Candidates are the grains whose major principal stress is at least the mean over those that
+//! carry load. Two of them are linked if the line between them is within 45 degrees of the major
+//! principal directions of both. If there are several such neighbours on one side of a grain, the
+//! one with the largest force is chosen, and the link must be chosen from both ends, so that chains
+//! do not branch. A chain has at least three grains.
 
 use super::clusters::Sets;
 use nalgebra::{Matrix3, Vector3};

@@ -29,8 +29,8 @@ impl Sets {
         k
     }
 
-    /// Merges the sets of two members; the lower representative is kept, so the result does not depend on the
-    /// order.
+    /// Merges the sets of two members; the lower representative is kept, so the result does not
+    /// depend on the order.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.parent[a.max(b)] = a.min(b) as u32;
@@ -44,8 +44,8 @@ pub(super) struct Clusters {
     pub count: usize,
     /// Number of grains of the largest; 1 if there are no bonds.
     pub largest: usize,
-    /// Mass-weighted mean size, sum m n / sum m over all grains, with n the size of a grain's cluster: 1 if
-    /// there are no bonds.
+    /// Mass-weighted mean size, sum m n / sum m over all grains, with n the size of a grain's
+    /// cluster: 1 if there are no bonds.
     pub mean: f64,
     /// Number of clusters and their mass by size (kg; kg/m in 2D), including single grains.
     pub sizes: BTreeMap<usize, (usize, f64)>,

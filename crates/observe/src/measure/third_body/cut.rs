@@ -1,8 +1,8 @@
 //! Volume fraction of a grain below a depth.
 //!
-//! Exact for disks (circular segments) and balls (spherical segments). A convex polygon is clipped; its area
-//! is distributed in proportion to its outline, in which rounded corners are polygonal too. A polyhedron is
-//! treated as the ball of the same volume.
+//! Exact for disks (circular segments) and balls (spherical segments). A convex polygon is clipped;
+//! its area is distributed in proportion to its outline, in which rounded corners are polygonal
+//! too. A polyhedron is treated as the ball of the same volume.
 
 use super::gap::Gap;
 use crate::measure::Grain;

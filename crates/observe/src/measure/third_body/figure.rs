@@ -1,5 +1,5 @@
-//! Figure of a third body: profiles with the depth upwards. Panels of one quantity show it for each time
-//! slice; panels of several quantities show time averages.
+//! Figure of a third body: profiles with the depth upwards. Panels of one quantity show it for each
+//! time slice; panels of several quantities show time averages.
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::tables::powers;

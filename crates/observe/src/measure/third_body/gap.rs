@@ -1,8 +1,8 @@
 //! Position of a third body between the faces of two first bodies, and the bins across it.
 //!
-//! The face of a first body is at the mean height of its parts that face the layer, weighted by their
-//! projection: the mean line of rough profiles and surfaces, the mean of the caps of balls (pi/4 of the
-//! radius for disks, 2/3 for spheres), and the highest corner of convex parts.
+//! The face of a first body is at the mean height of its parts that face the layer, weighted by
+//! their projection: the mean line of rough profiles and surfaces, the mean of the caps of balls
+//! (pi/4 of the radius for disks, 2/3 for spheres), and the highest corner of convex parts.
 
 use crate::measure::Grain;
 use fretwork_core::geometry::convex::Core;
@@ -57,7 +57,8 @@ impl Gap {
         self.thickness * cell as f64 / self.bins as f64
     }
 
-    /// Distributes an object over the cells between two depths; `below` gives its fraction below a depth.
+    /// Distributes an object over the cells between two depths; `below` gives its fraction below a
+    /// depth.
     pub fn share(
         &self,
         low: f64,
@@ -118,7 +119,8 @@ impl Faces {
         s.state.bodies.driven[self.places[k]].body as usize
     }
 
-    /// Updates the faces from the surfaces of the bodies, or from the grains if these bound the layer.
+    /// Updates the faces from the surfaces of the bodies, or from the grains if these bound the
+    /// layer.
     pub fn look<S: Space>(&mut self, s: &Simulation<S>, extent: Extent, all: &[Grain<'_, S>]) {
         let gap = &mut self.gap;
         let across = gap.across;
@@ -177,8 +179,8 @@ impl Faces {
     }
 }
 
-/// Mean coordinate of the parts of a body that face one side along an axis, or of the whole body if `towards`
-/// is 0 (m).
+/// Mean coordinate of the parts of a body that face one side along an axis, or of the whole body if
+/// `towards` is 0 (m).
 fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> f64 {
     let (mut sum, mut weight) = (0.0, 0.0);
     let mut add = |w: f64, height: f64| {
@@ -236,9 +238,9 @@ fn face<S: Space>(s: &Simulation<S>, body: u32, across: usize, towards: f64) -> 
     }
 }
 
-/// Signed projected area of a part of an outline along an axis, positive if it faces the positive side, and
-/// its mean coordinate (m). In 2D a segment with the solid on its right, in 3D a polygon about its outward
-/// normal.
+/// Signed projected area of a part of an outline along an axis, positive if it faces the positive
+/// side, and its mean coordinate (m). In 2D a segment with the solid on its right, in 3D a polygon
+/// about its outward normal.
 fn projection<V: VectorLike>(points: &[V], across: usize) -> (f64, f64) {
     let mean = points.iter().map(|p| p[across]).sum::<f64>() / points.len().max(1) as f64;
     let (i, j) = match (V::N, across) {
@@ -275,8 +277,8 @@ fn ends<S: Space>(all: &[Grain<'_, S>], across: usize) -> [f64; 2] {
     [end(1.0), end(-1.0)]
 }
 
-/// Area of a section across the layer: the period along periodic axes, otherwise the extent of the grains
-/// (m^2; m in 2D).
+/// Area of a section across the layer: the period along periodic axes, otherwise the extent of the
+/// grains (m^2; m in 2D).
 fn section<S: Space>(s: &Simulation<S>, across: usize, all: &[Grain<'_, S>]) -> f64 {
     let axes = (0..S::D).filter(|k| *k != across);
     let length = |k: usize| {

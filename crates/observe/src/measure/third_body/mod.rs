@@ -1,5 +1,5 @@
-//! Third body: profiles across its thickness and over time, clusters, force chains, flow regime, and the
-//! distribution of dissipation. Definitions and criteria are in `docs/third_body.md`.
+//! Third body: profiles across its thickness and over time, clusters, force chains, flow regime,
+//! and the distribution of dissipation. Definitions and criteria are in `docs/third_body.md`.
 
 mod cells;
 mod chains;
@@ -54,11 +54,12 @@ pub struct ThirdBody<S: Space> {
     row: Vec<f64>,
 }
 
-/// Below this fraction of the largest sliding velocity the motion is at a reversal, and no regime is
-/// determined.
+/// Below this fraction of the largest sliding velocity the motion is at a reversal, and no regime
+/// is determined.
 const TURNING: f64 = 1e-2;
 
-/// Name, unit and description of the columns; `stress_lateral` exists in 3D only, `temperature` where heat is computed.
+/// Name, unit and description of the columns; `stress_lateral` exists in 3D only, `temperature`
+/// where heat is computed.
 const COLUMNS: [(&str, &str, &str); 21] = [
     ("thickness", "m", "thickness of the third body"),
     ("solid_fraction", "", "solid fraction between the faces"),
@@ -182,13 +183,14 @@ impl<S: Space> ThirdBody<S> {
         format!("{}_{part}", self.spec.name)
     }
 
-    /// Whether the next step ends after the start: it is the first that counts, as in a friction test.
+    /// Whether the next step ends after the start: it is the first that counts, as in a friction
+    /// test.
     fn due(&self, s: &Simulation<S>) -> bool {
         s.state.time + s.options.scheme.h > self.spec.start
     }
 
-    /// The flow at the end (over the last complete cycle of the friction test, or the second half of the
-    /// time), the mass-weighted mean cluster size there, and a description of that interval.
+    /// The flow at the end (over the last complete cycle of the friction test, or the second half
+    /// of the time), the mass-weighted mean cluster size there, and a description of that interval.
     fn flow(&self, table: &Table) -> (Option<Flow>, f64, String) {
         let all = self.history.whole().time;
         let cycle = table.last_cycle().filter(|(_, start)| *start >= all[0]);
@@ -375,7 +377,8 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         }
         let load = self.spent.load;
         if let Some(mu) = self.spent.friction() {
-            // Energy stored by the grains and their bonds, or supplied by the bodies other than by sliding.
+            // Energy stored by the grains and their bonds, or supplied by the bodies other than by
+            // sliding.
             for (part, value, doc) in [
                 (
                     "mu_from_forces",

@@ -1,8 +1,8 @@
 //! Flow regime of a third body, from the velocity profile across it.
 //!
-//! w(y) is the velocity of the grains relative to the first body over that of the second, 0 at the first wall and 1 at
-//! the second without slip; y is normalised by the thickness. The terms are those of Mollon, Tribol. Lett. 67 (2019) 120;
-//! the criteria are our own:
+//! w(y) is the velocity of the grains relative to the first body over that of the second, 0 at the
+//! first wall and 1 at the second without slip; y is normalised by the thickness. The terms are
+//! those of Mollon, Tribol. Lett. 67 (2019) 120; the criteria are our own:
 //!
 //! - plug with wall slip: the interior, from y = 0.1 to 0.9, takes less than 20 % of the sliding;
 //! - Couette: it takes more than 50 %, and a straight line through w there has R^2 above 0.9;
@@ -158,7 +158,8 @@ mod tests {
         assert!((step.straight - 0.75).abs() < 0.01, "{}", step.straight);
         assert_eq!(Regime::of(Some(&step), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(Some(&step), 30.0), Regime::Agglomerated);
-        // Half of the sliding at a wall, the other half distributed uniformly: 40 % in the interior.
+        // Half of the sliding at a wall, the other half distributed uniformly: 40 % in the
+        // interior.
         assert_eq!(Regime::of(Some(&profile(|y| 0.5 * y)), 1.0), Regime::Mixed);
         assert_eq!(Regime::of(None, 1.0), Regime::None);
         assert!(flow(&[(0.25, 0.0), (0.75, 1.0)]).is_none());

@@ -22,7 +22,8 @@ pub(super) struct ChainNumbers {
     pub force: f64,
     /// Mean number of grains per chain; 0 without chains.
     pub length: f64,
-    /// Mean angle of the links from the normal of the layer towards the sliding (rad); NaN without chains.
+    /// Mean angle of the links from the normal of the layer towards the sliding (rad); NaN without
+    /// chains.
     pub angle: f64,
 }
 
@@ -127,8 +128,8 @@ impl LayerSnapshot {
     }
 }
 
-/// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the mean
-/// positions and velocities of the bins, so that an affine field has zero temperature.
+/// Mass times granular temperature |v - <v>(y)|^2/D, with <v>(y) interpolated linearly between the
+/// mean positions and velocities of the bins, so that an affine field has zero temperature.
 fn granular_temperature<S: Space>(
     s: &Simulation<S>,
     gap: &Gap,
@@ -162,8 +163,8 @@ fn mean_at<V: VectorLike>(points: &[(f64, V)], place: f64) -> V {
     if b.0 <= a.0 {
         return a.1;
     }
-    // Thin bins at a wall may hold the same grains at nearly the same mean position, so the extrapolation is
-    // limited.
+    // Thin bins at a wall may hold the same grains at nearly the same mean position, so the
+    // extrapolation is limited.
     let ratio = ((place - a.0) / (b.0 - a.0)).clamp(-1.0, 2.0);
     a.1 + (b.1 - a.1) * ratio
 }

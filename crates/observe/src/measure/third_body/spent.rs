@@ -1,8 +1,8 @@
-//! Distribution of dissipated energy by depth and by pair of bodies, and its contribution to the friction
-//! coefficient.
+//! Distribution of dissipated energy by depth and by pair of bodies, and its contribution to the
+//! friction coefficient.
 //!
-//! A contact's energy counts at its contact point; beyond a face it counts in the bin at that face. A bond
-//! that breaks because its bodies moved out of range counts at its last position.
+//! A contact's energy counts at its contact point; beyond a face it counts in the bin at that face.
+//! A bond that breaks because its bodies moved out of range counts at its last position.
 
 use super::cells::MECHANISMS;
 use super::gap::{Faces, Gap};
@@ -78,8 +78,8 @@ pub(super) struct Dissipation<S: Space> {
     pub work: f64,
     /// The integral of P |V| dt (J).
     pub load: f64,
-    /// Observer of dissipated and stored energy and of the work of all driven bodies, with its balance at the
-    /// start of the account and now.
+    /// Observer of dissipated and stored energy and of the work of all driven bodies, with its
+    /// balance at the start of the account and now.
     ledger: Option<(Layer<S>, Balance, Balance)>,
     grain: Vec<bool>,
 }
@@ -110,8 +110,8 @@ impl<S: Space> Dissipation<S> {
         self.ledger.is_some()
     }
 
-    /// Friction coefficient from the ledger: dissipated and stored energy, less the work of the driven bodies
-    /// other than by sliding, over the integral of P |V| dt.
+    /// Friction coefficient from the ledger: dissipated and stored energy, less the work of the
+    /// driven bodies other than by sliding, over the integral of P |V| dt.
     pub fn friction(&self) -> Option<f64> {
         let (_, start, end) = self.ledger.as_ref()?;
         let other = end.other - start.other - self.work;

@@ -1,4 +1,5 @@
-//! Tables of a third body: profiles by time slice, energies by pair of bodies and by bin, cluster sizes.
+//! Tables of a third body: profiles by time slice, energies by pair of bodies and by bin, cluster
+//! sizes.
 
 use super::cells::{Block, Cell, MECHANISMS};
 use super::clusters::Clusters;
@@ -66,8 +67,8 @@ fn row(slice: usize, k: usize, cell: &Cell, block: &Block) -> Vec<f64> {
     row
 }
 
-/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are `NaN`. Temperatures in kelvin stand
-/// there where grains are `heated`.
+/// The profiles: slice 0 is the whole time, followed by the time slices; undefined values are
+/// `NaN`. Temperatures in kelvin stand there where grains are `heated`.
 pub(super) fn profiles(whole: &Block, slices: &[Block], dimension: usize, heated: bool) -> String {
     // In 2D the stress has no lateral component.
     let shown = |k: &usize| match PROFILE[*k] {

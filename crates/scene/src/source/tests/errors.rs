@@ -124,8 +124,8 @@ fn more_ron_errors() {
 #[test]
 fn malformed_text_points_at_its_cause() {
     let error = |old, new| refusal(old, new);
-    // The parser may reject an earlier value before it reaches the malformed position, which then becomes a
-    // note.
+    // The parser may reject an earlier value before it reaches the malformed position, which then
+    // becomes a note.
     let open = text().replace("frequency: 5.0,\n    ),", "frequency: 5.0,\n    ");
     let open = Source::from_text("case.ron", open);
     let shown = open.parse::<Case>().unwrap_err().to_string();
