@@ -6,11 +6,10 @@
 //! `fretwork/_observers.py`.
 
 use crate::simulation::Simulation;
-use fretwork::geometry::space::Space;
-use fretwork::record::Observer;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::statistics::Column;
-use fretwork::step::{self, StepReport};
+use fretwork::record::{Observer, RunView};
+use fretwork::step::StepReport;
 use pyo3::prelude::*;
 use std::collections::HashSet;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -90,12 +89,12 @@ impl PythonObserver {
     }
 
     /// Calls a method with the simulation, lent for the call.
-    fn call<S: Space>(&mut self, method: &str, s: &step::Simulation<S>) {
+    fn call(&mut self, method: &str, run: &dyn RunView) {
         if self.wishes.lock().is_some() {
             return;
         }
         let answer = Python::attach(|py| -> PyResult<(Option<Vec<f64>>, Option<String>)> {
-            let lent = Bound::new(py, Simulation::lend(s))?;
+            let lent = Bound::new(py, Simulation::lend(run))?;
             let answer = self.object.bind(py).call_method1(method, (&lent,));
             lent.get().end_loan();
             answer?.extract()
@@ -114,22 +113,22 @@ impl PythonObserver {
     }
 }
 
-impl<S: Space> Observer<S> for PythonObserver {
+impl Observer for PythonObserver {
     fn name(&self) -> String {
         format!("Python: {}", self.name)
     }
 
-    fn begin(&mut self, s: &step::Simulation<S>) {
-        self.call("begin", s);
+    fn begin(&mut self, run: &dyn RunView) {
+        self.call("begin", run);
     }
 
     fn reads_statistics(&self) -> bool {
         false
     }
 
-    fn after_step(&mut self, s: &step::Simulation<S>, _: &StepReport) {
-        if s.state.steps.is_multiple_of(self.every) {
-            self.call("step", s);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        if run.steps().is_multiple_of(self.every) {
+            self.call("step", run);
         }
     }
 
@@ -137,7 +136,7 @@ impl<S: Space> Observer<S> for PythonObserver {
         self.columns.clone()
     }
 
-    fn sample(&mut self, _: &step::Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
         self.latest.clone()
     }
 

@@ -9,7 +9,7 @@ use crate::workers::Workers;
 use fretwork::cli;
 use fretwork::laws::watch::{self, Saved};
 use fretwork::record::checkpoint::Found;
-use fretwork::record::{self, Observed, Progress, Run, RunError, RunOptions};
+use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
 use fretwork::scene::{Built, InputError, Loaded, Scene};
 use pyo3::prelude::*;
@@ -197,7 +197,7 @@ struct Task {
 }
 
 impl Task {
-    fn run<S: Observed>(self, mut built: Built<S>) -> End {
+    fn run<S: Space>(self, mut built: Built<S>) -> End {
         let (loaded, options) = (&self.loaded, &self.options);
         let failed = |e| End::Failed(e, None);
         let mut stop = None;

@@ -9,6 +9,7 @@ use crate::stepper::{Moment, Stepper};
 use crate::workers::Workers;
 use fretwork::fields::{Field, GrainPart, Value};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
+use fretwork::record::RunView;
 use fretwork::scene::Scene;
 use fretwork::step;
 use pyo3::prelude::*;
@@ -115,8 +116,8 @@ impl Simulation {
 
     /// A loan of a simulation of a run, which must be [ended](Self::end_loan) before the reference
     /// ends.
-    pub(crate) fn lend<S: Space>(simulation: &step::Simulation<S>) -> Self {
-        Self::lent(match step::InDimension::of(simulation) {
+    pub(crate) fn lend(run: &dyn RunView) -> Self {
+        Self::lent(match run.in_dimension() {
             step::InDimension::Dim2(s) => Held::Lent2(Lent(s)),
             step::InDimension::Dim3(s) => Held::Lent3(Lent(s)),
         })

@@ -1,6 +1,7 @@
 //! A simulation with the observers of a run, stepped by hand.
 
-use fretwork::record::{Observed, Observers, run_observers};
+use fretwork::geometry::space::Space;
+use fretwork::record::{Observers, run_observers};
 use fretwork::scene::{Built, Loaded, processes};
 use fretwork::step::{Simulation, StepError, StepReport};
 
@@ -16,13 +17,13 @@ pub(crate) struct Moment {
 /// A simulation, the observers whose columns the statistics of a run have, and the report of the
 /// last step.
 #[derive(Debug)]
-pub(crate) struct Stepper<S: Observed> {
+pub(crate) struct Stepper<S: Space> {
     pub(crate) simulation: Simulation<S>,
-    pub(crate) observers: Observers<S>,
+    pub(crate) observers: Observers,
     pub(crate) report: Option<StepReport>,
 }
 
-impl<S: Observed> Stepper<S> {
+impl<S: Space> Stepper<S> {
     pub(crate) fn new(loaded: &Loaded, built: Built<S>, threads: usize) -> Box<Self> {
         let mut simulation = built.simulation;
         simulation.options.solver.parallel = threads > 1;

@@ -3,6 +3,7 @@
 use super::output::{answer_json, inform};
 use super::progress::Display;
 use super::{CaseArgs, Failure, again};
+use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::record::checkpoint::Found;
 use crate::record::{self, Run, RunError, RunOptions, Summary};
@@ -12,7 +13,6 @@ use crate::scene::source::clean;
 use crate::scene::{Built, Loaded, Scene, load};
 use crate::step::StepError;
 use clap::Args;
-use fretwork_observe::standard::Observed;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -137,7 +137,7 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 }
 
 /// Runs or resumes a case; `None` if the run is already finished.
-fn run_case<S: Observed>(
+fn run_case<S: Space>(
     loaded: &Loaded,
     built: Built<S>,
     options: &RunOptions,

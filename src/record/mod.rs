@@ -2,6 +2,7 @@
 //! pictures by [`fretwork_view`].
 pub mod run;
 
+pub use fretwork_core::view::RunView;
 pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
     biaxial, choice, circuit, code, coordination, first_bodies, fretting, friction,
@@ -12,7 +13,6 @@ pub use fretwork_store::{checkpoint, fclib, meshes, results, series, shapes, sum
 pub use fretwork_view::picture;
 
 pub use fretwork_observe::run_state::Missed;
-pub use fretwork_observe::standard::Observed;
 pub use observer::{Observer, Observers, RunEnd};
 pub use run::{
     OnProgress, Progress, Run, RunError, RunOptions, check_names, run, run_observers,

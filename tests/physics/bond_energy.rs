@@ -3,7 +3,6 @@
 use crate::scene;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
-use fretwork::record::Observed;
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
 use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
@@ -39,7 +38,7 @@ fn without_files() -> [String; 4] {
     .map(String::from)
 }
 
-fn run<S: Dimensional + Observed>(loaded: &Loaded) -> Summary {
+fn run<S: Dimensional>(loaded: &Loaded) -> Summary {
     scene::finished(loaded, scene::built::<S>(loaded), |_| {})
 }
 
@@ -290,11 +289,7 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
 
 /// Turns a parallel bond by bending or twist alone until it breaks, in steps of an angle (rad);
 /// gives what it released, and what is said of it.
-fn turned<S: Dimensional + Observed>(
-    motion: &str,
-    last: f64,
-    steps: u32,
-) -> (BondEnergies, Option<String>) {
+fn turned<S: Dimensional>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Option<String>) {
     let more = |sign: f64| {
         let to = sign * last;
         motion.replace(

@@ -3,7 +3,7 @@
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 use crate::temp::TempFolder;
-use fretwork::record::{Observed, RunOptions, Summary, run};
+use fretwork::record::{RunOptions, Summary, run};
 use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Built, Loaded, load, load_text};
 use fretwork::shipped::search_path;
@@ -44,7 +44,7 @@ pub(crate) fn text<S: Dimensional>(text: &str) -> Simulation<S> {
 }
 
 /// Runs a scene to its end in a folder of its own, which is left for `look` and then removed.
-pub(crate) fn finished<S: Dimensional + Observed>(
+pub(crate) fn finished<S: Dimensional>(
     loaded: &Loaded,
     built: Built<S>,
     look: impl FnOnce(&Path),
@@ -60,11 +60,7 @@ pub(crate) fn finished<S: Dimensional + Observed>(
 }
 
 /// [`finished`] with a case of the repository, without repeated steps.
-pub(crate) fn ran<S: Dimensional + Observed>(
-    name: &str,
-    sets: &[&str],
-    look: impl FnOnce(&Path),
-) -> Summary {
+pub(crate) fn ran<S: Dimensional>(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let loaded = loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
     finished(&loaded, built::<S>(&loaded), look)
 }

@@ -2,10 +2,10 @@
 //! asked, and which results the case cannot have.
 
 use super::heat::without_heat;
-use super::observer::{Observer, RunEnd};
 use super::quantity::Findings;
 use super::warning::Warning;
 use super::{biaxial, circuit, friction_report, jump};
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_scene::case::Case;
@@ -43,7 +43,7 @@ impl CaseChecks {
     }
 }
 
-impl<S: Space> Observer<S> for CaseChecks {
+impl<S: Space> ObserverIn<S> for CaseChecks {
     fn name(&self) -> String {
         "checks of the case".to_owned()
     }
@@ -52,7 +52,7 @@ impl<S: Space> Observer<S> for CaseChecks {
         false
     }
 
-    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEndIn<'_, S>, found: &mut Findings) {
         let none: [fn(&mut Findings); 4] = [
             friction_report::report_none,
             biaxial::report_none,
@@ -64,7 +64,7 @@ impl<S: Space> Observer<S> for CaseChecks {
                 report_none(found);
             }
         }
-        Observer::<S>::report_so_far(self, found);
+        ObserverIn::<S>::report_so_far(self, found);
     }
 
     fn report_so_far(&self, found: &mut Findings) {

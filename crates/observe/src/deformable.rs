@@ -4,7 +4,6 @@
 use super::chart::{Axis, Chart, Series, Style};
 use super::figures::contact_map;
 use super::nearest_places::NearestPlaces;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::quantity::unit::{FORCE, ONE, RADIAN, WORD};
@@ -13,6 +12,7 @@ use super::resolution::{self, Resolution};
 use super::statistics::Column;
 use super::tractions::{SurfaceState, loaded, signed};
 use super::warning::Warning;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::bodies::{DeformedMesh, DynamicalSystem, von_mises};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
@@ -213,12 +213,12 @@ impl Deformable {
     }
 }
 
-impl<S: Space> Observer<S> for Deformable {
+impl<S: Space> ObserverIn<S> for Deformable {
     fn name(&self) -> String {
         "deformable bodies".to_owned()
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let mut charts = Vec::new();
         for (k, name) in self.bodies.iter().enumerate().filter(|_| S::D == 2) {
             charts.push(traction_chart(end.simulation, k, name));
@@ -291,7 +291,7 @@ impl<S: Space> Observer<S> for Deformable {
         vec!["stress", "slip"]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         found.begin(Topic::Run, Role::Diagnostic);
         let (strains, borders) = self.distortions(end.simulation);
         if !strains.is_empty() {
@@ -333,7 +333,7 @@ impl<S: Space> Observer<S> for Deformable {
         Ok(())
     }
 
-    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let mut out = Vec::new();
         for (k, name) in self.bodies.iter().enumerate() {
             let Some(system) = end.simulation.state.systems.get(k) else {

@@ -6,13 +6,13 @@ use super::fretting;
 use super::friction::{Cycles, Sample, State};
 use super::friction_report;
 use super::layer::Layer;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{FORCE, LOAD_PATH};
 use super::quantity::{Findings, Role, Topic};
 use super::run_state::damage_ratio;
 use super::statistics::Column;
 use super::wear::WearSummary;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::cycle::RubbedBody;
@@ -84,7 +84,7 @@ impl<S: Space> FrictionTest<S> {
     }
 }
 
-impl<S: Space> Observer<S> for FrictionTest<S> {
+impl<S: Space> ObserverIn<S> for FrictionTest<S> {
     fn name(&self) -> String {
         "friction test".to_owned()
     }
@@ -157,7 +157,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         caption
     }
 
-    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEndIn<'_, S>, found: &mut Findings) {
         let path = self.state.load_path;
         let doc = "normal force times sliding distance: the integral of P |ds| over the run";
         found.begin(Topic::Wear, Role::Detail);
@@ -165,7 +165,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         if let Some(mut wear) = found.get::<WearSummary>().cloned().filter(|_| path > 0.0) {
             wear.rate(path, found);
         }
-        Observer::<S>::report_so_far(self, found);
+        ObserverIn::<S>::report_so_far(self, found);
     }
 
     fn report_so_far(&self, found: &mut Findings) {
@@ -174,7 +174,7 @@ impl<S: Space> Observer<S> for FrictionTest<S> {
         friction_report::report(cycles, fretting, found);
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let known = &end.uncertainty.friction_coefficient;
         figures::friction_test(&self.state.cycles, known)
     }

@@ -6,12 +6,12 @@ pub use checks::{HalfSpaceCheck, HeatChecks, without_heat};
 
 use super::chart::{Axis, Series};
 use super::figures::history;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::picture::{Picture, Shows};
 use super::quantity::unit::{CURRENT, ENERGY, KELVIN, ONE, POWER, RESISTANCE};
 use super::quantity::{Findings, Role, Topic};
 use super::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use checks::{ContactShares, checks};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
@@ -68,7 +68,7 @@ impl HeatObserver {
 
     fn row<S: Space>(&mut self, s: &Simulation<S>) -> Vec<f64> {
         let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
-            return vec![f64::NAN; Observer::<S>::columns(self).len()];
+            return vec![f64::NAN; ObserverIn::<S>::columns(self).len()];
         };
         let [highest, mean] = of_grains(s, heat, state);
         let mut row = vec![highest, mean];
@@ -126,7 +126,7 @@ fn of_grains<S: Space>(s: &Simulation<S>, heat: &Heat, state: &HeatState) -> [f6
     [highest, mean]
 }
 
-impl<S: Space> Observer<S> for HeatObserver {
+impl<S: Space> ObserverIn<S> for HeatObserver {
     fn name(&self) -> String {
         "heat".to_owned()
     }
@@ -219,7 +219,7 @@ impl<S: Space> Observer<S> for HeatObserver {
         vec!["temperature"]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let last = |name: &str| {
             let column = end.table.column(name);
             column.last().copied().filter(|x| x.is_finite())
@@ -287,7 +287,7 @@ impl<S: Space> Observer<S> for HeatObserver {
         found.warn(checks.warnings());
     }
 
-    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let s = end.simulation;
         let (Some(heat), Some(state)) = (s.heat(), &s.state.heat) else {
             return Vec::new();
@@ -315,7 +315,7 @@ impl<S: Space> Observer<S> for HeatObserver {
         heat.first_bodies.iter().filter_map(surface).collect()
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let all = [
             ("highest", "temperature_max"),
             ("mean of grains", "temperature_mean"),

@@ -1,12 +1,12 @@
 //! Report on jumps over cycles.
 
 use super::figures;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{ONE, VOLUME, WORD};
 use super::quantity::{Field, Findings, Role, Schema, Topic, field};
 use super::statistics::Column;
 use super::warning::{NOT_REACHED, Warning};
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
 pub use fretwork_core::process::jump::{Jump, JumpSummary, Point};
@@ -16,7 +16,7 @@ use fretwork_core::step::Simulation;
 #[derive(Clone, Copy, Debug)]
 pub struct CycleJumps;
 
-impl<S: Space> Observer<S> for CycleJumps {
+impl<S: Space> ObserverIn<S> for CycleJumps {
     fn name(&self) -> String {
         "cycle jumps".to_owned()
     }
@@ -34,7 +34,7 @@ impl<S: Space> Observer<S> for CycleJumps {
         vec![jumps.map_or(f64::NAN, |j| j.cycles_at(s.state.time))]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         let Some(jump) = s.process::<Jumps>().map(|j| j.outcome(s)) else {
             // The process is not installed yet.
@@ -51,7 +51,7 @@ impl<S: Space> Observer<S> for CycleJumps {
         found.keep(jump);
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let s = end.simulation;
         let jumps = s.process::<Jumps>().into_iter();
         jumps

@@ -11,16 +11,16 @@ use super::quantity::{Findings, Role, Topic};
 use super::statistics::{Column, Table};
 use super::summary::Uncertainty;
 use fretwork_core::code::CodeError;
-use fretwork_core::geometry::space::Space;
-use fretwork_core::step::{Simulation, StepReport};
+use fretwork_core::step::StepReport;
+use fretwork_core::view::{RunControl, RunView};
 use std::fmt::Debug;
 use std::time::Duration;
 
 /// A run at its end.
 #[derive(Clone, Copy, Debug)]
-pub struct RunEnd<'a, S: Space> {
+pub struct RunEnd<'a> {
     /// The simulation, after its last step.
-    pub simulation: &'a Simulation<S>,
+    pub simulation: &'a dyn RunView,
     /// The rows of the statistics, read back.
     pub table: &'a Table,
     /// Title of the case.
@@ -57,13 +57,13 @@ pub struct Event {
 
 /// Something that looks at a run and leaves columns, events, quantities and files. All but its name
 /// may be left out.
-pub trait Observer<S: Space>: Debug + Send {
+pub trait Observer: Debug + Send {
     /// Its name: tells the observers of a run apart in checkpoints.
     fn name(&self) -> String;
 
     /// The current state is the one from which deformations count: that of the start, and again
     /// that at which the second phase begins.
-    fn begin(&mut self, _: &Simulation<S>) {}
+    fn begin(&mut self, _: &dyn RunView) {}
 
     /// Whether the simulation is to keep what each contact dissipates in a step
     /// (`network.dissipation`).
@@ -78,10 +78,10 @@ pub trait Observer<S: Space>: Debug + Send {
     }
 
     /// Before a step; it may be called more than once.
-    fn before_step(&mut self, _: &Simulation<S>) {}
+    fn before_step(&mut self, _: &dyn RunView) {}
 
     /// After each step.
-    fn after_step(&mut self, _: &Simulation<S>, _: &StepReport) {}
+    fn after_step(&mut self, _: &dyn RunView, _: &StepReport) {}
 
     /// Its tables of events; the same over the run.
     fn event_tables(&self) -> Vec<EventTable> {
@@ -89,7 +89,7 @@ pub trait Observer<S: Space>: Debug + Send {
     }
 
     /// After the processes have acted between two steps: the events of the step.
-    fn after_processes(&mut self, _: &Simulation<S>) -> Vec<Event> {
+    fn after_processes(&mut self, _: &dyn RunView) -> Vec<Event> {
         Vec::new()
     }
 
@@ -99,7 +99,7 @@ pub trait Observer<S: Space>: Debug + Send {
     }
 
     /// Values of its columns at the end of a step; it may keep what it needs for the end.
-    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
         Vec::new()
     }
 
@@ -110,7 +110,7 @@ pub trait Observer<S: Space>: Debug + Send {
     }
 
     /// Values of its grain columns, one list a column; what is missing at the end is not a number.
-    fn grain_values(&self, _: &Simulation<S>) -> Vec<Vec<f64>> {
+    fn grain_values(&self, _: &dyn RunView) -> Vec<Vec<f64>> {
         Vec::new()
     }
 
@@ -120,12 +120,12 @@ pub trait Observer<S: Space>: Debug + Send {
     }
 
     /// Lines of text below the pictures of the current step.
-    fn caption(&self, _: &Simulation<S>) -> Vec<String> {
+    fn caption(&self, _: &dyn RunView) -> Vec<String> {
         Vec::new()
     }
 
     /// Its pictures of the current step; of two with the same name the first observer's is drawn.
-    fn pictures(&self, _: &Simulation<S>) -> Vec<Picture> {
+    fn pictures(&self, _: &dyn RunView) -> Vec<Picture> {
         Vec::new()
     }
 
@@ -137,21 +137,21 @@ pub trait Observer<S: Space>: Debug + Send {
 
     /// Adds what it found to that of a run at its end: quantities and warnings. Observers come in
     /// their order, so that what earlier ones found is there.
-    fn report(&self, _: &RunEnd<'_, S>, _: &mut Findings) {}
+    fn report(&self, _: &RunEnd<'_>, _: &mut Findings) {}
 
     /// Adds what it knows without the simulation, as of its last [`Observer::before_step`]: of a
     /// run that a law ends within a step, and for what is said of a run as it goes.
     fn report_so_far(&self, _: &mut Findings) {}
 
     /// Files that it writes at the end of a run, independently of `output.figures`.
-    fn files(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn files(&self, _: &RunEnd<'_>) -> Vec<Output> {
         Vec::new()
     }
 
     /// Figures of the run, and tables that are written beside them if the case asks for figures
     /// (`output.figures`). Figures are also asked for at the start of a run: its report has them
     /// wherever the run ends.
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEnd<'_>) -> Vec<Output> {
         Vec::new()
     }
 
@@ -193,20 +193,14 @@ pub trait Observer<S: Space>: Debug + Send {
 pub type ObserverState = (String, Vec<u8>);
 
 /// The observers of a run, in the order of their columns.
-#[derive(Debug)]
-pub struct Observers<S: Space> {
-    list: Vec<Box<dyn Observer<S>>>,
+#[derive(Debug, Default)]
+pub struct Observers {
+    list: Vec<Box<dyn Observer>>,
 }
 
-impl<S: Space> Default for Observers<S> {
-    fn default() -> Self {
-        Self { list: Vec::new() }
-    }
-}
-
-impl<S: Space> Observers<S> {
+impl Observers {
     /// Adds one after those that are there.
-    pub fn push(&mut self, observer: Box<dyn Observer<S>>) {
+    pub fn push(&mut self, observer: Box<dyn Observer>) {
         self.list.push(observer);
     }
 
@@ -216,11 +210,11 @@ impl<S: Space> Observers<S> {
     }
 
     /// See [`Observer::begin`].
-    pub fn begin(&mut self, s: &mut Simulation<S>) {
+    pub fn begin(&mut self, run: &mut dyn RunControl) {
         if self.list.iter().any(|o| o.needs_dissipation()) {
-            s.options.record_dissipation = true;
+            run.options_mut().record_dissipation = true;
         }
-        self.list.iter_mut().for_each(|o| o.begin(s));
+        self.list.iter_mut().for_each(|o| o.begin(run));
     }
 
     /// Whether one reads the rows of the statistics at the end, see [`Observer::reads_statistics`].
@@ -229,19 +223,19 @@ impl<S: Space> Observers<S> {
     }
 
     /// See [`Observer::before_step`].
-    pub fn before_step(&mut self, s: &Simulation<S>) {
-        self.list.iter_mut().for_each(|o| o.before_step(s));
+    pub fn before_step(&mut self, run: &dyn RunView) {
+        self.list.iter_mut().for_each(|o| o.before_step(run));
     }
 
     /// See [`Observer::after_step`].
-    pub fn after_step(&mut self, s: &Simulation<S>, report: &StepReport) {
-        self.list.iter_mut().for_each(|o| o.after_step(s, report));
+    pub fn after_step(&mut self, run: &dyn RunView, report: &StepReport) {
+        self.list.iter_mut().for_each(|o| o.after_step(run, report));
     }
 
     /// See [`Observer::after_processes`].
-    pub fn after_processes(&mut self, s: &Simulation<S>) -> Vec<Event> {
+    pub fn after_processes(&mut self, run: &dyn RunView) -> Vec<Event> {
         let list = self.list.iter_mut();
-        list.flat_map(|o| o.after_processes(s)).collect()
+        list.flat_map(|o| o.after_processes(run)).collect()
     }
 
     /// Columns of all, in their order.
@@ -250,8 +244,8 @@ impl<S: Space> Observers<S> {
     }
 
     /// Values of [`Observers::columns`].
-    pub fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        self.list.iter_mut().flat_map(|o| o.sample(s)).collect()
+    pub fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        self.list.iter_mut().flat_map(|o| o.sample(run)).collect()
     }
 
     /// See [`Observer::grain_columns`].
@@ -260,8 +254,8 @@ impl<S: Space> Observers<S> {
     }
 
     /// See [`Observer::grain_values`].
-    pub fn grain_values(&self, s: &Simulation<S>) -> Vec<Vec<f64>> {
-        self.list.iter().flat_map(|o| o.grain_values(s)).collect()
+    pub fn grain_values(&self, run: &dyn RunView) -> Vec<Vec<f64>> {
+        self.list.iter().flat_map(|o| o.grain_values(run)).collect()
     }
 
     /// Of the first that follows cycles, see [`Observer::cycle`].
@@ -270,14 +264,14 @@ impl<S: Space> Observers<S> {
     }
 
     /// See [`Observer::caption`].
-    pub fn caption(&self, s: &Simulation<S>) -> Vec<String> {
-        self.list.iter().flat_map(|o| o.caption(s)).collect()
+    pub fn caption(&self, run: &dyn RunView) -> Vec<String> {
+        self.list.iter().flat_map(|o| o.caption(run)).collect()
     }
 
     /// The pictures of a moment, each name once.
-    pub fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
+    pub fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
         let mut all: Vec<Picture> = Vec::new();
-        for picture in self.list.iter().flat_map(|o| o.pictures(s)) {
+        for picture in self.list.iter().flat_map(|o| o.pictures(run)) {
             if all.iter().all(|p| p.name != picture.name) {
                 all.push(picture);
             }
@@ -296,8 +290,8 @@ impl<S: Space> Observers<S> {
     }
 
     /// What all found, see [`Observer::report`].
-    pub fn report(&self, end: &RunEnd<'_, S>) -> Findings {
-        let mut found = Findings::new(S::D);
+    pub fn report(&self, end: &RunEnd<'_>) -> Findings {
+        let mut found = Findings::new(end.simulation.dimension());
         for observer in &self.list {
             found.begin(Topic::default(), Role::default());
             observer.report(end, &mut found);
@@ -305,9 +299,9 @@ impl<S: Space> Observers<S> {
         found
     }
 
-    /// What all know without the simulation, see [`Observer::report_so_far`].
-    pub fn report_so_far(&self) -> Findings {
-        let mut found = Findings::new(S::D);
+    /// What all know without the simulation of a dimension, see [`Observer::report_so_far`].
+    pub fn report_so_far(&self, dimension: usize) -> Findings {
+        let mut found = Findings::new(dimension);
         for observer in &self.list {
             found.begin(Topic::default(), Role::default());
             observer.report_so_far(&mut found);
@@ -321,12 +315,12 @@ impl<S: Space> Observers<S> {
     }
 
     /// See [`Observer::files`].
-    pub fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    pub fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
         self.list.iter().flat_map(|o| o.files(end)).collect()
     }
 
     /// See [`Observer::figures`]; the title of the case heads every figure.
-    pub fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    pub fn figures(&self, end: &RunEnd<'_>) -> Vec<Output> {
         let mut out: Vec<Output> = self.list.iter().flat_map(|o| o.figures(end)).collect();
         for output in &mut out {
             if let Output::Figure(figure) = output {

@@ -1,11 +1,11 @@
 //! Wear scars: columns of the statistics, entries of the summary, and `scar_NAME.csv`.
 
 use super::figures;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{METRE, VOLUME, WORD};
 use super::quantity::{Findings, Role, Topic, quantity};
 use super::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use fretwork_core::wear::{Form, Scar, shape};
@@ -92,7 +92,7 @@ impl Scars {
     }
 }
 
-impl<S: Space> Observer<S> for Scars {
+impl<S: Space> ObserverIn<S> for Scars {
     fn name(&self) -> String {
         "scars".to_owned()
     }
@@ -118,7 +118,7 @@ impl<S: Space> Observer<S> for Scars {
         s.state.scars.iter().flat_map(two).collect()
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let scars = end.simulation.state.scars.iter();
         let scars: Vec<ScarSummary> = scars.map(ScarSummary::of).collect();
         found.begin(Topic::Wear, Role::Detail);
@@ -137,7 +137,7 @@ impl<S: Space> Observer<S> for Scars {
     }
 
     /// The tables of all scars, `scar_NAME.csv`.
-    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn files(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let s = end.simulation;
         let file = |scar: &Scar<S>| Output::Text {
             file: format!("{}.csv", file_name(&scar.name)),
@@ -153,7 +153,7 @@ impl<S: Space> Observer<S> for Scars {
             .collect()
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         figures::scars::charts(end.simulation)
     }
 }

@@ -18,46 +18,31 @@ use super::scars::Scars;
 use super::statistics::Table;
 use super::strain::LocalShear;
 use super::summary::{RunFacts, Summary, Uncertainty};
+use super::typed::in_dimension;
 use super::wear::Wear;
-use fretwork_core::geometry::space::{Dim2, Dim3, Space};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::Kind;
-use fretwork_core::step::Simulation;
-use fretwork_scene::build::Dimensional;
+use fretwork_core::step::{InDimension, Simulation};
+use fretwork_core::view::RunView;
 use fretwork_scene::case::{Case, InterfaceSpec};
 use fretwork_scene::processes;
 use std::time::Duration;
 
-/// A dimension for which this crate compiles the observers, so that the program does not compile
-/// them again.
-pub trait Observed: Dimensional {
-    /// The observers of a run, see [`observers`].
-    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self>;
-}
-
-impl Observed for Dim2 {
-    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self> {
-        list(case, s, density)
-    }
-}
-
-impl Observed for Dim3 {
-    fn observers(case: &Case, s: &Simulation<Self>, density: f64) -> Observers<Self> {
-        list(case, s, density)
-    }
-}
-
 /// The observers of a run of a case, from the current state of its simulation on, in the order of
 /// the columns of the statistics. `density` is that of the first bodies (kg/m^3).
-pub fn observers<S: Observed>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
-    S::observers(case, s, density)
+pub fn observers(case: &Case, run: &dyn RunView, density: f64) -> Observers {
+    match run.in_dimension() {
+        InDimension::Dim2(s) => list(case, s, density),
+        InDimension::Dim3(s) => list(case, s, density),
+    }
 }
 
 /// What a run of a case will say, as far as it is known before its first step: values are those of
 /// the start, and what a case cannot have says why.
-pub fn declared<S: Observed>(case: &Case, s: &Simulation<S>) -> Findings {
-    let observers = observers(case, s, 0.0);
+pub fn declared(case: &Case, run: &dyn RunView) -> Findings {
+    let observers = observers(case, run, 0.0);
     let end = RunEnd {
-        simulation: s,
+        simulation: run,
         table: &Table::new(observers.columns()),
         title: "",
         uncertainty: &Uncertainty::default(),
@@ -66,59 +51,64 @@ pub fn declared<S: Observed>(case: &Case, s: &Simulation<S>) -> Findings {
     let mut found = observers.report(&end);
     Uncertainty::default().report(&mut found);
     report_accuracy(None, &mut found);
-    let run = RunFacts {
-        dimension: S::D,
+    let facts = RunFacts {
+        dimension: run.dimension(),
         ..RunFacts::default()
     };
-    Summary { run, found }.quantities()
+    Summary { run: facts, found }.quantities()
 }
 
-fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers<S> {
+fn list<S: Space>(case: &Case, s: &Simulation<S>, density: f64) -> Observers {
     let test = processes::FrictionTest::of(case, s);
     let mut all = Observers::default();
-    all.push(Box::new(CaseChecks::of(case, s)));
-    all.push(Box::new(RunState::new(s, test.map(|t| t.clock))));
+    all.push(in_dimension::<S, _>(CaseChecks::of(case, s)));
+    all.push(in_dimension::<S, _>(RunState::new(
+        s,
+        test.map(|t| t.clock),
+    )));
     let start = test.map_or(0.0, |t| t.start);
     let along = case.friction.as_ref().map_or(0, |t| t.along);
     let wears = s.laws.iter().any(|l| l.wear().is_some());
     let wear = Wear::new([start, case.inertia_scaling, density], along, wears);
-    all.push(Box::new(wear));
+    all.push(in_dimension::<S, _>(wear));
     if let Some(test) = test {
         let cycles = Cycles::of(test.clock, case.time.end);
-        all.push(Box::new(FrictionTest::new(test.body, cycles, s)));
+        all.push(in_dimension::<S, _>(FrictionTest::new(
+            test.body, cycles, s,
+        )));
     }
     if let Some(biaxial) = case.biaxial.as_ref().and_then(|b| Biaxial::new(b, s)) {
-        all.push(Box::new(biaxial));
+        all.push(in_dimension::<S, _>(biaxial));
     }
-    all.push(Box::new(Scars::of(s)));
-    all.push(Box::new(Phases::of(s)));
+    all.push(in_dimension::<S, _>(Scars::of(s)));
+    all.push(in_dimension::<S, _>(Phases::of(s)));
     let loops = test.filter(|t| t.clock.period.is_some());
     let loops = loops.and(case.friction.as_ref());
     let drawn = loops.map(|t| (t.body.clone(), t.along));
-    all.push(Box::new(DrivenBodies::of(s, drawn)));
+    all.push(in_dimension::<S, _>(DrivenBodies::of(s, drawn)));
     if !s.state.systems.is_empty() {
-        all.push(Box::new(Deformable::of(case, s)));
+        all.push(in_dimension::<S, _>(Deformable::of(case, s)));
     }
     if let Some(heat) = HeatObserver::of(s) {
-        all.push(Box::new(heat));
+        all.push(in_dimension::<S, _>(heat));
     }
     if case.jump.is_some() {
-        all.push(Box::new(CycleJumps));
+        all.push(in_dimension::<S, _>(CycleJumps));
     }
     if case.accuracy.is_some() {
-        all.push(Box::new(ChosenSettings));
+        all.push(in_dimension::<S, _>(ChosenSettings));
     }
     let cohesion = |i: &InterfaceSpec| i.law(Kind::COHESION).is_some();
     let bonds = case.interfaces.iter().any(cohesion);
-    all.push(Box::new(BrokenBonds::new(bonds)));
-    all.push(Box::new(Fracture::of(case, s)));
+    all.push(in_dimension::<S, _>(BrokenBonds::new(bonds)));
+    all.push(in_dimension::<S, _>(Fracture::of(case, s)));
     if let Some(circuit) = &case.circuit {
-        all.push(Box::new(CircuitAccount::new(circuit.start)));
+        all.push(in_dimension::<S, _>(CircuitAccount::new(circuit.start)));
     }
     if let Some(top) = case.output.shear {
-        all.push(Box::new(LocalShear::new(s, top)));
+        all.push(in_dimension::<S, _>(LocalShear::new(s, top)));
     }
-    all.append(measures(
+    all.append(measures::<S>(
         &case.measures,
         case.inertia_scaling,
         s.heat().is_some(),

@@ -7,9 +7,9 @@
 //! shear g = (a - b)/sqrt(a b): the amount of simple shear that has the same ratio of stretches, at
 //! finite strain. Rotation and dilation do not contribute.
 
-use super::observer::Observer;
 use super::picture::{Picture, Shows};
 use super::statistics::Column;
+use crate::typed::ObserverIn;
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::detect::centre;
 use fretwork_core::geometry::grid::pairs;
@@ -104,7 +104,7 @@ impl<S: Space> LocalShear<S> {
     }
 }
 
-impl<S: Space> Observer<S> for LocalShear<S> {
+impl<S: Space> ObserverIn<S> for LocalShear<S> {
     fn name(&self) -> String {
         "local shear".to_owned()
     }

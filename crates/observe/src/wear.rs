@@ -4,11 +4,11 @@
 use super::chart::Axis;
 use super::figures::history;
 use super::first_bodies::{self, BodyWear};
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{LOAD_PATH, MASS_FLOW, SECOND, VOLUME, WEAR_RATE, WORD};
 use super::quantity::{Findings, Role, Topic, Wording, number, part, quantity};
 use super::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::process::jump::Jumps;
@@ -237,7 +237,7 @@ impl Wear {
     }
 }
 
-impl<S: Space> Observer<S> for Wear {
+impl<S: Space> ObserverIn<S> for Wear {
     fn name(&self) -> String {
         "wear".to_owned()
     }
@@ -267,7 +267,7 @@ impl<S: Space> Observer<S> for Wear {
         vec![self.state.volumes.0, self.state.volumes.1]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let (s, state) = (end.simulation, &self.state);
         // Wear goes on over the cycles that were jumped over.
         let jumps = s.process::<Jumps>();
@@ -289,7 +289,7 @@ impl<S: Space> Observer<S> for Wear {
         summary.report(self.wears, found);
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let own = end.simulation.state.scars.iter();
         let own = own.map(|scar| (scar.name.as_str(), format!("{}_worn", scar.name)));
         let all = [

@@ -29,7 +29,7 @@ pub fn header<S: Space>(
     loaded: &Loaded,
     built: &Made<'_, S>,
     run: &RunFacts,
-    observers: &Observers<S>,
+    observers: &Observers,
 ) -> Header {
     let fields = fields(built.simulation, loaded.case.circuit.is_some());
     Header {

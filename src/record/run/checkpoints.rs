@@ -10,7 +10,6 @@ use crate::view::Paint;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
-use fretwork_observe::standard::Observed;
 use fretwork_observe::summary::TimeSpent;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -41,7 +40,7 @@ struct RunLoopState<'a, S: Space> {
     time_spent: TimeSpent,
 }
 
-impl<S: Observed> Recorder<'_, S> {
+impl<S: Space> Recorder<'_, S> {
     /// Writes a checkpoint of the current state to the results.
     pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();

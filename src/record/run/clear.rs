@@ -4,7 +4,6 @@
 
 use super::frame::PICTURES;
 use super::{RunError, unwritable};
-use crate::geometry::space::Space;
 use fretwork_observe::Observers;
 use fretwork_observe::chart::Figure;
 use std::path::Path;
@@ -38,7 +37,7 @@ pub(super) const OWN: [&str; 7] = [
 
 /// Removes pictures, problems and figures of an older run from its folder, and the pictures and
 /// files that the observers of the new run name as theirs.
-pub(super) fn clear<S: Space>(folder: &Path, observers: &Observers<S>) -> Result<(), RunError> {
+pub(super) fn clear(folder: &Path, observers: &Observers) -> Result<(), RunError> {
     let (mut pictures, files) = (observers.picture_names(), observers.file_names());
     pictures.extend(PICTURES);
     let picture = |name: &str| {

@@ -1,11 +1,11 @@
 //! Output of steps as FCLIB problems.
 
 use super::{Recorder, RunError, unwritable};
+use crate::geometry::space::Space;
 use crate::record::fclib;
 use crate::step::StepReport;
-use fretwork_observe::standard::Observed;
 
-impl<S: Observed> Recorder<'_, S> {
+impl<S: Space> Recorder<'_, S> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
         self.lock.kept()?;

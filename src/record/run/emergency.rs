@@ -22,25 +22,25 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// All that can be written without the simulation.
-struct UnsavedOutputs<S: Space> {
+struct UnsavedOutputs {
     table: Table,
     results: Results,
-    observers: Observers<S>,
+    observers: Observers,
     summary: Summary,
     /// What parts of the run before this one took, by the clock and of processors.
     spent: (Duration, Duration),
 }
 
 /// The place where it lies during a step.
-pub(super) struct EmergencySave<S: Space> {
-    outputs: Arc<Mutex<Option<UnsavedOutputs<S>>>>,
+pub(super) struct EmergencySave {
+    outputs: Arc<Mutex<Option<UnsavedOutputs>>>,
     _ready: Ready,
 }
 
-impl<S: Space> EmergencySave<S> {
+impl EmergencySave {
     /// An empty place that the watch knows.
     pub fn new(out: PathBuf, lock: FolderLock) -> Self {
-        let outputs: Arc<Mutex<Option<UnsavedOutputs<S>>>> = Arc::new(Mutex::new(None));
+        let outputs: Arc<Mutex<Option<UnsavedOutputs>>> = Arc::new(Mutex::new(None));
         let place = Arc::clone(&outputs);
         let (clock, processor) = (Instant::now(), ProcessTime::now());
         let ready = watch::rescue(move |who| {
@@ -59,7 +59,7 @@ impl<S: Space> EmergencySave<S> {
     }
 }
 
-impl<S: Space> UnsavedOutputs<S> {
+impl<S: Space> UnsavedOutputs {
     /// Writes it; whether all of it is on disk.
     fn write(&mut self, who: &str, out: &Path) -> bool {
         let summary = &mut self.summary;

@@ -3,6 +3,7 @@
 use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
+use crate::geometry::space::Space;
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
@@ -12,13 +13,12 @@ use crate::record::summary::Uncertainty;
 use crate::view::{Figure, TableColumns, draw_panels, noted};
 use fretwork_observe::RunEnd;
 use fretwork_observe::accuracy::report_accuracy;
-use fretwork_observe::standard::Observed;
 use fretwork_observe::statistics::Table;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-impl<S: Observed> Recorder<'_, S> {
+impl<S: Space> Recorder<'_, S> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
         self.lock.kept()?;
@@ -75,7 +75,7 @@ impl<S: Observed> Recorder<'_, S> {
     }
 
     /// What observers see of the run now that it has ended.
-    fn end(&self, wall: Duration) -> RunEnd<'_, S> {
+    fn end(&self, wall: Duration) -> RunEnd<'_> {
         RunEnd {
             simulation: &self.simulation,
             table: &self.table,

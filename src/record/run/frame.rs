@@ -2,17 +2,17 @@
 
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
+use crate::geometry::space::Space;
 use crate::step::InDimension;
 use crate::view::quantity;
 use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
-use fretwork_observe::standard::Observed;
 use std::path::PathBuf;
 
 /// Name prefixes of pictures: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
-impl<S: Observed> Recorder<'_, S> {
+impl<S: Space> Recorder<'_, S> {
     /// Has the pictures of a step drawn, beside the steps that follow.
     pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {

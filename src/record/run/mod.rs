@@ -39,7 +39,7 @@ use cpu_time::ProcessTime;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
-use fretwork_observe::standard::{self, Observed};
+use fretwork_observe::standard;
 use fretwork_observe::{Observer, Observers};
 use fretwork_store::folder_lock::{FolderLock, RUN_LOCK};
 use std::ops::ControlFlow;
@@ -114,11 +114,11 @@ pub struct Run<'a, S: Space> {
     built: Built<S>,
     options: &'a RunOptions,
     stop: Option<ResumePoint>,
-    observers: Observers<S>,
+    observers: Observers,
     hurry: Option<&'a AtomicBool>,
 }
 
-impl<'a, S: Observed> Run<'a, S> {
+impl<'a, S: Space> Run<'a, S> {
     /// A run of a case from its start.
     pub fn new(loaded: &'a Loaded, built: Built<S>, options: &'a RunOptions) -> Self {
         Self {
@@ -141,7 +141,7 @@ impl<'a, S: Observed> Run<'a, S> {
 
     /// Has one more observer look at it: its columns stand after all others.
     #[must_use]
-    pub fn observe(mut self, observer: impl Observer<S> + 'static) -> Self {
+    pub fn observe(mut self, observer: impl Observer + 'static) -> Self {
         self.observers.push(Box::new(observer));
         self
     }
@@ -226,13 +226,13 @@ pub fn stopped<S: Space>(
 
 /// The observers that a run of a case has, for who steps without one. Its processes are
 /// [installed](processes::install) before.
-pub fn run_observers<S: Observed>(loaded: &Loaded, s: &Simulation<S>) -> Observers<S> {
+pub fn run_observers<S: Space>(loaded: &Loaded, s: &Simulation<S>) -> Observers {
     let any = !(s.shapes.surfaces.is_empty() && s.state.bodies.driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))
 }
 
 /// The columns of the statistics that a run of a case has.
-pub fn statistics_columns<S: Observed>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
+pub fn statistics_columns<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
 }
 
@@ -241,7 +241,7 @@ struct Recorder<'a, S: Space> {
     loaded: &'a Loaded,
     out: PathBuf,
     simulation: Simulation<S>,
-    observers: Observers<S>,
+    observers: Observers,
     table: Table,
     results: Results,
     camera: Camera,
@@ -268,7 +268,7 @@ struct Recorder<'a, S: Space> {
     /// Wall and processor time of the run before it was resumed; and the start of this part.
     elapsed_before_resume: (Duration, Duration),
     /// Where the watch over plugins finds the files during a step.
-    emergency: EmergencySave<S>,
+    emergency: EmergencySave,
     clock: Instant,
     processor: ProcessTime,
     summary: Summary,
@@ -283,7 +283,7 @@ struct Recorder<'a, S: Space> {
     lock: FolderLock,
 }
 
-impl<'a, S: Observed> Recorder<'a, S> {
+impl<'a, S: Space> Recorder<'a, S> {
     /// From the start, or from where a run was stopped.
     fn new(run: Run<'a, S>) -> Result<Self, RunError> {
         let (loaded, mut built, options) = (run.loaded, run.built, run.options);
@@ -525,7 +525,7 @@ fn create_results<S: Dimensional>(
     loaded: &Loaded,
     built: &Built<S>,
     facts: &RunFacts,
-    observers: &Observers<S>,
+    observers: &Observers,
 ) -> Result<Results, RunError> {
     let made = views::Made {
         simulation: &built.simulation,

@@ -3,7 +3,6 @@
 
 use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};
-use crate::geometry::space::Space;
 use crate::scene::build::{Loaded, Scene};
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
@@ -27,7 +26,7 @@ type Twice = (&'static str, String);
 ///
 /// # Errors
 /// The name, at the line of the case that gives it.
-pub(super) fn check<S: Space>(loaded: &Loaded, observers: &Observers<S>) -> Result<(), RunError> {
+pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunError> {
     let Some((what, name)) = twice(observers) else {
         return Ok(());
     };
@@ -52,7 +51,7 @@ pub fn check_names(loaded: &Loaded, scene: &Scene) -> Result<(), InputError> {
 
 /// Two columns or two files of one name. Names of files that differ in capitals are the same file
 /// on some systems.
-fn twice<S: Space>(observers: &Observers<S>) -> Option<Twice> {
+fn twice(observers: &Observers) -> Option<Twice> {
     let mut columns = BTreeSet::new();
     for column in observers.columns() {
         if let Some(name) = columns.replace(column.name) {

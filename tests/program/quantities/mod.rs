@@ -10,7 +10,7 @@ use fretwork::record::observer::{Event, EventTable};
 use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
 use fretwork::record::statistics::Column;
-use fretwork::record::{Observer, Run, RunEnd, RunOptions, Summary};
+use fretwork::record::{Observer, Run, RunEnd, RunOptions, RunView, Summary};
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
@@ -27,19 +27,20 @@ struct Summit {
     events: Vec<Event>,
 }
 
-impl<S: Space> Observer<S> for Summit {
+impl Observer for Summit {
     fn name(&self) -> String {
         "summit".to_owned()
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        let heights = s.state.bodies.position.iter().map(|p| p[S::D - 1]);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        let (bodies, up) = (0..run.bodies().len(), run.dimension() - 1);
+        let heights = bodies.map(|body| run.motion(body).position[up]);
         let now = heights.fold(f64::NEG_INFINITY, f64::max);
-        if s.state.steps == 1 || now > self.highest {
+        if run.steps() == 1 || now > self.highest {
             self.highest = now;
             self.events.push(Event {
                 table: "summits",
-                row: vec![s.state.time, now],
+                row: vec![run.time(), now],
                 list: Vec::new(),
             });
         }
@@ -49,7 +50,7 @@ impl<S: Space> Observer<S> for Summit {
         vec![Column::new("summit", "m", "highest place so far")]
     }
 
-    fn sample(&mut self, _: &Simulation<S>) -> Vec<f64> {
+    fn sample(&mut self, _: &dyn RunView) -> Vec<f64> {
         vec![self.highest]
     }
 
@@ -65,11 +66,11 @@ impl<S: Space> Observer<S> for Summit {
         }]
     }
 
-    fn after_processes(&mut self, _: &Simulation<S>) -> Vec<Event> {
+    fn after_processes(&mut self, _: &dyn RunView) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }
 
-    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
         let doc = "highest place that a ball reached";
         let summit = found.add("summit.highest", self.highest, METRE, doc);
         summit.headline("highest summit");
@@ -170,11 +171,11 @@ fn a_quantity_and_events_of_one_observer_are_found_everywhere() {
 fn events_without_a_table_are_refused() {
     #[derive(Debug)]
     struct Stray;
-    impl<S: Space> Observer<S> for Stray {
+    impl Observer for Stray {
         fn name(&self) -> String {
             "stray".to_owned()
         }
-        fn after_processes(&mut self, _: &Simulation<S>) -> Vec<Event> {
+        fn after_processes(&mut self, _: &dyn RunView) -> Vec<Event> {
             vec![Event {
                 table: "strays",
                 row: vec![1.0],

@@ -1,7 +1,7 @@
 //! The tables of docs/outputs.md list what the shipped observers declare. With
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
-use fretwork::record::Observed;
+use fretwork::geometry::space::Space;
 use fretwork::record::quantity::{Role, Topic};
 use fretwork::scene::build::Built;
 use fretwork::scene::{Loaded, Scene, load};
@@ -24,7 +24,7 @@ const CASES: [&str; 8] = [
 /// Path, units in space and in the plane, explanation, and whether it is of the course of the run.
 pub type Declared = (String, [String; 2], String, bool);
 
-fn add<S: Observed>(loaded: &Loaded, built: &Built<S>, all: &mut Vec<Declared>) {
+fn add<S: Space>(loaded: &Loaded, built: &Built<S>, all: &mut Vec<Declared>) {
     let found = standard::declared(&loaded.case, &built.simulation);
     let spelled =
         |unit: fretwork::record::quantity::Unit| [3, 2].map(|d| unit.symbol(d).to_owned());

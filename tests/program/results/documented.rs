@@ -1,8 +1,8 @@
 //! Every column and every key that a run writes stands in docs/outputs.md.
 
 use fretwork::fields::{Fields, orientation, removed};
+use fretwork::geometry::space::Space;
 use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::record::Observed;
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::statistics_columns;
 use fretwork::scene::build::{Built, Dimensional, Loaded};
@@ -21,7 +21,7 @@ fn documented() -> BTreeSet<String> {
     words.map(str::to_owned).collect()
 }
 
-fn missing<S: Observed>(loaded: &Loaded, built: &Built<S>, page: &BTreeSet<String>) -> Vec<String> {
+fn missing<S: Space>(loaded: &Loaded, built: &Built<S>, page: &BTreeSet<String>) -> Vec<String> {
     let case = &loaded.case;
     // Names that a case chose stand in the page as BODY and NAME.
     let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));

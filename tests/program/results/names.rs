@@ -6,7 +6,7 @@ use super::folder;
 use fretwork::fields::{FieldList, Fields, orientation};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{MeshField, of_bodies, of_grains, of_surfaces};
-use fretwork::record::{Observed, RunOptions, run, statistics_columns};
+use fretwork::record::{RunOptions, run, statistics_columns};
 use fretwork::scene::build::{Built, Dimensional, Loaded};
 use fretwork::scene::{Scene, load};
 use fretwork::shipped::search_path;
@@ -72,7 +72,7 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
 }
 
 /// The columns of `statistics.csv`, of `/statistics` and of the observers are the same.
-fn statistics_agree<S: Observed + Dimensional>(loaded: &Loaded, built: Built<S>, out: &Path) {
+fn statistics_agree<S: Dimensional>(loaded: &Loaded, built: Built<S>, out: &Path) {
     let columns = statistics_columns(&loaded.case, &built.simulation);
     let options = RunOptions {
         out: out.to_owned(),

@@ -13,7 +13,7 @@ use fretwork::record::quantity::unit::METRE;
 use fretwork::record::results::PreviousResults;
 use fretwork::record::statistics::Column;
 use fretwork::record::summary::Uncertainty;
-use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, Summary, stopped};
+use fretwork::record::{Observer, Run, RunEnd, RunError, RunOptions, RunView, Summary, stopped};
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork::step::{Simulation, StepReport};
@@ -27,18 +27,19 @@ struct MeanGap {
     steps: u64,
 }
 
-fn mean_gap<S: Space>(s: &Simulation<S>) -> f64 {
-    let contacts = &s.state.network.contacts;
-    contacts.iter().map(|c| c.gap).sum::<f64>() / contacts.len().max(1) as f64
+fn mean_gap(run: &dyn RunView) -> f64 {
+    let mut sum = 0.0;
+    run.visit_contacts(&mut |contact| sum += contact.gap);
+    sum / run.contact_count().max(1) as f64
 }
 
-impl<S: Space> Observer<S> for MeanGap {
+impl Observer for MeanGap {
     fn name(&self) -> String {
         "mean gap".to_owned()
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        self.sum += mean_gap(s);
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        self.sum += mean_gap(run);
         self.steps += 1;
     }
 
@@ -46,17 +47,17 @@ impl<S: Space> Observer<S> for MeanGap {
         vec![Column::new("mean_gap", "m", "mean gap of all contacts")]
     }
 
-    fn sample(&mut self, s: &Simulation<S>) -> Vec<f64> {
-        vec![mean_gap(s)]
+    fn sample(&mut self, run: &dyn RunView) -> Vec<f64> {
+        vec![mean_gap(run)]
     }
 
-    fn report(&self, _: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, _: &RunEnd<'_>, found: &mut Findings) {
         let mean = self.sum / self.steps as f64;
         found.measure("mean_gap_of_run", mean, METRE, "mean gap of the run");
     }
 
-    fn files(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
-        let text = format!("{} steps, {:e}\n", end.simulation.state.steps, self.sum);
+    fn files(&self, end: &RunEnd<'_>) -> Vec<Output> {
+        let text = format!("{} steps, {:e}\n", end.simulation.steps(), self.sum);
         let file = "mean_gap.txt".to_owned();
         vec![Output::Text { file, text }]
     }

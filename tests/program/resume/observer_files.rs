@@ -10,7 +10,7 @@ use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
 
 use fretwork::record::{
-    Observer, Paint, Picture, Run, RunEnd, RunOptions, Shows, Summary, stopped,
+    Observer, Paint, Picture, Run, RunEnd, RunOptions, RunView, Shows, Summary, stopped,
 };
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::step::{Simulation, StepReport};
@@ -25,20 +25,21 @@ struct Speeds {
     rows: Vec<(f64, f64)>,
 }
 
-impl<S: Space> Observer<S> for Speeds {
+impl Observer for Speeds {
     fn name(&self) -> String {
         "speeds".to_owned()
     }
 
-    fn after_step(&mut self, s: &Simulation<S>, _: &StepReport) {
-        if s.state.steps.is_multiple_of(10) {
-            let speeds = s.state.bodies.velocity.iter().map(|v| v.norm());
-            self.rows.push((s.state.time, speeds.fold(0.0, f64::max)));
+    fn after_step(&mut self, run: &dyn RunView, _: &StepReport) {
+        if run.steps().is_multiple_of(10) {
+            let bodies = 0..run.bodies().len();
+            let speeds = bodies.map(|body| run.motion(body).speed());
+            self.rows.push((run.time(), speeds.fold(0.0, f64::max)));
         }
     }
 
-    fn pictures(&self, s: &Simulation<S>) -> Vec<Picture> {
-        let paints = (0..s.shapes.balls.len()).map(|k| Paint::Layer(k as i64));
+    fn pictures(&self, run: &dyn RunView) -> Vec<Picture> {
+        let paints = (0..run.balls().len()).map(|k| Paint::Layer(k as i64));
         vec![Picture {
             name: "balls",
             shows: Shows::Paints(paints.collect()),
@@ -49,7 +50,7 @@ impl<S: Space> Observer<S> for Speeds {
         vec!["balls"]
     }
 
-    fn files(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn files(&self, _: &RunEnd<'_>) -> Vec<Output> {
         let mut text = "time [s],speed [m/s]\n".to_owned();
         for (time, speed) in &self.rows {
             writeln!(text, "{time:e},{speed:e}").unwrap();
@@ -132,7 +133,7 @@ fn a_table_of_an_observer_goes_on_over_a_resumption() {
 #[derive(Debug)]
 struct Named(&'static str);
 
-impl<S: Space> Observer<S> for Named {
+impl Observer for Named {
     fn name(&self) -> String {
         "named".to_owned()
     }

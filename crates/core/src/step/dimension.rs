@@ -30,6 +30,19 @@ impl<'a> InDimension<'a> {
             None => unreachable!("there are two and three dimensions"),
         }
     }
+
+    /// The simulation, of which the dimension is known.
+    #[doc(hidden)]
+    pub fn get<S: Space>(self) -> &'a Simulation<S> {
+        let simulation: &dyn Any = match self {
+            Self::Dim2(s) => s,
+            Self::Dim3(s) => s,
+        };
+        match simulation.downcast_ref() {
+            Some(simulation) => simulation,
+            None => unreachable!("its dimension is known"),
+        }
+    }
 }
 
 /// A simulation by its dimension, to be changed.

@@ -2,6 +2,8 @@
 
 use crate::bodies::{Carrier, Driven};
 use crate::contact::{BondState, Key};
+use crate::geometry::space::VectorLike;
+use nalgebra::Vector3;
 
 /// Columns of the bodies, grains first, then first bodies. In 2D masses are per metre of depth.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +59,13 @@ pub struct Motion {
     pub velocity: [f64; 3],
     /// Angular velocity (rad/s).
     pub spin: [f64; 3],
+}
+
+impl Motion {
+    /// Magnitude of the velocity (m/s).
+    pub fn speed(&self) -> f64 {
+        VectorLike::norm(&Vector3::from(self.velocity))
+    }
 }
 
 /// A ball of a body, or a point of one that deforms, which has the radius zero.

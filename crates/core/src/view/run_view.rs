@@ -19,7 +19,7 @@ use crate::process::expansion::ThermalExpansion;
 use crate::solve;
 use crate::step::control::{Begun, GravityDrive};
 use crate::step::fields::GrainPart;
-use crate::step::{Options, Simulation};
+use crate::step::{InDimension, Options, Simulation};
 use std::fmt::Debug;
 
 /// A simulation for reading, between two steps; see the [module](super) for what stands in the
@@ -27,6 +27,9 @@ use std::fmt::Debug;
 ///
 /// Bodies are counted as in [`RunView::bodies`], surfaces as in [`RunView::surfaces`].
 pub trait RunView: Debug {
+    /// The simulation in its dimension.
+    #[doc(hidden)]
+    fn in_dimension(&self) -> InDimension<'_>;
     /// Number of dimensions, 2 or 3.
     fn dimension(&self) -> usize;
     /// Time at the end of the last step (s).
@@ -174,6 +177,9 @@ fn contact_view<S: Space>(s: &Simulation<S>, contact: &Contact<S>) -> ContactVie
 }
 
 impl<S: Space> RunView for Simulation<S> {
+    fn in_dimension(&self) -> InDimension<'_> {
+        InDimension::of(self)
+    }
     fn dimension(&self) -> usize {
         S::D
     }

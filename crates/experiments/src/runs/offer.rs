@@ -1,8 +1,9 @@
 //! Outputs that a case has, determined before anything runs.
 
 use super::quantity::{Quantity, listed};
+use fretwork_core::geometry::space::Space;
 use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
-use fretwork_observe::standard::{self, Observed};
+use fretwork_observe::standard;
 use fretwork_scene::Scene;
 use fretwork_scene::build::Built;
 use fretwork_scene::case::Case;
@@ -22,7 +23,7 @@ pub struct Offer {
 
 impl Offer {
     /// The outputs of a case and its scene.
-    pub fn of<S: Observed>(case: &Case, built: &Built<S>) -> Self {
+    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
         Self {
             found: standard::declared(case, &built.simulation),
             columns: columns_of(case, built),
@@ -139,7 +140,7 @@ pub fn columns(case: &Case, scene: &Scene) -> Vec<String> {
     }
 }
 
-fn columns_of<S: Observed>(case: &Case, built: &Built<S>) -> Vec<String> {
+fn columns_of<S: Space>(case: &Case, built: &Built<S>) -> Vec<String> {
     let observers = standard::observers(case, &built.simulation, 0.0);
     observers.columns().into_iter().map(|c| c.name).collect()
 }

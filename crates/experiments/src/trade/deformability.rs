@@ -9,8 +9,8 @@ use super::varied::{Sense, Varied};
 use crate::Error;
 use crate::factor::Level;
 use fretwork_core::bodies::Dof;
+use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::error::Norm;
-use fretwork_observe::standard::Observed;
 use fretwork_scene::build::Built;
 use fretwork_scene::case::{
     BodySpec, Case, DofSpec, HalfSpaceProfile, HalfSpaceSpec, InterfaceSpec,
@@ -57,7 +57,7 @@ struct Grains {
 
 impl Deformability {
     /// Reads it from a built scene.
-    pub fn of<S: Observed>(case: &Case, built: &Built<S>) -> Self {
+    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let contacts = s.laws.iter().map(|interface| {
             let law = interface.contact();

@@ -12,8 +12,8 @@ use crate::runs::launcher::Launcher;
 use crate::runs::offer::Offer;
 use crate::runs::stored::Limits;
 use crate::{Error, Program, build, load};
+use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::local::solver::Method;
-use fretwork_observe::standard::Observed;
 use fretwork_scene::build::Built;
 use fretwork_scene::methods::{Demands, Service};
 use fretwork_scene::most_steps::most_steps;
@@ -164,7 +164,7 @@ impl Facts {
         }
     }
 
-    fn from<S: Observed>(loaded: &Loaded, built: &Built<S>) -> Self {
+    fn from<S: Space>(loaded: &Loaded, built: &Built<S>) -> Self {
         let s = &built.simulation;
         let demands = Demands::of(s);
         let serves =

@@ -2,10 +2,10 @@
 
 use super::AccuracyControl;
 use crate::error_estimate::Change;
-use crate::observer::Observer;
 use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Findings, Role, Topic, number, part, quantity};
 use crate::statistics::Column;
+use crate::typed::ObserverIn;
 use crate::warning::Warning;
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -176,7 +176,7 @@ impl AccuracyReport {
 #[derive(Clone, Copy, Debug)]
 pub struct ChosenSettings;
 
-impl<S: Space> Observer<S> for ChosenSettings {
+impl<S: Space> ObserverIn<S> for ChosenSettings {
     fn name(&self) -> String {
         "chosen settings".to_owned()
     }

@@ -11,11 +11,11 @@ pub(crate) use outcome::report_none;
 
 use super::coordination::{Coordination, coordination};
 use super::figures;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::Findings;
 use super::statistics::Column;
 use super::stress::{love_weber, plane_invariants};
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
@@ -196,7 +196,7 @@ impl Biaxial {
     }
 }
 
-impl<S: Space> Observer<S> for Biaxial {
+impl<S: Space> ObserverIn<S> for Biaxial {
     fn name(&self) -> String {
         "biaxial test".to_owned()
     }
@@ -213,12 +213,12 @@ impl<S: Space> Observer<S> for Biaxial {
         self.state(s).row()
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let mass = self.grain_mass(end.simulation);
         Outcome::new(end.table, self.start, mass).report(found);
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         vec![figures::biaxial::charts(self.start)]
     }
 

@@ -7,7 +7,7 @@ pub(crate) use summary::report_none;
 pub use summary::{Base, CircuitSummary, Rates};
 
 use super::figures;
-use super::observer::{Event, EventTable, Observer, RunEnd};
+use super::observer::{Event, EventTable};
 use super::output::Output;
 use super::picture::{Paint, Picture, Shows};
 use super::quantity::Findings;
@@ -16,6 +16,7 @@ use super::series::Series;
 use super::statistics::Column;
 use super::steady;
 use super::wear::show_flows;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::process::circuit::{Circuit, CircuitProcess, Debris};
@@ -44,7 +45,7 @@ fn place() -> [Column; 3] {
     ["x", "y", "z"].map(|a| Column::new(a, "m", "where it was"))
 }
 
-impl<S: Space> Observer<S> for BrokenBonds {
+impl<S: Space> ObserverIn<S> for BrokenBonds {
     fn name(&self) -> String {
         "broken bonds".to_owned()
     }
@@ -262,7 +263,7 @@ impl CircuitAccount {
     }
 }
 
-impl<S: Space> Observer<S> for CircuitAccount {
+impl<S: Space> ObserverIn<S> for CircuitAccount {
     fn name(&self) -> String {
         "tribological circuit".to_owned()
     }
@@ -368,7 +369,7 @@ impl<S: Space> Observer<S> for CircuitAccount {
     }
 
     /// Grains that came loose from first bodies are a source beside the wear law.
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         for name in ["Qs", "Qe", "Qw"] {
             found.edit(&format!("wear.{name}"), |q| q.lacks = None);
@@ -395,7 +396,7 @@ impl<S: Space> Observer<S> for CircuitAccount {
         show_flows(found);
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let summary = self.summary(end.simulation, end.wall);
         let figure = |c: CircuitSummary| figures::circuit::charts(c.window);
         summary.map(figure).into_iter().collect()

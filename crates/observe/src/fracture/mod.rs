@@ -5,9 +5,9 @@ mod summary;
 
 pub use summary::{AT_ONCE, BondEnergies, FractureSummary, Reference, WRONG_ENERGY};
 
-use super::observer::{Observer, RunEnd};
 use super::quantity::unit::WORD;
 use super::quantity::{Findings, Role, Topic};
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::Break;
 use fretwork_core::geometry::space::Space;
@@ -208,7 +208,7 @@ fn share(part: u64, of: u64) -> Option<f64> {
     (of > 0).then(|| part as f64 / of as f64)
 }
 
-impl<S: Space> Observer<S> for Fracture {
+impl<S: Space> ObserverIn<S> for Fracture {
     fn name(&self) -> String {
         "fracture energy".to_owned()
     }
@@ -226,7 +226,7 @@ impl<S: Space> Observer<S> for Fracture {
         }
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         let memories = s.state.network.memory.iter().enumerate();
         let bonded = memories.filter(|(k, m)| m.made > 0 && s.laws[*k].opens());

@@ -5,13 +5,14 @@
 //! exact for a uniformly filled band and robust against a few stray grains. A straight line through
 //! the rows gives the angle; the width across that line is the mean over the rows.
 
-use super::{Observer, RunEnd, grains, line};
+use super::{grains, line};
 use crate::chart::{Axis, Chart, Series, Value};
 use crate::code::{self, CodeError};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::statistics::Column;
 use crate::strain::Strain;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 use std::f64::consts::PI;
@@ -70,7 +71,7 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[k] + (place - k as f64) * (next - sorted[k])
 }
 
-impl<S: Space> Observer<S> for Band<S> {
+impl<S: Space> ObserverIn<S> for Band<S> {
     fn name(&self) -> String {
         super::name_of("band", &self.name)
     }
@@ -115,9 +116,9 @@ impl<S: Space> Observer<S> for Band<S> {
         vec![angle, width, points.len() as f64]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         // A band grows, so its last state is reported.
-        for column in Observer::<S>::columns(self) {
+        for column in ObserverIn::<S>::columns(self) {
             let last = end.table.column(&column.name).last().copied();
             if let Some(value) = last.filter(|v| v.is_finite()) {
                 found.measure(&column.name, value, column.unit(), column.doc);
@@ -138,7 +139,7 @@ impl<S: Space> Observer<S> for Band<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let chart = |part: &str, y: Axis, factor: f64| {
             let value = Value {
                 factor,

@@ -1,12 +1,13 @@
 //! Mass above a level, for example the content of a silo.
 
-use super::{Observer, RunEnd, grains, line, since};
+use super::{grains, line, since};
 use crate::chart::Axis;
 use crate::figures::history;
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::quantity::unit::{MASS, MASS_FLOW};
 use crate::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
@@ -20,7 +21,7 @@ pub struct Mass {
     pub(super) inertia_scaling: f64,
 }
 
-impl<S: Space> Observer<S> for Mass {
+impl<S: Space> ObserverIn<S> for Mass {
     fn name(&self) -> String {
         super::name_of("mass", &self.name)
     }
@@ -40,7 +41,7 @@ impl<S: Space> Observer<S> for Mass {
         vec![above.map(|g| g.mass).sum::<f64>() / self.inertia_scaling]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let points = since(end.table, &self.name, self.start);
         if let Some(rate) = line(points.iter().copied()) {
             let doc = "change of the mass above a level, a line through its course";
@@ -52,7 +53,7 @@ impl<S: Space> Observer<S> for Mass {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let heading = format!("Mass, {}", self.name);
         let chart = history(heading, Axis::of_rows("mass m"), &[("", &self.name)]);
         vec![Output::figure(&self.name, [chart], 1)]

@@ -7,8 +7,9 @@ mod shear;
 mod slope;
 mod third_body;
 
-use super::observer::{Observer, Observers, RunEnd};
+use super::observer::{Observer, Observers};
 use super::statistics::Table;
+use crate::typed::in_dimension;
 use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
@@ -16,14 +17,10 @@ use fretwork_scene::measures::MeasureSpec;
 
 /// Measures of these words of a case, and its `inertia_scaling`, by which the bodies' masses are
 /// too large. `heated`: whether it computes heat.
-pub fn measures<S: Space>(
-    specs: &[MeasureSpec],
-    inertia_scaling: f64,
-    heated: bool,
-) -> Observers<S> {
+pub fn measures<S: Space>(specs: &[MeasureSpec], inertia_scaling: f64, heated: bool) -> Observers {
     let mut all = Observers::default();
     for spec in specs {
-        all.push(measure(spec.clone(), inertia_scaling, heated));
+        all.push(measure::<S>(spec.clone(), inertia_scaling, heated));
     }
     all
 }
@@ -33,18 +30,14 @@ fn name_of(kind: &str, name: &str) -> String {
     format!("{kind} {name}")
 }
 
-fn measure<S: Space>(
-    spec: MeasureSpec,
-    inertia_scaling: f64,
-    heated: bool,
-) -> Box<dyn Observer<S>> {
+fn measure<S: Space>(spec: MeasureSpec, inertia_scaling: f64, heated: bool) -> Box<dyn Observer> {
     match spec {
         MeasureSpec::Mass {
             name,
             axis,
             above,
             start,
-        } => Box::new(mass::Mass {
+        } => in_dimension::<S, _>(mass::Mass {
             name,
             axis,
             above,
@@ -56,7 +49,7 @@ fn measure<S: Space>(
             from,
             to,
             start,
-        } => Box::new(slope::Slope {
+        } => in_dimension::<S, _>(slope::Slope {
             name,
             from,
             to,
@@ -70,7 +63,7 @@ fn measure<S: Space>(
             bins,
             turned,
             start,
-        } => Box::new(profile::Profile::<S>::new(
+        } => in_dimension::<S, _>(profile::Profile::<S>::new(
             name, axis, &low, &high, bins, turned, start,
         )),
         MeasureSpec::Band {
@@ -78,14 +71,14 @@ fn measure<S: Space>(
             low,
             high,
             above,
-        } => Box::new(band::Band::<S> {
+        } => in_dimension::<S, _>(band::Band::<S> {
             name,
             low: S::Vector::from_slice(&low),
             high: S::Vector::from_slice(&high),
             above,
             strain: None,
         }),
-        MeasureSpec::ThirdBody(spec) => Box::new(third_body::ThirdBody::<S>::new(
+        MeasureSpec::ThirdBody(spec) => in_dimension::<S, _>(third_body::ThirdBody::<S>::new(
             spec,
             inertia_scaling,
             heated,
@@ -95,7 +88,7 @@ fn measure<S: Space>(
             low,
             high,
             start,
-        } => Box::new(shear::Shear::<S>::new(name, low, high, start)),
+        } => in_dimension::<S, _>(shear::Shear::<S>::new(name, low, high, start)),
     }
 }
 

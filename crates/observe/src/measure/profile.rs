@@ -3,11 +3,12 @@
 //!
 //! A grain counts in the slice of its centre; velocities and temperatures are mass-weighted.
 
-use super::{Observer, RunEnd, grains};
+use super::grains;
 use crate::chart::{Axis, Chart, Series, Style};
 use crate::code::{self, CodeError};
 use crate::output::Output;
 use crate::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 use serde::{Deserialize, Serialize};
@@ -120,7 +121,7 @@ impl<S: Space> Profile<S> {
     }
 }
 
-impl<S: Space> Observer<S> for Profile<S> {
+impl<S: Space> ObserverIn<S> for Profile<S> {
     fn name(&self) -> String {
         super::name_of("profile", &self.name)
     }
@@ -173,7 +174,7 @@ impl<S: Space> Observer<S> for Profile<S> {
             .to_vec()
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let rows = self.rows();
         let mut text = self.header().join(",") + "\n";
         for row in &rows {

@@ -1,11 +1,12 @@
 //! Angle of a free surface: a straight line through the highest grain of each column.
 
-use super::{Observer, RunEnd, grains, line, mean, since};
+use super::{grains, line, mean, since};
 use crate::chart::{Axis, Chart, Series, Value};
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::quantity::unit::RADIAN;
 use crate::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::step::Simulation;
 
@@ -18,7 +19,7 @@ pub struct Slope {
     pub(super) start: f64,
 }
 
-impl<S: Space> Observer<S> for Slope {
+impl<S: Space> ObserverIn<S> for Slope {
     fn name(&self) -> String {
         super::name_of("slope", &self.name)
     }
@@ -68,7 +69,7 @@ impl<S: Space> Observer<S> for Slope {
         vec![line(points).map_or(f64::NAN, f64::atan)]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         if let Some(mean) = mean(&since(end.table, &self.name, self.start)) {
             found.measure(&self.name, mean, RADIAN, "mean angle of the free surface");
         }
@@ -78,7 +79,7 @@ impl<S: Space> Observer<S> for Slope {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let value = Value {
             factor: 1f64.to_degrees(),
             ..Value::from(self.name.as_str())

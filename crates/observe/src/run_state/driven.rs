@@ -1,10 +1,10 @@
 //! First bodies whose motion is prescribed or forced.
 
 use crate::figures;
-use crate::observer::{Observer, RunEnd};
 use crate::output::Output;
 use crate::quantity::unit::FORCE;
 use crate::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
 
@@ -31,7 +31,7 @@ impl DrivenBodies {
     }
 }
 
-impl<S: Space> Observer<S> for DrivenBodies {
+impl<S: Space> ObserverIn<S> for DrivenBodies {
     fn name(&self) -> String {
         "driven bodies".to_owned()
     }
@@ -72,7 +72,7 @@ impl<S: Space> Observer<S> for DrivenBodies {
         row
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let test = self
             .test
             .as_ref()

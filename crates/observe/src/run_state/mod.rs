@@ -13,13 +13,13 @@ pub use missed::Missed;
 pub use phases::Phases;
 
 use super::figures;
-use super::observer::{Observer, RunEnd};
 use super::output::Output;
 use super::quantity::unit::{ANGULAR_MOMENTUM, ENERGY, METRE, MOMENTUM, ONE, SECOND, WORD};
 use super::quantity::{COURSE, Field, Findings, Role, Topic, field};
 use super::solving::SolverSummary;
 use super::statistics::Column;
 use super::warning::Warning;
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::code::{CodeError, decode, encode};
 use fretwork_core::contact::StepSizeDiagnostics;
 use fretwork_core::energy::Energy;
@@ -256,7 +256,7 @@ const IMPOSSIBLE: [Field; 7] = [
     field("overlap", METRE, "largest overlap of them"),
 ];
 
-impl<S: Space> Observer<S> for RunState {
+impl<S: Space> ObserverIn<S> for RunState {
     fn name(&self) -> String {
         "run state".to_owned()
     }
@@ -358,7 +358,7 @@ impl<S: Space> Observer<S> for RunState {
         row
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let s = end.simulation;
         let contacts = s.state.network.contact_count(s.options.solver.parallel);
         self.put(&Counts::of(s, contacts), Some(s), found);
@@ -377,7 +377,7 @@ impl<S: Space> Observer<S> for RunState {
         self.put::<S>(&self.counts, None, found);
     }
 
-    fn figures(&self, end: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, end: &RunEndIn<'_, S>) -> Vec<Output> {
         let entries = end.simulation.state.energy.entries();
         let entries = entries.into_iter().map(|(name, ..)| name);
         let joule = ENERGY.symbol(S::D);

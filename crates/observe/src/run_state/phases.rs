@@ -1,9 +1,9 @@
 //! Phases of a run.
 
-use crate::observer::{Observer, RunEnd};
 use crate::quantity::unit::{ONE, SECOND, WORD};
 use crate::quantity::{Field, Findings, Role, Topic, field, quantity};
 use crate::statistics::Column;
+use crate::typed::{ObserverIn, RunEndIn};
 use crate::warning::{NOT_REACHED, Warning};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::Simulation;
@@ -47,7 +47,7 @@ impl Phases {
     }
 }
 
-impl<S: Space> Observer<S> for Phases {
+impl<S: Space> ObserverIn<S> for Phases {
     fn name(&self) -> String {
         "phases".to_owned()
     }
@@ -66,7 +66,7 @@ impl<S: Space> Observer<S> for Phases {
         self.any.then(phase).into_iter().collect()
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let begun = end.simulation.state.control.begun();
         let left = end.simulation.phases.iter().skip(begun.len());
         let mut missed: Vec<&str> = left.map(|p| p.name.as_str()).collect();

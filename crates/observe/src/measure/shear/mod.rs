@@ -15,13 +15,13 @@
 mod means;
 mod sums;
 
-use super::{Observer, RunEnd};
 use crate::chart::Axis;
 use crate::code::{self, CodeError};
 use crate::figures::history;
 use crate::output::Output;
 use crate::quantity::Findings;
 use crate::statistics::{Column, Table};
+use crate::typed::{ObserverIn, RunEndIn};
 use fretwork_core::geometry::space::Space;
 use fretwork_core::step::{Simulation, StepReport};
 use means::Means;
@@ -107,7 +107,7 @@ impl<S: Space> Shear<S> {
     }
 }
 
-impl<S: Space> Observer<S> for Shear<S> {
+impl<S: Space> ObserverIn<S> for Shear<S> {
     fn name(&self) -> String {
         super::name_of("shear", &self.name)
     }
@@ -156,7 +156,7 @@ impl<S: Space> Observer<S> for Shear<S> {
         ]
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let Some(means) = self.means(end.table) else {
             return;
         };
@@ -183,7 +183,7 @@ impl<S: Space> Observer<S> for Shear<S> {
         vec![format!("{}.png", self.name)]
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let chart = |part: &str, heading: &str, name: &str| {
             history(heading, Axis::of_rows(name), &[("", self.column(part))])
         };

@@ -12,13 +12,14 @@ mod snapshot;
 mod spent;
 mod tables;
 
-use super::{Observer, RunEnd, grains, mean, since};
+use super::{grains, mean, since};
 use crate::code::{self, CodeError};
 use crate::output::Output;
 use crate::picture::{Picture, Shows};
 use crate::quantity::unit::{ENERGY, ONE};
 use crate::quantity::{Findings, Unit};
 use crate::statistics::{Column, Table};
+use crate::typed::{ObserverIn, RunEndIn};
 use cells::{Block, History, MECHANISMS};
 use clusters::Clusters;
 use fretwork_core::geometry::space::Space;
@@ -242,7 +243,7 @@ impl<S: Space> ThirdBody<S> {
     }
 }
 
-impl<S: Space> Observer<S> for ThirdBody<S> {
+impl<S: Space> ObserverIn<S> for ThirdBody<S> {
     fn name(&self) -> String {
         super::name_of("third body", &self.spec.name)
     }
@@ -316,13 +317,13 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         self.row.clone()
     }
 
-    fn report(&self, end: &RunEnd<'_, S>, found: &mut Findings) {
+    fn report(&self, end: &RunEndIn<'_, S>, found: &mut Findings) {
         let (flow, cluster, over) = self.flow(end.table);
         let regime = Regime::of(flow.as_ref(), cluster);
         let said = regime.describe(flow.as_ref(), cluster);
         let doc = "flow regime of the layer";
         found.finding(&self.column("regime"), format!("{said}; {over}"), doc);
-        let means = Observer::<S>::columns(self)
+        let means = ObserverIn::<S>::columns(self)
             .into_iter()
             .zip(columns(S::D, self.heated));
         for (column, (part, ..)) in means.filter(|(_, c)| is_averaged(c.0)) {
@@ -433,7 +434,7 @@ impl<S: Space> Observer<S> for ThirdBody<S> {
         ends.map(|end| format!("{}{end}", self.spec.name)).to_vec()
     }
 
-    fn figures(&self, _: &RunEnd<'_, S>) -> Vec<Output> {
+    fn figures(&self, _: &RunEndIn<'_, S>) -> Vec<Output> {
         let name = &self.spec.name;
         let (whole, slices) = (self.history.whole(), self.history.slices(self.spec.slices));
         let text = |part: &str, text: String| Output::Text {
