@@ -7,6 +7,7 @@ use crate::observer::{PythonObserver, Wishes};
 use crate::search::search_path;
 use crate::workers::Workers;
 use fretwork::cli;
+use fretwork::geometry::space::Space;
 use fretwork::laws::watch::{self, Saved};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};

@@ -19,7 +19,6 @@ use std::time::Duration;
 pub(crate) struct RunEndIn<'a, S: Space> {
     pub simulation: &'a Simulation<S>,
     pub table: &'a Table,
-    pub title: &'a str,
     pub uncertainty: &'a Uncertainty,
     pub wall: Duration,
 }
@@ -29,7 +28,6 @@ impl<'a, S: Space> RunEndIn<'a, S> {
         Self {
             simulation: end.simulation.in_dimension().get(),
             table: end.table,
-            title: end.title,
             uncertainty: end.uncertainty,
             wall: end.wall,
         }

@@ -59,12 +59,12 @@ impl EmergencySave {
     }
 }
 
-impl<S: Space> UnsavedOutputs {
+impl UnsavedOutputs {
     /// Writes it; whether all of it is on disk.
     fn write(&mut self, who: &str, out: &Path) -> bool {
         let summary = &mut self.summary;
         summary.run.stopped = Some(who.to_owned());
-        summary.found = self.observers.report_so_far();
+        summary.found = self.observers.report_so_far(summary.run.dimension);
         let estimate = Uncertainty::new(&summary.found, Repeats::default());
         estimate.report(&mut summary.found);
         summary.check();

@@ -520,7 +520,7 @@ impl<'a, S: Space> Recorder<'a, S> {
 }
 
 /// Begins the file of results, under a name that it has until there is something in it.
-fn create_results<S: Dimensional>(
+fn create_results<S: Space>(
     part: &Path,
     loaded: &Loaded,
     built: &Built<S>,

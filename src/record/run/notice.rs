@@ -18,7 +18,7 @@ impl<S: Space> Recorder<'_, S> {
         self.observers.before_step(&self.simulation);
         let mut now = Summary {
             run: self.summary.run.clone(),
-            found: self.observers.report_so_far(),
+            found: self.observers.report_so_far(S::D),
         };
         band(&now.check())
     }
