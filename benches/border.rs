@@ -122,8 +122,7 @@ fn share(call: f64) {
     let loaded = load(Path::new(&file), &[]).unwrap_or_else(|e| panic!("{e}"));
     let mut s: Simulation<fretwork::geometry::space::Dim2> = loaded
         .build_in(&search_path())
-        .unwrap_or_else(|e| panic!("{e}"))
-        .simulation;
+        .unwrap_or_else(|e| panic!("{e}"));
     while s.state.time < 0.07 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

@@ -295,7 +295,7 @@ fn build(first: First, coulomb: bool) -> Scene {
     let loaded = load_text("layer", &text, &folder, &[]);
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<Dim2>(&search_path());
-    let mut scene = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut scene = built.unwrap_or_else(|e| panic!("{e}"));
     scene.options.solver.parallel = number("THREADS", 1.0) > 1.0;
     scene
 }

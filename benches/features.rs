@@ -14,7 +14,6 @@ use fretwork::geometry::convex::polyhedron::Polyhedron;
 use fretwork::geometry::convex::{ContactTolerances, Core};
 use fretwork::geometry::periodic::Periodic;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
 use fretwork::scene::sample::deposit::Corners;
 use fretwork::scene::sample::voronoi_space::tiling;
@@ -63,7 +62,7 @@ fn main() {
     }
 }
 
-fn run<S: Dimensional>(scene: &str, case: &str) {
+fn run<S: Space>(scene: &str, case: &str) {
     let all = FEATURES.iter().chain([&UNCOUPLED]);
     let mut trials: Vec<Trial<S>> = all.map(|f| trial(case, f)).collect();
     for _ in 0..ROUNDS {
@@ -95,12 +94,12 @@ fn run<S: Dimensional>(scene: &str, case: &str) {
     }
 }
 
-fn trial<S: Dimensional>(case: &str, feature: &Feature) -> Trial<S> {
+fn trial<S: Space>(case: &str, feature: &Feature) -> Trial<S> {
     let path = format!("{}/cases/benchmarks/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let sets: Vec<String> = feature.1.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(Path::new(&path), &sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<S>(&search_path());
-    let mut simulation = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut simulation = built.unwrap_or_else(|e| panic!("{e}"));
     // The load crosses the packing first; a frictionless one would flow for long.
     simulation.options.solver.max_iterations = 200;
     for _ in 0..10 {

@@ -227,7 +227,7 @@ fn serve(asked: &[String]) {
     let file = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
     let loaded = load(Path::new(&file), sets).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<Dim2>(&search_path());
-    let mut s = built.unwrap_or_else(|e| panic!("{e}")).simulation;
+    let mut s = built.unwrap_or_else(|e| panic!("{e}"));
     s.options.solver.parallel = false;
     let grains = s.state.bodies.grains().count();
     let mut make = |steps: u32| {

@@ -9,7 +9,8 @@
 
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
-use fretwork::scene::{Scene, load};
+use fretwork::in_dimension;
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
@@ -110,10 +111,7 @@ fn main() {
         let scene = loaded
             .build(&search_path())
             .unwrap_or_else(|e| panic!("{e}"));
-        match scene {
-            Scene::Dim2(b) => bench(name, b.simulation, &windows),
-            Scene::Dim3(b) => bench(name, b.simulation, &windows),
-        }
+        in_dimension!(scene.simulation, |s| bench(name, *s, &windows));
     }
 }
 

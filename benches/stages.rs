@@ -15,7 +15,8 @@
 
 use cpu_time::ProcessTime;
 use fretwork::geometry::space::Space;
-use fretwork::scene::{Case, Scene, load, processes};
+use fretwork::in_dimension;
+use fretwork::scene::{Case, load, processes};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use std::path::Path;
@@ -132,10 +133,9 @@ fn run(case: &str, stages: &[Stage], wanted: Option<&str>, threads: usize) {
     let scene = loaded
         .build(&search_path())
         .unwrap_or_else(|e| panic!("{e}"));
-    match scene {
-        Scene::Dim2(b) => time(b.simulation, &loaded.case, stages, wanted, threads),
-        Scene::Dim3(b) => time(b.simulation, &loaded.case, stages, wanted, threads),
-    }
+    in_dimension!(scene.simulation, |s| {
+        time(*s, &loaded.case, stages, wanted, threads);
+    });
 }
 
 fn time<S: Space>(

@@ -37,7 +37,7 @@
 //! | energy ledger | [`energy`]: [`Energy`](energy::Energy) |
 //! | bodies that deform | [`elastic`]: finite elements as dynamical systems of the step |
 //! | processes, wear | [`process`], [`wear`] |
-//! | the step itself | [`step`]: [`Simulation::step`](step::Simulation::step), [`run_until`](step::Simulation::run_until) |
+//! | the step itself | [`step`]: a [`Simulation`](step::Simulation) of one dimension; [`AnySimulation`] of either, stepped by [`RunControl`] and read by [`RunView`] |
 //! | observers, results | [`record`]: the run loop, analysis, `results.h5`, checkpoints |
 //! | pictures | [`view`]: charts and pictures, reports |
 //!
@@ -54,10 +54,10 @@
 //!
 //! ```
 //! use fretwork::scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
-//! use fretwork::scene::{CaseBuilder, Dim3};
+//! use fretwork::scene::CaseBuilder;
 //! use std::ops::ControlFlow;
 //!
-//! let mut simulation = CaseBuilder::<Dim3>::new("a ball on a plane")
+//! let mut simulation = CaseBuilder::in_space("a ball on a plane")
 //!     .time(1e-3, 0.2)
 //!     .gravity([0.0, 0.0, -9.81])
 //!     .own_material("glass", 2500.0, "data sheet")
@@ -68,9 +68,9 @@
 //!     .simulation;
 //! simulation.run_until(0.2, |_, _| ControlFlow::<()>::Continue(()))?;
 //!
-//! let (force, _) = simulation.contact_force_on("floor").ok_or("no floor")?;
+//! let [force, _] = simulation.contact_force_on("floor").ok_or("no floor")?;
 //! let weight = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.01f64.powi(3) * 9.81;
-//! assert!((-force.z - weight).abs() < 1e-3 * weight, "{force}");
+//! assert!((-force[2] - weight).abs() < 1e-3 * weight, "{force:?}");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -83,6 +83,10 @@ pub mod record;
 pub mod scene;
 pub mod shipped;
 
+pub use fretwork_core::in_dimension;
+pub use fretwork_core::view::{
+    AnySimulation, FieldInfo, FieldKind, FieldValues, GrainFields, RunControl, RunView,
+};
 pub use fretwork_core::{
     bodies, certify, contact, energy, fields, geometry, heat, huge_pages, laws, out_of_memory,
     process, program, solve, step, threads, wear,

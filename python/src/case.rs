@@ -5,9 +5,8 @@ use crate::infinity;
 use crate::paths;
 use crate::search::search_path;
 use fretwork::cli;
-use fretwork::geometry::space::Space;
 use fretwork::scene::source::{Names, Tree, nearest, split_path};
-use fretwork::scene::{Case as CaseSpec, InputError, Loaded, Scene, check, load, load_text};
+use fretwork::scene::{Case as CaseSpec, InputError, Loaded, check, load, load_text};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -126,22 +125,16 @@ impl Case {
         let path = search_path(&plugin_path, trust_plugins)?;
         let loaded = self.loaded.clone();
         let made = py.detach(move || -> Result<_, InputError> {
-            Ok(match loaded.build(&path)? {
-                Scene::Dim2(built) => lines(&loaded, *built, timed),
-                Scene::Dim3(built) => lines(&loaded, *built, timed),
-            })
+            let built = loaded.build(&path)?;
+            let mut lines = cli::check_lines(&loaded, &built, timed);
+            if timed {
+                lines.push(cli::check_run_time(&loaded, built));
+            }
+            Ok(lines)
         });
         let lines = made.map_err(|e| input(&e))?;
         Ok((self.loaded.case.name.clone(), lines))
     }
-}
-
-fn lines<S: Space>(loaded: &Loaded, built: fretwork::scene::Built<S>, timed: bool) -> Lines {
-    let mut lines = cli::check_lines(loaded, &built, timed);
-    if timed {
-        lines.push(cli::check_run_time(loaded, built));
-    }
-    lines
 }
 
 impl Case {

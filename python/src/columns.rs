@@ -2,8 +2,9 @@
 
 use crate::array::Array;
 use crate::simulation::Simulation;
+use fretwork::RunView;
 use fretwork::bodies::Bodies;
-use fretwork::geometry::space::{Space, VectorLike};
+use fretwork::geometry::space::Space;
 use pyo3::prelude::*;
 use std::any::Any;
 
@@ -56,33 +57,32 @@ impl Column {
     }
 }
 
-/// Shows a column, as memory of its owner; without one, as a copy.
-pub(crate) fn show<S: Space>(
-    bodies: &Bodies<S>,
-    column: Column,
-    owner: Option<Py<Simulation>>,
-) -> Array {
-    let Some(owner) = owner else {
-        // The same array, on a copy that is its own.
-        let flat = |vectors: &[S::Vector]| Array::own(numbers(vectors), S::D);
-        return match column {
-            Column::Id => Array::own(bodies.id.clone(), 0),
-            Column::Position => flat(&bodies.position),
-            Column::Velocity => flat(&bodies.velocity),
-            Column::Spin => Array::own(numbers(&bodies.spin), spin_width::<S>()),
-            Column::Mass => Array::own(bodies.mass.clone(), 0),
-            Column::Inertia => Array::own(bodies.inertia.clone(), 0),
-            Column::Removed => Array::own(bodies.removed.clone(), 0),
-        };
-    };
+/// Shows a column, as memory of its owner.
+pub(crate) fn show<S: Space>(bodies: &Bodies<S>, column: Column, owner: Py<Simulation>) -> Array {
     match column {
         Column::Id => Array::shown::<_, u64>(&bodies.id, 0, owner),
         Column::Position => Array::shown::<_, f64>(&bodies.position, S::D, owner),
         Column::Velocity => Array::shown::<_, f64>(&bodies.velocity, S::D, owner),
-        Column::Spin => Array::shown::<_, f64>(&bodies.spin, spin_width::<S>(), owner),
+        Column::Spin => Array::shown::<_, f64>(&bodies.spin, spin_width(S::D), owner),
         Column::Mass => Array::shown::<_, f64>(&bodies.mass, 0, owner),
         Column::Inertia => Array::shown::<_, f64>(&bodies.inertia, 0, owner),
         Column::Removed => Array::shown::<_, bool>(&bodies.removed, 0, owner),
+    }
+}
+
+/// A copy of a column, with the layout of that which [`show`] gives.
+pub(crate) fn copy(run: &dyn RunView, column: Column) -> Array {
+    let (bodies, dimension) = (run.bodies(), run.dimension());
+    let motions = || (0..bodies.len()).map(|body| run.motion(body));
+    match column {
+        Column::Id => Array::own(bodies.id.to_vec(), 0),
+        Column::Position => vectors(motions().map(|m| m.position), dimension),
+        Column::Velocity => vectors(motions().map(|m| m.velocity), dimension),
+        Column::Spin if dimension == 2 => Array::own(motions().map(|m| m.spin[2]).collect(), 0),
+        Column::Spin => vectors(motions().map(|m| m.spin), 3),
+        Column::Mass => Array::own(bodies.mass.to_vec(), 0),
+        Column::Inertia => Array::own(bodies.inertia.to_vec(), 0),
+        Column::Removed => Array::own(bodies.removed.to_vec(), 0),
     }
 }
 
@@ -104,12 +104,12 @@ pub(crate) fn take<S: Space>(bodies: &mut Bodies<S>, column: Column) -> Box<dyn 
 }
 
 /// Numbers of a spin: in 2D a plain column.
-fn spin_width<S: Space>() -> usize {
-    if S::D == 2 { 0 } else { 3 }
+fn spin_width(dimension: usize) -> usize {
+    if dimension == 2 { 0 } else { 3 }
 }
 
-/// The numbers of vectors, one vector after another.
-pub(crate) fn numbers<V: VectorLike>(vectors: &[V]) -> Vec<f64> {
-    let all = vectors.iter();
-    all.flat_map(|v| (0..V::N).map(|k| v[k])).collect()
+/// Vectors as rows of so many numbers as there are dimensions.
+pub(crate) fn vectors(all: impl IntoIterator<Item = [f64; 3]>, dimension: usize) -> Array {
+    let numbers = all.into_iter().flat_map(|v| v.into_iter().take(dimension));
+    Array::own::<f64>(numbers.collect(), dimension)
 }

@@ -7,12 +7,11 @@ use crate::observer::{PythonObserver, Wishes};
 use crate::search::search_path;
 use crate::workers::Workers;
 use fretwork::cli;
-use fretwork::geometry::space::Space;
 use fretwork::laws::watch::{self, Saved};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::{self, Progress, Run, RunError, RunOptions};
 use fretwork::scene::build::Origin;
-use fretwork::scene::{Built, InputError, Loaded, Scene};
+use fretwork::scene::{Built, InputError, Loaded};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -128,8 +127,7 @@ pub(crate) fn run(
     let worker = std::thread::Builder::new().spawn(move || {
         // A panic drops the sender.
         let end = workers.install(move || match task.loaded.build(&path) {
-            Ok(Scene::Dim2(built)) => task.run(*built),
-            Ok(Scene::Dim3(built)) => task.run(*built),
+            Ok(built) => task.run(built),
             Err(e) => End::Input(e),
         });
         let _ = done.send(end);
@@ -198,7 +196,7 @@ struct Task {
 }
 
 impl Task {
-    fn run<S: Space>(self, mut built: Built<S>) -> End {
+    fn run(self, mut built: Built) -> End {
         let (loaded, options) = (&self.loaded, &self.options);
         let failed = |e| End::Failed(e, None);
         let mut stop = None;

@@ -7,11 +7,9 @@ use crate::errors;
 use crate::search::search_path;
 use crate::stepper::{Moment, Stepper};
 use crate::workers::Workers;
-use fretwork::fields::{Field, GrainPart, Value};
-use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::record::RunView;
-use fretwork::scene::Scene;
-use fretwork::step;
+use fretwork::in_dimension;
+use fretwork::step::StepError;
+use fretwork::{FieldInfo, FieldKind, FieldValues, GrainFields, RunView};
 use pyo3::prelude::*;
 use pyo3::types::PyWeakrefReference;
 use std::path::PathBuf;
@@ -21,65 +19,47 @@ use std::time::{Duration, Instant};
 /// How long steps are made before Python looks for Ctrl-C.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// A simulation in its dimension.
+/// What Python has of a simulation.
 enum Held {
-    Dim2(Box<Stepper<Dim2>>),
-    Dim3(Box<Stepper<Dim3>>),
-    Lent2(Lent<Dim2>),
-    Lent3(Lent<Dim3>),
+    /// A simulation of its own.
+    Own(Box<Stepper>),
+    /// That of a run, while an observer is called.
+    Lent(Lent),
     /// Lent by a run that took it back.
     Ended,
 }
 
 /// A simulation of a run, while an observer is called.
-struct Lent<S: Space>(*const step::Simulation<S>);
+struct Lent(*const dyn RunView);
 
 // SAFETY: the pointer is read only under the lock of its `Simulation`, which ends the loan before
 // the reference ends. The simulation is read by one thread at a time, while that which owns it
 // waits for the observer; what of it has no `Sync`, the guarded memory of laws under certification,
 // holds addresses that are used through `&mut` only.
-unsafe impl<S: Space> Send for Lent<S> {}
+unsafe impl Send for Lent {}
 
-/// A simulation in one of the dimensions, for what is the same in both.
-macro_rules! in_dimension {
-    ($held:expr, |$s:ident| $body:expr) => {
-        match &*$held {
-            Held::Dim2(stepper) => {
-                let $s = &stepper.simulation;
-                Ok($body)
-            }
-            Held::Dim3(stepper) => {
-                let $s = &stepper.simulation;
-                Ok($body)
-            }
-            Held::Lent2(lent) => {
-                // SAFETY: the loan has not ended, see `Simulation::end_loan`.
-                let $s = unsafe { &*lent.0 };
-                Ok($body)
-            }
-            Held::Lent3(lent) => {
-                // SAFETY: as above.
-                let $s = unsafe { &*lent.0 };
-                Ok($body)
-            }
-            Held::Ended => Err(errors::misused(
+impl Held {
+    /// The simulation for reading.
+    fn view(&self) -> PyResult<&dyn RunView> {
+        match self {
+            Self::Own(stepper) => Ok(stepper.simulation.view()),
+            // SAFETY: the loan has not ended, see `Simulation::end_loan`.
+            Self::Lent(lent) => Ok(unsafe { &*lent.0 }),
+            Self::Ended => Err(errors::misused(
                 "the simulation that an observer is called with can be used during the call only; keep arrays, or values",
             )),
         }
-    };
-}
+    }
 
-/// A simulation that is stepped by one who owns it.
-macro_rules! owned {
-    ($held:expr, |$s:ident| $body:expr) => {
-        match &mut *$held {
-            Held::Dim2($s) => Ok($body),
-            Held::Dim3($s) => Ok($body),
+    /// The simulation that is stepped by one who owns it.
+    fn own(&mut self) -> PyResult<&mut Stepper> {
+        match self {
+            Self::Own(stepper) => Ok(stepper),
             _ => Err(errors::misused(
                 "an observer looks at a simulation and cannot step it; make one of your own by case.simulation()",
             )),
         }
-    };
+    }
 }
 
 /// Name, unit and line of explanation of a field, and whether its values are whole numbers.
@@ -117,10 +97,11 @@ impl Simulation {
     /// A loan of a simulation of a run, which must be [ended](Self::end_loan) before the reference
     /// ends.
     pub(crate) fn lend(run: &dyn RunView) -> Self {
-        Self::lent(match run.in_dimension() {
-            step::InDimension::Dim2(s) => Held::Lent2(Lent(s)),
-            step::InDimension::Dim3(s) => Held::Lent3(Lent(s)),
-        })
+        let run: *const (dyn RunView + '_) = run;
+        // SAFETY: the pointer is not used after the loan, which ends before the reference does.
+        let run =
+            unsafe { std::mem::transmute::<*const (dyn RunView + '_), *const dyn RunView>(run) };
+        Self::lent(Held::Lent(Lent(run)))
     }
 
     /// Ends a loan. Waits for a thread that looks at it just now.
@@ -141,10 +122,8 @@ impl Simulation {
     /// Lets arrays keep the numbers that they show.
     fn before_change(&self, py: Python<'_>, held: &mut Held) -> PyResult<()> {
         for (column, array) in self.held_by_python(py) {
-            let memory = owned!(held, |s| columns::take(
-                &mut s.simulation.state.bodies,
-                column
-            ))?;
+            let simulation = &mut held.own()?.simulation;
+            let memory = in_dimension!(simulation, |s| columns::take(&mut s.state.bodies, column));
             array.get().hand_over(memory);
         }
         Ok(())
@@ -157,30 +136,29 @@ impl Simulation {
         mut go_on: impl FnMut(&Moment) -> bool + Send,
     ) -> PyResult<()> {
         let Some(workers) = &self.workers else {
-            return owned!(self.lock()?, |_s| ());
+            return self.lock()?.own().map(drop);
         };
         loop {
             let mut held = self.lock()?;
             self.before_change(py, &mut held)?;
-            let held = &mut *held;
+            let stepper = held.own()?;
             let go_on = &mut go_on;
             let outcome = py.detach(|| {
                 workers.install(move || {
                     let until = Instant::now() + PATIENCE;
-                    owned!(held, |s| loop {
-                        if s.simulation.finished() || !go_on(&s.moment()) {
-                            break Ok(true);
+                    loop {
+                        if stepper.simulation.finished() || !go_on(&stepper.moment()) {
+                            return Ok(true);
                         }
-                        if let Err(e) = s.step() {
-                            break Err(e);
-                        }
+                        stepper.step()?;
                         if Instant::now() > until {
-                            break Ok(false);
+                            return Ok(false);
                         }
-                    })
+                    }
                 })
             });
-            let done = outcome?.map_err(|e| errors::run(&e.to_string(), None))?;
+            let outcome: Result<bool, StepError> = outcome;
+            let done = outcome.map_err(|e| errors::run(&e.to_string(), None))?;
             if done {
                 return Ok(());
             }
@@ -210,10 +188,8 @@ impl Simulation {
         }
         let held = py.detach(|| {
             workers.install(|| {
-                Ok(match loaded.build(&path)? {
-                    Scene::Dim2(built) => Held::Dim2(Stepper::new(loaded, *built, threads)),
-                    Scene::Dim3(built) => Held::Dim3(Stepper::new(loaded, *built, threads)),
-                })
+                let built = loaded.build(&path)?;
+                Ok(Held::Own(Box::new(Stepper::new(loaded, built, threads))))
             })
         });
         Ok(Self {
@@ -241,50 +217,45 @@ impl Simulation {
 
     #[getter]
     fn dimension(&self) -> PyResult<usize> {
-        fn dimension<S: Space>(_: &step::Simulation<S>) -> usize {
-            S::D
-        }
-        in_dimension!(self.lock()?, |s| dimension(s))
+        Ok(self.lock()?.view()?.dimension())
     }
 
     #[getter]
     fn time(&self) -> PyResult<f64> {
-        in_dimension!(self.lock()?, |s| s.state.time)
+        Ok(self.lock()?.view()?.time())
     }
 
     #[getter]
     fn steps(&self) -> PyResult<u64> {
-        in_dimension!(self.lock()?, |s| s.state.steps)
+        Ok(self.lock()?.view()?.steps())
     }
 
     #[getter]
     fn step_length(&self) -> PyResult<f64> {
-        in_dimension!(self.lock()?, |s| s.options.scheme.h)
+        Ok(self.lock()?.view()?.options().scheme.h)
     }
 
     #[getter]
     fn finished(&self) -> PyResult<bool> {
-        in_dimension!(self.lock()?, |s| s.finished())
+        Ok(self.lock()?.view()?.finished())
     }
 
     /// The energy ledger as JSON.
     fn energies(&self) -> PyResult<String> {
-        let energy = in_dimension!(self.lock()?, |s| *s.energies())?;
-        Ok(serde_json::to_string(&energy).unwrap_or_default())
+        let held = self.lock()?;
+        Ok(serde_json::to_string(held.view()?.energies()).unwrap_or_default())
     }
 
     /// Iterations, error and whether the solver converged in the last step; none before the first.
     fn last_step(&self) -> PyResult<Option<(u32, f64, bool)>> {
-        owned!(self.lock()?, |s| s.report.as_ref().map(|r| (
-            r.solver.iterations,
-            r.solver.error,
-            r.solver.converged
-        )))
+        let mut held = self.lock()?;
+        let solver = held.own()?.report.as_ref().map(|report| &report.solver);
+        Ok(solver.map(|s| (s.iterations, s.error, s.converged)))
     }
 
     /// Names, units and lines of explanation of the columns of the statistics.
     fn statistics_columns(&self) -> PyResult<Vec<(String, &'static str, &'static str)>> {
-        let columns = owned!(self.lock()?, |s| s.observers.columns())?;
+        let columns = self.lock()?.own()?.observers.columns();
         Ok(columns
             .into_iter()
             .map(|c| (c.name, c.unit, c.doc))
@@ -293,18 +264,19 @@ impl Simulation {
 
     /// Their values now.
     fn statistics(&self) -> PyResult<Vec<f64>> {
-        owned!(self.lock()?, |s| s.observers.sample(&s.simulation))
+        let mut held = self.lock()?;
+        let stepper = held.own()?;
+        Ok(stepper.observers.sample(stepper.simulation.view()))
     }
 
     /// Number of all bodies, and of those before the first that is no grain.
     fn counts(&self) -> PyResult<(usize, usize)> {
-        in_dimension!(self.lock()?, |s| {
-            let bodies = &s.state.bodies;
-            let driven = bodies.driven.iter().map(|d| d.body as usize);
-            let carried = (0..bodies.len()).filter(|b| bodies.carrier(*b).is_some());
-            let first = driven.chain(carried).min();
-            (bodies.len(), first.unwrap_or(bodies.len()))
-        })
+        let held = self.lock()?;
+        let bodies = held.view()?.bodies();
+        let driven = bodies.driven.iter().map(|d| d.body as usize);
+        let carried = (0..bodies.len()).filter(|b| bodies.carrier(*b).is_some());
+        let first = driven.chain(carried).min();
+        Ok((bodies.len(), first.unwrap_or(bodies.len())))
     }
 
     /// Names of the columns of bodies, with unit and explanation.
@@ -333,13 +305,17 @@ impl Simulation {
         let array = match known.map(|(_, array)| array.clone()) {
             Some(array) => array,
             None => {
-                let lent = matches!(&*held, Held::Lent2(_) | Held::Lent3(_));
-                let owner = (!lent).then(|| this.clone().unbind());
-                let made = in_dimension!(held, |s| columns::show(&s.state.bodies, column, owner))?;
-                let array = Bound::new(py, made)?;
-                if !lent {
-                    alive.push((column, array.clone()));
-                }
+                let Held::Own(stepper) = &*held else {
+                    let copy = columns::copy(held.view()?, column);
+                    keep(&alive)?;
+                    return Bound::new(py, copy).map(Some);
+                };
+                let owner = this.clone().unbind();
+                let bodies = in_dimension!(&stepper.simulation, |s| {
+                    columns::show(&s.state.bodies, column, owner)
+                });
+                let array = Bound::new(py, bodies)?;
+                alive.push((column, array.clone()));
                 array
             }
         };
@@ -349,96 +325,75 @@ impl Simulation {
 
     /// Names of the first bodies and their places in the columns.
     fn first_bodies(&self) -> PyResult<Vec<(String, usize)>> {
-        in_dimension!(self.lock()?, |s| {
-            let driven = s.state.bodies.driven.iter();
-            driven.map(|d| (d.name.clone(), d.body as usize)).collect()
-        })
+        let held = self.lock()?;
+        let driven = held.view()?.bodies().driven.iter();
+        Ok(driven.map(|d| (d.name.clone(), d.body as usize)).collect())
     }
 
     /// Force and moment of all contacts on a first body in the last step.
     fn contact_force_on(&self, name: &str) -> PyResult<Option<(Vec<f64>, Vec<f64>)>> {
-        in_dimension!(self.lock()?, |s| {
-            let on = s.contact_force_on(name);
-            on.map(|(force, moment)| (force.as_slice().to_vec(), moment.as_slice().to_vec()))
-        })
+        let held = self.lock()?;
+        let run = held.view()?;
+        let on = run.contact_force_on(name);
+        Ok(on.map(|[force, moment]| match run.dimension() {
+            2 => (force[..2].to_vec(), moment[2..].to_vec()),
+            _ => (force.to_vec(), moment.to_vec()),
+        }))
     }
 
     /// The fields of grains (`grains`) or contacts (`contacts`).
     fn fields(&self, of: &str) -> PyResult<Vec<FieldLine>> {
-        let line = |name: &str, unit: &str, doc: &str, whole| {
-            (name.to_owned(), unit.to_owned(), doc.to_owned(), whole)
+        let held = self.lock()?;
+        let fields = match of {
+            "contacts" => held.view()?.contact_fields(),
+            _ => held.view()?.grain_fields(GrainFields::default()),
         };
-        in_dimension!(self.lock()?, |s| match of {
-            "contacts" => {
-                let fields = s.fields.contacts.iter();
-                fields
-                    .map(|f| line(f.name, f.unit, f.doc, f.is_whole()))
-                    .collect()
-            }
-            _ => {
-                let fields = s.fields.grains.iter();
-                fields
-                    .map(|f| line(f.name, f.unit, f.doc, f.is_whole()))
-                    .collect()
-            }
-        })
+        let line = |f: FieldInfo| {
+            let whole = f.kind == FieldKind::Whole;
+            (
+                f.name.to_owned(),
+                f.unit.to_owned(),
+                f.doc.to_owned(),
+                whole,
+            )
+        };
+        Ok(fields.into_iter().map(line).collect())
     }
 
     /// A field of all contacts.
     fn contact_field(&self, name: &str) -> PyResult<Option<Array>> {
-        fn of<S: Space>(s: &step::Simulation<S>, name: &str) -> Option<Array> {
-            let field = s.fields.contacts.get(name)?;
-            let contacts = s.state.network.contacts.iter();
-            Some(of_field(s, field, contacts))
-        }
-        in_dimension!(self.lock()?, |s| of(s, name))
+        let values = self.lock()?.view()?.contact_field(name, false);
+        Ok(values.map(array))
     }
 
     /// Where contacts touch, seen from the candidate (m).
     fn contact_points(&self) -> PyResult<Array> {
-        fn of<S: Space>(s: &step::Simulation<S>) -> Array {
-            let points: Vec<S::Vector> = s.contacts().map(|c| c.point).collect();
-            Array::own(columns::numbers(&points), S::D)
-        }
-        in_dimension!(self.lock()?, |s| of(s))
+        let held = self.lock()?;
+        let run = held.view()?;
+        let mut points = Vec::with_capacity(run.contact_count());
+        run.visit_contacts(&mut |contact| points.push(contact.point));
+        Ok(columns::vectors(points, run.dimension()))
     }
 
     /// A field of the parts of grains and first bodies.
     fn grain_field(&self, name: &str) -> PyResult<Option<Array>> {
-        fn of<S: Space>(s: &step::Simulation<S>, name: &str) -> Option<Array> {
-            let field = s.fields.grains.get(name)?;
-            Some(of_field(s, field, GrainPart::all(s)))
-        }
-        in_dimension!(self.lock()?, |s| of(s, name))
+        let values = self.lock()?.view()?.grain_field(name);
+        Ok(values.map(array))
     }
 
     /// The centres of the parts of grains and first bodies (m).
     fn grain_points(&self) -> PyResult<Array> {
-        fn of<S: Space>(s: &step::Simulation<S>) -> Array {
-            let points: Vec<S::Vector> = GrainPart::all(s).map(|part| part.centre).collect();
-            Array::own(columns::numbers(&points), S::D)
-        }
-        in_dimension!(self.lock()?, |s| of(s))
+        let held = self.lock()?;
+        let run = held.view()?;
+        Ok(columns::vectors(run.grain_centres(), run.dimension()))
     }
 }
 
-/// A field of all things that carry it: a row of three numbers each for a vector, a number each for
-/// others.
-fn of_field<S: Space, T>(
-    s: &step::Simulation<S>,
-    field: &Field<S, T>,
-    all: impl Iterator<Item = impl std::borrow::Borrow<T>>,
-) -> Array {
-    if let Value::Vector(get) = &field.value {
-        let numbers = all.flat_map(|one| get(s, one.borrow()));
-        return Array::own(numbers.collect::<Vec<f64>>(), field.width());
-    }
-    values(all.map(|one| field.get(s, one.borrow())), field.is_whole())
-}
-
-fn values(numbers: impl Iterator<Item = f64>, whole: bool) -> Array {
-    match whole {
-        true => Array::own::<i64>(numbers.map(|x| x as i64).collect(), 0),
-        false => Array::own::<f64>(numbers.collect(), 0),
+/// The values of a field: a row of three numbers each for a vector, a number each for others.
+fn array(values: FieldValues) -> Array {
+    match values {
+        FieldValues::Number(numbers) => Array::own(numbers, 0),
+        FieldValues::Whole(numbers) => Array::own(numbers, 0),
+        FieldValues::Vector(numbers) => Array::own(numbers, 3),
     }
 }

@@ -1,9 +1,10 @@
 //! A simulation with the observers of a run, stepped by hand.
 
-use fretwork::geometry::space::Space;
+use fretwork::AnySimulation;
+use fretwork::in_dimension;
 use fretwork::record::{Observers, run_observers};
 use fretwork::scene::{Built, Loaded, processes};
-use fretwork::step::{Simulation, StepError, StepReport};
+use fretwork::step::{StepError, StepReport};
 
 /// Where a simulation is.
 #[derive(Clone, Copy, Debug)]
@@ -17,46 +18,46 @@ pub(crate) struct Moment {
 /// A simulation, the observers whose columns the statistics of a run have, and the report of the
 /// last step.
 #[derive(Debug)]
-pub(crate) struct Stepper<S: Space> {
-    pub(crate) simulation: Simulation<S>,
+pub(crate) struct Stepper {
+    pub(crate) simulation: AnySimulation,
     pub(crate) observers: Observers,
     pub(crate) report: Option<StepReport>,
 }
 
-impl<S: Space> Stepper<S> {
-    pub(crate) fn new(loaded: &Loaded, built: Built<S>, threads: usize) -> Box<Self> {
+impl Stepper {
+    pub(crate) fn new(loaded: &Loaded, built: Built, threads: usize) -> Self {
         let mut simulation = built.simulation;
-        simulation.options.solver.parallel = threads > 1;
-        processes::install(&loaded.case, &mut simulation);
-        let mut observers = run_observers(loaded, &simulation);
-        observers.begin(&mut simulation);
-        Box::new(Self {
+        simulation.options_mut().solver.parallel = threads > 1;
+        in_dimension!(&mut simulation, |s| processes::install(&loaded.case, s));
+        let mut observers = run_observers(loaded, simulation.view());
+        observers.begin(&mut *simulation);
+        Self {
             simulation,
             observers,
             report: None,
-        })
+        }
     }
 
     pub(crate) fn moment(&self) -> Moment {
         Moment {
-            time: self.simulation.state.time,
-            step: self.simulation.options.scheme.h,
+            time: self.simulation.time(),
+            step: self.simulation.options().scheme.h,
         }
     }
 
     /// A step, as a run makes it.
     pub(crate) fn step(&mut self) -> Result<(), StepError> {
         let s = &mut self.simulation;
-        let phase = s.state.control.phase();
-        self.observers.before_step(s);
+        let phase = s.phase();
+        self.observers.before_step(s.view());
         let report = s.step()?;
-        self.observers.after_step(s, &report);
+        self.observers.after_step(s.view(), &report);
         self.report = Some(report);
-        if phase == 1 && s.state.control.phase() == 2 {
-            self.observers.begin(s);
+        if phase == 1 && s.phase() == 2 {
+            self.observers.begin(&mut **s);
         }
         s.between_steps()?;
-        self.observers.after_processes(s);
+        self.observers.after_processes(s.view());
         s.check_worn_through()
     }
 }

@@ -12,19 +12,19 @@ use super::output::answer;
 use super::{CaseArgs, Failure};
 use crate::bodies::Dof;
 use crate::experiments::runs::trial::Trial;
-use crate::geometry::space::Space;
+use crate::geometry::space::{Dim2, Dim3, Space};
 use crate::record::biaxial::Biaxial;
 use crate::record::check_names;
-use crate::scene::build::Built;
 use crate::scene::interfaces::without_interface;
 use crate::scene::methods::{Demands, Service};
 use crate::scene::most_steps::{may_end_earlier, most_steps};
 use crate::scene::source::clean;
-use crate::scene::{Loaded, Scene, load, sampling};
+use crate::scene::{Built, Loaded, load, sampling};
 use crate::solve::local::solver::Method;
-use crate::step::Simulation;
+use crate::{AnySimulation, RunView};
 use clap::Args;
 use features::{Features, memory};
+use fretwork_core::in_dimension;
 use load::Load;
 use std::fmt::Write as _;
 
@@ -39,26 +39,15 @@ pub struct CheckArgs {
 
 pub fn check(args: &CheckArgs) -> Result<(), Failure> {
     let loaded = load(&args.case.case, &args.case.sets)?;
-    let scene = loaded.build(&args.case.plugins.search()?)?;
-    check_names(&loaded, &scene)?;
-    match scene {
-        Scene::Dim2(built) => describe_and_time(&loaded, *built, args),
-        Scene::Dim3(built) => describe_and_time(&loaded, *built, args),
-    }
-}
-
-fn describe_and_time<S: Space>(
-    loaded: &Loaded,
-    built: Built<S>,
-    args: &CheckArgs,
-) -> Result<(), Failure> {
+    let built = loaded.build(&args.case.plugins.search()?)?;
+    check_names(&loaded, &built)?;
     let mut out = format!("{}: {}", loaded.path.display(), clean(&loaded.case.name));
-    for (label, text) in lines(loaded, &built, !args.no_timing) {
+    for (label, text) in lines(&loaded, &built, !args.no_timing) {
         let _ = write!(out, "\n{}", line_of(&label, &text));
     }
     answer(&out)?;
     if !args.no_timing {
-        let (label, text) = run_time(loaded, built);
+        let (label, text) = run_time(&loaded, built);
         answer(&line_of(&label, &text))?;
     }
     Ok(())
@@ -73,7 +62,7 @@ fn line_of(label: &str, text: &str) -> String {
 pub type CheckLine = (String, String);
 
 /// The estimated time of a run, from steps that are made for half a second.
-pub fn run_time<S: Space>(loaded: &Loaded, built: Built<S>) -> CheckLine {
+pub fn run_time(loaded: &Loaded, built: Built) -> CheckLine {
     let mut text = Trial::of(&loaded.case, built).text();
     if loaded.case.accuracy.is_some() {
         text += "; with time.step throughout, where the run chooses its steps";
@@ -82,12 +71,12 @@ pub fn run_time<S: Space>(loaded: &Loaded, built: Built<S>) -> CheckLine {
 }
 
 /// What a run makes of the steps of a case that asks for an accuracy.
-fn chosen_steps<S: Space>(case: &crate::scene::case::Case, s: &Simulation<S>) -> String {
+fn chosen_steps(case: &crate::scene::case::Case, s: &dyn RunView) -> String {
     let Some(accuracy) = &case.accuracy else {
         return String::new();
     };
     let largest = accuracy.largest(case.time.step);
-    if s.state.systems.is_empty() && largest > case.time.step {
+    if s.system_count() == 0 && largest > case.time.step {
         format!(
             "; the run chooses them, in parts where finer ones change the result, and up to {largest:e} s where nothing moves"
         )
@@ -98,12 +87,13 @@ fn chosen_steps<S: Space>(case: &crate::scene::case::Case, s: &Simulation<S>) ->
 
 /// What `fretwork check` prints of a case below its title, but for the [run time](run_time).
 /// Deformable bodies are timed if `timed`.
-pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<CheckLine> {
-    let (case, s) = (&loaded.case, &built.simulation);
+pub fn lines(loaded: &Loaded, built: &Built, timed: bool) -> Vec<CheckLine> {
+    let (case, simulation) = (&loaded.case, &built.simulation);
+    let s = simulation.view();
     let mut out = Vec::new();
     let mut line = |label: &str, value: String| out.push((label.to_owned(), value));
     let steps = most_steps(case);
-    line("dimension", S::D.to_string());
+    line("dimension", s.dimension().to_string());
     line(
         "steps",
         format!(
@@ -119,7 +109,7 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
         ),
     );
     let largest = bodies(s, timed, &mut line);
-    let solver = &s.options.solver;
+    let solver = &s.options().solver;
     line(
         "solver",
         format!(
@@ -149,7 +139,7 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
     for sample in &built.samples {
         line("sample", sample.clone());
     }
-    let Features { on, off } = Features::of(case, built);
+    let Features { on, off } = Features::of(case, simulation);
     for (k, text) in on.into_iter().enumerate() {
         line(if k == 0 { "on" } else { "" }, text);
     }
@@ -162,16 +152,16 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
         };
         line(heading, drive.text);
     }
-    let load = Load::of(case, built);
-    groups(loaded, built, largest, &mut line);
-    biaxial_groups(loaded, built, &mut line);
-    for (label, text) in heat::lines(case, built, &load) {
+    let load = Load::of(case, simulation);
+    groups(loaded, simulation, largest, &mut line);
+    biaxial_groups(loaded, simulation, &mut line);
+    for (label, text) in heat::lines(case, simulation, &load) {
         line(&label, text);
     }
-    for (label, text) in springs::lines(case, built, &load) {
+    for (label, text) in springs::lines(case, s, &load) {
         line(label, text);
     }
-    for (label, text) in bonds::lines(case, built, &load) {
+    for (label, text) in bonds::lines(case, s, &load) {
         line(label, text);
     }
     out
@@ -179,25 +169,25 @@ pub fn lines<S: Space>(loaded: &Loaded, built: &Built<S>, timed: bool) -> Vec<Ch
 
 /// Grains, first bodies, deformable bodies (with times where `timed`) and contacts; returns the
 /// largest radius of a grain (m).
-fn bodies<S: Space>(s: &Simulation<S>, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
+fn bodies(s: &dyn RunView, timed: bool, line: &mut impl FnMut(&str, String)) -> f64 {
     let range = |radii: &mut dyn Iterator<Item = f64>| {
         let start = (0, f64::INFINITY, 0.0f64);
         radii.fold(start, |(n, l, h), r| (n + 1, l.min(r), h.max(r)))
     };
     // Points of deformable bodies are balls without a radius.
-    let radii = s.shapes.balls.iter().map(|b| b.radius);
+    let radii = s.balls().into_iter().map(|b| b.radius);
     let (balls, low, high) = range(&mut radii.filter(|r| *r > 0.0));
     if balls > 0 {
         let text = format!("{balls}, radius {low:.3e} to {high:.3e} m");
         line("balls", text);
     }
-    let (pieces, least, most) = range(&mut s.shapes.pieces.iter().map(|p| p.size));
+    let (pieces, least, most) = range(&mut s.pieces().into_iter().map(|p| p.size));
     if pieces > 0 {
         let text =
             format!("{pieces}, {least:.3e} to {most:.3e} m, radius of the ball of the same volume");
         line("convex pieces", text);
     }
-    let driven = s.state.bodies.driven.iter();
+    let driven = s.bodies().driven.iter();
     let names: Vec<&str> = driven.map(|d| d.name.as_str()).collect();
     line(
         "first bodies",
@@ -205,19 +195,18 @@ fn bodies<S: Space>(s: &Simulation<S>, timed: bool, line: &mut impl FnMut(&str, 
             "{} ({}), {} surfaces",
             names.len(),
             names.join(", "),
-            s.shapes.surfaces.len()
+            s.surfaces().len()
         ),
     );
     for (label, text) in deformable::lines(s, timed) {
         line(label, text);
     }
-    let contacts = s.state.network.contacts.len();
-    line("contacts at start", contacts.to_string());
+    line("contacts at start", s.contact_count().to_string());
     high.max(most)
 }
 
-fn interfaces<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
-    for law in &s.laws {
+fn interfaces(s: &dyn RunView, line: &mut impl FnMut(&str, String)) {
+    for law in s.laws() {
         let laws: Vec<String> = law
             .loaded()
             .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
@@ -237,7 +226,7 @@ fn interfaces<S: Space>(s: &Simulation<S>, line: &mut impl FnMut(&str, String)) 
 
 /// The solvers that support the case, and why the others do not. A case whose own solver does not
 /// support it is rejected earlier.
-fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, String)) {
+fn methods(simulation: &dyn RunView, line: &mut impl FnMut(&str, String)) {
     let demands = Demands::of(simulation);
     let (mut can, mut reasons) = (Vec::new(), Vec::new());
     for method in Method::ALL.iter().copied() {
@@ -250,7 +239,7 @@ fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, Str
             Service::Refuses(reason) => reasons.push(format!("not {}, {reason}", method.name())),
         }
     }
-    let chosen = simulation.options.solver.method;
+    let chosen = simulation.options().solver.method;
     let served = match demands.service(chosen) {
         Service::Serves => "supports this case".to_owned(),
         Service::May(reason) | Service::Refuses(reason) => reason,
@@ -263,25 +252,21 @@ fn methods<S: Space>(simulation: &Simulation<S>, line: &mut impl FnMut(&str, Str
 }
 
 /// Pressure and inertial number of a biaxial test, for a square sample.
-fn biaxial_groups<S: Space>(
-    loaded: &Loaded,
-    built: &Built<S>,
-    line: &mut impl FnMut(&str, String),
-) {
-    let (case, s) = (&loaded.case, &built.simulation);
+fn biaxial_groups(loaded: &Loaded, s: &AnySimulation, line: &mut impl FnMut(&str, String)) {
+    let case = &loaded.case;
     let Some((spec, test)) = case
         .biaxial
         .as_ref()
-        .and_then(|spec| Some((spec, Biaxial::new(spec, s)?)))
+        .and_then(|spec| Some((spec, in_dimension!(s, |s| Biaxial::new(spec, s))?)))
     else {
         return;
     };
     // From the start of the test to its end, over all walls: at least one of them is driven.
     let largest = |names: &(String, String), f: &dyn Fn(&Dof, f64) -> f64| {
-        let walls = s.state.bodies.driven.iter();
+        let walls = s.bodies().driven.iter();
         let walls = walls.filter(|d| d.name == names.0 || d.name == names.1);
         walls
-            .flat_map(|d| &d.dofs[..S::D])
+            .flat_map(|d| &d.dofs[..s.dimension()])
             .flat_map(|dof| {
                 (0..=1000).map(move |k| {
                     let part = f64::from(k) / 1000.0;
@@ -302,7 +287,7 @@ fn biaxial_groups<S: Space>(
         format!("about {side:.2e} m wide at a compacity of 0.82, under {pressure:.3e} Pa"),
     );
     let rate = speed / side;
-    let inertial = rate * (test.grain_mass(s) / pressure).sqrt();
+    let inertial = rate * (in_dimension!(s, |s| test.grain_mass(s)) / pressure).sqrt();
     line(
         "inertial number",
         format!(
@@ -313,15 +298,10 @@ fn biaxial_groups<S: Space>(
 }
 
 /// Dimensionless groups of a friction test.
-fn groups<S: Space>(
-    loaded: &Loaded,
-    built: &Built<S>,
-    largest: f64,
-    line: &mut impl FnMut(&str, String),
-) {
-    let (case, s) = (&loaded.case, &built.simulation);
+fn groups(loaded: &Loaded, s: &AnySimulation, largest: f64, line: &mut impl FnMut(&str, String)) {
+    let (case, bodies) = (&loaded.case, s.bodies());
     let Some(test) = &case.friction else { return };
-    let Some(driven) = s.state.bodies.driven.iter().find(|d| d.name == test.body) else {
+    let Some(driven) = bodies.driven_named(&test.body) else {
         return;
     };
     let samples = |f: &dyn Fn(f64) -> f64| {
@@ -338,28 +318,32 @@ fn groups<S: Space>(
             step / largest
         ),
     );
-    let Some((area, pressure)) =
-        load::friction_area(case, built).zip(load::friction_pressure(case, built))
+    let Some((area, pressure)) = load::friction_area(case, s).zip(load::friction_pressure(case, s))
     else {
         return;
     };
     line("pressure", format!("{pressure:.3e} Pa"));
-    let flags = s.state.bodies.grain_flags();
+    let ball_volume = match s.dimension() {
+        2 => Dim2::ball_volume,
+        _ => Dim3::ball_volume,
+    };
+    let mut flags = vec![false; bodies.len()];
+    s.grains().into_iter().for_each(|grain| flags[grain] = true);
     // For convex parts the radius of the ball of the same volume.
-    let balls = s.shapes.balls.iter().map(|b| (b.body, b.radius));
-    let pieces = s.shapes.pieces.iter().map(|p| (p.body, p.size));
+    let balls = s.balls().into_iter().map(|b| (b.body, b.radius));
+    let pieces = s.pieces().into_iter().map(|p| (p.body, p.size));
     let volume: f64 = balls
         .chain(pieces)
         .filter(|(body, _)| flags[*body as usize])
-        .map(|(_, radius)| S::ball_volume(radius))
+        .map(|(_, radius)| ball_volume(radius))
         .sum();
-    let masses = s.state.bodies.mass.iter().zip(&flags);
+    let masses = bodies.mass.iter().zip(&flags);
     let mass: f64 = masses.filter(|(_, grain)| **grain).map(|(m, _)| m).sum();
     if volume > 0.0 {
         let density = mass / volume;
         // Solid fraction of random packings of disks and spheres, slightly below random close
         // packing.
-        let solid = if S::D == 2 { 0.8 } else { 0.6 };
+        let solid = if s.dimension() == 2 { 0.8 } else { 0.6 };
         let thickness = volume / solid / area;
         let inertial = speed / thickness * 2.0 * largest * (density / pressure).sqrt();
         line(

@@ -3,14 +3,13 @@
 use super::output::{answer_json, inform};
 use super::progress::Display;
 use super::{CaseArgs, Failure, again};
-use crate::geometry::space::Space;
 use crate::interrupt;
 use crate::record::checkpoint::Found;
 use crate::record::{self, Run, RunError, RunOptions, Summary};
 use crate::scene::build::Origin;
 use crate::scene::interfaces::without_interface;
 use crate::scene::source::clean;
-use crate::scene::{Built, Loaded, Scene, load};
+use crate::scene::{Built, Loaded, load};
 use crate::step::StepError;
 use clap::Args;
 use std::ops::ControlFlow;
@@ -57,7 +56,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let out = std::path::absolute(args.out())
         .map_err(|e| Failure::Usage(format!("--out {}: {e}", args.out().display())))?;
     let loaded = load(&args.case.case, &args.case.sets)?;
-    let scene = loaded.build(&args.case.plugins.search()?)?;
+    let built = loaded.build(&args.case.plugins.search()?)?;
     let options = RunOptions {
         out,
         threads: args.threads.into(),
@@ -79,10 +78,7 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         ));
     }
     interrupt::watch();
-    let done = pool.install(|| match scene {
-        Scene::Dim2(built) => run_case(&loaded, *built, &options, args),
-        Scene::Dim3(built) => run_case(&loaded, *built, &options, args),
-    });
+    let done = pool.install(|| run_case(&loaded, built, &options, args));
     let Some(summary) = done.inspect_err(|e| {
         // The run began, and what it recorded until it failed is on disk.
         if matches!(e, Failure::Failed(_) | Failure::Run(RunError::Step(_))) {
@@ -137,9 +133,9 @@ fn strict(args: &RunArgs, reason: Option<&str>) -> Result<(), Failure> {
 }
 
 /// Runs or resumes a case; `None` if the run is already finished.
-fn run_case<S: Space>(
+fn run_case(
     loaded: &Loaded,
-    built: Built<S>,
+    built: Built,
     options: &RunOptions,
     args: &RunArgs,
 ) -> Result<Option<Summary>, Failure> {
@@ -148,7 +144,7 @@ fn run_case<S: Space>(
             super::output::inform(&text);
         }
     };
-    for pair in without_interface(&loaded.case, &built.simulation) {
+    for pair in without_interface(&loaded.case, built.simulation.view()) {
         inform(format!("no interface: {pair}"));
     }
     let shown = args.out();

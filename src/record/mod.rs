@@ -2,7 +2,7 @@
 //! pictures by [`fretwork_view`].
 pub mod run;
 
-pub use fretwork_core::view::RunView;
+pub use crate::RunView;
 pub use fretwork_observe::picture::{Paint, Picture, Shows};
 pub use fretwork_observe::{
     biaxial, choice, circuit, code, coordination, first_bodies, fretting, friction,

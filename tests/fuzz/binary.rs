@@ -180,19 +180,19 @@ fn damaged_states() {
     let case = small(&folder);
     let laws = search_path();
     let mut built = loaded(&case).build_in::<Dim2>(&laws).unwrap();
-    (0..5).for_each(|_| built.simulation.step().map(drop).unwrap());
-    let whole = encode(&built.simulation.state).unwrap();
+    (0..5).for_each(|_| built.step().map(drop).unwrap());
+    let whole = encode(&built.state).unwrap();
     campaign.run(&folder, damaged("state", vec![whole]), move |path| {
         let bytes = std::fs::read(path).unwrap();
         let Ok(saved) = decode::<State<Dim2>>(&bytes) else {
             return false;
         };
         let mut again = loaded(&case).build_in::<Dim2>(&laws).unwrap();
-        let taken = again.simulation.restore(saved);
+        let taken = again.restore(saved);
         if taken {
             // What is taken up can be stepped: numbers may be wrong, indices and lengths are not.
             for _ in 0..2 {
-                drop(again.simulation.step());
+                drop(again.step());
             }
         }
         taken

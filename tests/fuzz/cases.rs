@@ -2,9 +2,8 @@
 
 use crate::campaign::Campaign;
 use crate::mutate;
-use fretwork::geometry::space::Space;
 use fretwork::laws::SearchPath;
-use fretwork::scene::{Built, Scene, load};
+use fretwork::scene::{Built, load};
 use fretwork::shipped::search_path;
 use fretwork::step::Coupling;
 use rand::RngExt;
@@ -63,10 +62,11 @@ pub fn furnish(folder: &Path) {
 
 /// Two steps, with limits on iterations of this test: those of a case may be as many as its writer
 /// likes.
-fn steps<S: Space>(mut built: Built<S>) {
+fn steps(mut built: Built) {
     let s = &mut built.simulation;
-    s.options.solver.max_iterations = s.options.solver.max_iterations.min(20);
-    if let Coupling::Implicit { max_iterations, .. } = &mut s.options.coupling {
+    let options = s.options_mut();
+    options.solver.max_iterations = options.solver.max_iterations.min(20);
+    if let Coupling::Implicit { max_iterations, .. } = &mut options.coupling {
         *max_iterations = (*max_iterations).min(3);
     }
     for _ in 0..2 {
@@ -79,8 +79,7 @@ fn steps<S: Space>(mut built: Built<S>) {
 /// Whether a case is one.
 pub fn tried(case: &Path, laws: &SearchPath) -> bool {
     match load(case, &[]).and_then(|loaded| loaded.build(laws)) {
-        Ok(Scene::Dim2(built)) => steps(*built),
-        Ok(Scene::Dim3(built)) => steps(*built),
+        Ok(built) => steps(built),
         Err(error) => {
             assert!(!error.message.is_empty() && !error.to_string().is_empty());
             // What a user sees, with the line marked.

@@ -13,12 +13,11 @@
 mod counting;
 
 use counting::held;
-use fretwork::geometry::space::Dim2;
+use fretwork::geometry::space::{Dim2, Space};
 use fretwork::record::checkpoint::Frame;
 use fretwork::record::friction::Cycle;
 use fretwork::record::results::PreviousResults;
 use fretwork::record::{RunOptions, run};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use std::path::Path;
@@ -64,11 +63,11 @@ const RUBBED: &str = r#"(
 )"#;
 
 /// Bytes held after each step of a run, and the bytes of the state in the last checkpoint.
-fn followed<S: Dimensional>(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
+fn followed<S: Space>(name: &str, text: &str, steps: u64) -> (Vec<usize>, usize) {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let sets = [format!("time.end={:e}", 1e-4 * steps as f64)];
     let loaded = load_text("long_run.ron", text, &cases, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(&search_path());
+    let built = loaded.build(&search_path());
     let built = built.unwrap_or_else(|e| panic!("{e}"));
     let out = std::env::temp_dir().join(format!("fretwork-long-{}-{name}", std::process::id()));
     std::fs::remove_dir_all(&out).ok();

@@ -1,9 +1,9 @@
 //! Energy that broken bonds release, over what their laws declare.
 
 use crate::scene;
+use fretwork::geometry::space::Space;
 use fretwork::laws::Interface;
 use fretwork::laws::bench::Bench;
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Dim2, Dim3, Loaded, load_text};
 use fretwork_observe::fracture::{BondEnergies, FractureSummary, Reference};
 use fretwork_observe::summary::Summary;
@@ -24,7 +24,7 @@ fn summary(case: &str, sets: &[String]) -> Summary {
     );
     let sets = [sets, &without_files()].concat();
     let loaded = fretwork::scene::load(Path::new(&file), &sets).unwrap_or_else(|e| panic!("{e}"));
-    run::<Dim2>(&loaded)
+    run(&loaded)
 }
 
 /// Settings of a run that writes little.
@@ -38,8 +38,8 @@ fn without_files() -> [String; 4] {
     .map(String::from)
 }
 
-fn run<S: Dimensional>(loaded: &Loaded) -> Summary {
-    scene::finished(loaded, scene::built::<S>(loaded), |_| {})
+fn run(loaded: &Loaded) -> Summary {
+    scene::finished(loaded, scene::built(loaded), |_| {})
 }
 
 /// Pulls one bond in steps of an opening (m) until it is long broken, with damage law and coupling
@@ -289,7 +289,7 @@ fn a_bond_that_begins_at_its_gap_releases_its_fracture_energy() {
 
 /// Turns a parallel bond by bending or twist alone until it breaks, in steps of an angle (rad);
 /// gives what it released, and what is said of it.
-fn turned<S: Dimensional>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Option<String>) {
+fn turned<S: Space>(motion: &str, last: f64, steps: u32) -> (BondEnergies, Option<String>) {
     let more = |sign: f64| {
         let to = sign * last;
         motion.replace(
@@ -327,7 +327,7 @@ fn turned<S: Dimensional>(motion: &str, last: f64, steps: u32) -> (BondEnergies,
         more(0.5)
     );
     let loaded = load_text("turned.ron", &text, Path::new("."), &without_files());
-    let summary = run::<S>(&loaded.unwrap_or_else(|e| panic!("{e}\n{text}")));
+    let summary = run(&loaded.unwrap_or_else(|e| panic!("{e}\n{text}")));
     let found = summary.found.get::<FractureSummary>().unwrap();
     (found.interfaces[0].clone(), found.warning())
 }

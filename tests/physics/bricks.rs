@@ -2,8 +2,7 @@
 //! of the solver makes of them is reported.
 
 use crate::extremes::bench::{Sketch, floor};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 /// Width and height of free bricks, and the side of a box that slides over them (m), at the alert
@@ -18,7 +17,7 @@ const BRICKS: [([f64; 2], f64, f64, f64); 3] = [
 
 /// A row of bricks that lie free on a floor, flush, and a box that slides over them at a speed
 /// (m/s); `last` tells whether the box is the last grain or the first.
-fn on_bricks<S: Dimensional>(
+fn on_bricks<S: Space>(
     [width, height]: [f64; 2],
     side: f64,
     speed: f64,
@@ -70,7 +69,7 @@ struct Slide {
 
 /// The change of the velocity of the box over that at the start, after 1.5 m, and the number of
 /// edges that it met.
-fn slide<S: Dimensional>(slide: &Slide) -> (f64, u64) {
+fn slide<S: Space>(slide: &Slide) -> (f64, u64) {
     let Slide { speed, step, .. } = *slide;
     let (grains, slider) = on_bricks::<S>(slide.brick, slide.side, speed, slide.last);
     let (contact, of_contact) = match slide.restitution > 0.0 {
@@ -114,7 +113,7 @@ fn slide<S: Dimensional>(slide: &Slide) -> (f64, u64) {
 /// Free bricks sink by the tolerance of the solver under what slides over them, and drift apart:
 /// the leading edge of the box is below the top of the next one by what they sank. Without friction
 /// it keeps its velocity.
-fn slides_over_free_bricks<S: Dimensional>(last: bool) {
+fn slides_over_free_bricks<S: Space>(last: bool) {
     for (speed, step, solver) in [
         (0.2, 1e-3, ""),
         (0.5, 1e-3, ""),

@@ -3,8 +3,7 @@
 
 use crate::scene;
 use crate::stepping::{closes, go};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -21,7 +20,7 @@ fn moduli(more: &str) -> String {
 }
 
 /// A scene whose bodies are of one material with one contact law and its parameters.
-fn built<S: Dimensional>(law: &str, parameters: &str, step: f64, rest: &str) -> Simulation<S> {
+fn built<S: Space>(law: &str, parameters: &str, step: f64, rest: &str) -> Simulation<S> {
     let text = format!(
         r#"(
     name: "compliant",
@@ -58,7 +57,7 @@ fn quote(text: &str) -> String {
     out
 }
 
-fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
+fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     go(s, n);
     closes(s, 1e-12);
 }
@@ -409,7 +408,7 @@ fn moduli_come_from_the_materials() {
         );
         let loaded = load_text("moduli.ron", &text, Path::new("."), &[])?;
         let built = loaded.build_in::<Dim3>(&search_path())?;
-        let contact = built.simulation.laws[0].contact();
+        let contact = built.laws[0].contact();
         let value = |name: &str| {
             let at = contact
                 .plugin

@@ -8,14 +8,13 @@ use fretwork::geometry::convex::polygon::Polygon;
 use fretwork::geometry::convex::polyhedron::Polyhedron;
 use fretwork::geometry::convex::{ContactTolerances, Core, PairFace};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use nalgebra::{UnitQuaternion, Vector1, Vector2, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::fmt::Write as _;
 
-fn build<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+fn build<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build().unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -74,7 +73,7 @@ fn sliders<S: Space>(v: f64) -> [String; 2] {
 }
 
 /// Over a floor for four metres: at the speed at which it started, without turning.
-fn slides_on<S: Dimensional>(floor: &str, bodies: &str) {
+fn slides_on<S: Space>(floor: &str, bodies: &str) {
     for v in [1.0, 0.05, 7.0] {
         for (grain, name) in sliders::<S>(v).into_iter().zip(["box", "ball"]) {
             let mut s = build::<S>(&Sketch {
@@ -134,7 +133,7 @@ fn a_grain_slides_over_flush_blocks_as_over_one() {
 
 /// What is thrown past the corner of a block, or over it, at a clearance that is less than its
 /// displacement in a step.
-fn passes<S: Dimensional>(past: &str) {
+fn passes<S: Space>(past: &str) {
     let (v, step) = (1.0, 1e-3);
     for share in [0.01, 0.1, 0.3, 0.7, 0.9] {
         for start in [0.0, 0.13, 0.5, 0.81] {
@@ -191,7 +190,7 @@ fn what_passes_a_corner_closer_than_it_moves_is_not_touched() {
 
 /// Over a floor that it lies in by a little, as springs have it and the drift of rigid contacts:
 /// what holds it up acts upwards alone, whatever it is over.
-fn slides_deep<S: Dimensional>(floor: &str, bodies: &str) {
+fn slides_deep<S: Space>(floor: &str, bodies: &str) {
     // They move less than the alert distance in a step.
     let rigid = ("coulomb", String::new(), 5e-4);
     let springs = [1e5, 1e6, 1e7].map(|stiffness: f64| {
@@ -252,7 +251,7 @@ fn a_grain_slides_over_flush_blocks_in_which_it_lies_a_little() {
 
 /// The next block is higher by 1 % or 10 % of the height of a box that slides into it, deep in the
 /// first one: it is stopped, also where a tread of a tenth of that is before it.
-fn stops_at_a_step<S: Dimensional>() {
+fn stops_at_a_step<S: Space>() {
     let rigid = ("coulomb", String::new(), 1e-3);
     let springs = [1e6, 1e7].map(|stiffness: f64| {
         let more = format!(", \"stiffness\": {stiffness:?}, \"ratio\": 0.0, \"restitution\": 0.2");

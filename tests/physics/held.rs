@@ -2,8 +2,7 @@
 //! weights.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 /// Gravity (m/s^2).
@@ -11,7 +10,7 @@ const G: f64 = 9.81;
 
 /// A column of grains with springs, squeezed between fixed plates so that each contact overlaps by
 /// the same.
-fn column<S: Dimensional>(grains: usize, law: &str, rest: &str) -> Simulation<S> {
+fn column<S: Space>(grains: usize, law: &str, rest: &str) -> Simulation<S> {
     let at = |z: f64| {
         if S::D == 2 {
             format!("0.0, {z:e}")
@@ -52,7 +51,7 @@ fn column<S: Dimensional>(grains: usize, law: &str, rest: &str) -> Simulation<S>
 const RADIUS: f64 = 1e-3;
 const OVERLAP: f64 = 2.5e-6;
 
-fn stays<S: Dimensional>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
+fn stays<S: Space>(grains: usize, stiffness: f64, mu: f64, rest: &str) {
     let law = format!(r#""stiffness": {stiffness:e}, "restitution": 0.1, "mu": {mu}"#);
     let mut s: Simulation<S> = column(grains, &law, rest);
     let wanted = stiffness * OVERLAP;

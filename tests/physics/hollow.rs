@@ -2,8 +2,7 @@
 //! and of a wall that carries its grains round.
 
 use crate::extremes::bench::{G, Sketch, place};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 /// Radius of the drum and of the grain (m), and the circle of its centre.
@@ -21,12 +20,12 @@ fn elliptic(k: f64) -> f64 {
     std::f64::consts::FRAC_PI_2 / a
 }
 
-fn build<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+fn build<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build().unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A grain in a drum, from the amplitude at rest.
-fn swinging<S: Dimensional>(amplitude: f64, mu: f64, step: f64) -> Simulation<S> {
+fn swinging<S: Space>(amplitude: f64, mu: f64, step: f64) -> Simulation<S> {
     let at = place::<S>(ARM * amplitude.sin(), 0.0, -ARM * amplitude.cos());
     build(&Sketch {
         step,
@@ -51,7 +50,7 @@ struct Swing {
     bottoms: Vec<f64>,
 }
 
-fn swing<S: Dimensional>(s: &mut Simulation<S>, end: f64) -> Swing {
+fn swing<S: Space>(s: &mut Simulation<S>, end: f64) -> Swing {
     let last = S::D - 1;
     let mut found = Swing {
         out: 0.0,
@@ -81,7 +80,7 @@ fn swing<S: Dimensional>(s: &mut Simulation<S>, end: f64) -> Swing {
 /// Rolling, the inertia about the contact takes the place of the mass: T is longer by sqrt(1 + I/(m
 /// r^2)). At rest, at the amplitude, rolling takes mu = tan(amplitude)/(1 + m r^2/I), 0.86 for a
 /// disk.
-fn keeps_swinging<S: Dimensional>(end: f64, step: f64) {
+fn keeps_swinging<S: Space>(end: f64, step: f64) {
     let amplitude: f64 = 1.2;
     let inertia = if S::D == 2 { 0.5 } else { 0.4 };
     for (mu, of_mass) in [(0.0, 1.0), (1.2, 1.0 + inertia)] {

@@ -5,8 +5,7 @@
 use crate::scene;
 use crate::stepping::{closes, go};
 use fretwork::bodies::Driven;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 
@@ -14,7 +13,7 @@ const RADIUS: f64 = 0.02;
 
 /// A ball over a plate that stays; `dofs` are those of the ball. Interfaces are given with their
 /// parameters.
-fn ball<S: Dimensional>(interface: &str, step: f64, dofs: &str, more: &str) -> Simulation<S> {
+fn ball<S: Space>(interface: &str, step: f64, dofs: &str, more: &str) -> Simulation<S> {
     let (normal, place) = match S::D {
         2 => ("[0.0, 1.0]", format!("[0.0, {RADIUS:?}]")),
         _ => ("[0.0, 0.0, 1.0]", format!("[0.0, 0.0, {RADIUS:?}]")),
@@ -43,13 +42,13 @@ fn ball<S: Dimensional>(interface: &str, step: f64, dofs: &str, more: &str) -> S
     scene::text::<S>(&text)
 }
 
-fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
+fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     go(s, n);
     closes(s, 1e-12);
 }
 
 /// The force that the contacts put on the ball (N; N/m in 2D) and their moment (N m).
-fn felt<S: Dimensional>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
+fn felt<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
     let named = |d: &Driven| d.name == "ball";
     let place = s.state.bodies.driven.iter().position(named).unwrap();
     let over = 1.0 / s.options.scheme.h;
@@ -106,7 +105,7 @@ fn an_imposed_drag_has_the_friction_of_its_spring() {
         r#"contact: "linear-contact", parameters: (contact: {{"stiffness": {k:e}, "mu": {mu:?}, "ratio": 0.8}})"#
     );
     let press = format!("Displacement(Ramp(from: 0.0, to: -{depth:e}, start: 0.0, end: 0.001))");
-    fn drag<S: Dimensional>(law: &str, dofs: &str) -> (S::Vector, f64) {
+    fn drag<S: Space>(law: &str, dofs: &str) -> (S::Vector, f64) {
         let mut s: Simulation<S> = ball(law, 1e-5, dofs, "");
         steps(&mut s, 500);
         let before = s.state.energy;
@@ -159,7 +158,7 @@ fn a_ball_on_an_axle_is_pressed_and_turned() {
 fn an_imposed_opening_pulls_a_bond() {
     let law = r#"contact: "coulomb", cohesion: "elastic-bond", bonds: Start, bonds_within: 1e-6,
         parameters: (contact: {"mu": 0.0}, cohesion: {"k_n": 2e12, "k_t": 1e12, "d_n": 3e8, "d_t": 2e8})"#;
-    fn pulled<S: Dimensional>(law: &str, dofs: &str) -> [Simulation<S>; 2] {
+    fn pulled<S: Space>(law: &str, dofs: &str) -> [Simulation<S>; 2] {
         let at = |n: usize| {
             let mut s: Simulation<S> = ball(law, 1e-5, dofs, "");
             steps(&mut s, n);
@@ -167,7 +166,7 @@ fn an_imposed_opening_pulls_a_bond() {
         };
         [at(500), at(1500)]
     }
-    fn area<S: Dimensional>(s: &Simulation<S>) -> f64 {
+    fn area<S: Space>(s: &Simulation<S>) -> f64 {
         s.state
             .network
             .memory

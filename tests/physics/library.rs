@@ -2,7 +2,7 @@
 
 use crate::scene;
 use fretwork::bodies::{Dof, TimeFunction};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::Space;
 use fretwork::scene::case::{
     BodySpec, GrainSpec, InterfaceSpec, OneGrain, OnePolyhedron, ShapeSpec,
 };
@@ -11,14 +11,14 @@ use fretwork::shipped::search_path;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-fn axes<S: Dimensional>(up: f64) -> Vec<f64> {
+fn axes<S: Space>(up: f64) -> Vec<f64> {
     let mut axes = vec![0.0; S::D];
     axes[S::D - 1] = up;
     axes
 }
 
 /// A bonded layer of grains between a floor and a lid that presses and slides.
-fn layer<S: Dimensional>() -> CaseBuilder<S> {
+fn layer<S: Space>() -> CaseBuilder {
     // Three rows of disks with 12 to the period, or a layer of 12 by 12 balls, and how high they
     // stand.
     let rise = 4e-3 * 0.75f64.sqrt();
@@ -51,8 +51,11 @@ fn layer<S: Dimensional>() -> CaseBuilder<S> {
     } else {
         [Some(0.05), Some(0.05), None]
     };
-    CaseBuilder::<S>::new("a layer made in Rust")
-        .time(1e-5, 2e-3)
+    let case = match S::D {
+        2 => CaseBuilder::in_plane("a layer made in Rust"),
+        _ => CaseBuilder::in_space("a layer made in Rust"),
+    };
+    case.time(1e-5, 2e-3)
         .seed(7)
         .gravity(axes::<S>(-9.81))
         .periodic(periodic)
@@ -84,7 +87,8 @@ fn layer<S: Dimensional>() -> CaseBuilder<S> {
 }
 
 /// Positions, velocities and impulses after some steps, bit by bit.
-fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64> {
+fn bits<S: Space>(through_text: bool) -> Vec<u64> {
+    let builder = layer::<S>();
     let loaded = if through_text {
         // The material of one's own is a file there; in a text it can only be named.
         let text = builder.case().to_ron().unwrap_or_else(|e| panic!("{e}"));
@@ -104,7 +108,7 @@ fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64>
         builder.load()
     };
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let mut s = scene::built::<S>(&loaded).simulation;
+    let mut s = scene::simulation::<S>(&loaded);
     let mut steps = 0;
     let ended = s.run_until(1e-3, |_, report| {
         assert!(report.solver.converged);
@@ -130,14 +134,14 @@ fn bits<S: Dimensional>(builder: CaseBuilder<S>, through_text: bool) -> Vec<u64>
 
 #[test]
 fn scenes_made_in_rust_have_the_bits_of_their_text() {
-    assert_eq!(bits(layer::<Dim2>(), false), bits(layer::<Dim2>(), true));
-    assert_eq!(bits(layer::<Dim3>(), false), bits(layer::<Dim3>(), true));
+    assert_eq!(bits::<Dim2>(false), bits::<Dim2>(true));
+    assert_eq!(bits::<Dim3>(false), bits::<Dim3>(true));
 }
 
 /// A cuboid at rest on a plane: the contacts carry its weight, whatever number of them.
 #[test]
 fn contacts_carry_the_weight_of_a_cuboid() {
-    let case = CaseBuilder::<Dim3>::new("a cuboid")
+    let case = CaseBuilder::in_space("a cuboid")
         .time(1e-3, 1.0)
         .gravity([0.0, 0.0, -10.0])
         .own_material("stone", 2000.0, "an example")
@@ -157,7 +161,7 @@ fn contacts_carry_the_weight_of_a_cuboid() {
             [OnePolyhedron::cuboid([0.0, 0.0, 0.05], (0.3, 0.2, 0.1))],
         ));
     let built = case.build(&search_path()).unwrap_or_else(|e| panic!("{e}"));
-    let mut s = built.simulation;
+    let mut s = built.simulation.into_dimension::<Dim3>().unwrap();
     // Stopped from within at the tenth step, then gone on.
     let ended = s.run_until(1.0, |now, _| {
         if now.state.steps == 10 {
@@ -182,7 +186,7 @@ fn contacts_carry_the_weight_of_a_cuboid() {
     assert_eq!(s.contact_force_on("ceiling"), None);
 }
 
-fn refusal<S: Dimensional>(builder: CaseBuilder<S>) -> InputError {
+fn refusal(builder: CaseBuilder) -> InputError {
     match builder.build(&search_path()) {
         Err(error) => error,
         Ok(_) => panic!("it is built"),

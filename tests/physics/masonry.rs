@@ -10,7 +10,7 @@ use fretwork::step::Simulation;
 const G: f64 = 9.81;
 
 fn scene(case: &str, sets: &[String]) -> Simulation<Dim2> {
-    scene::built(&scene::loaded(case, sets)).simulation
+    scene::simulation(&scene::loaded(case, sets))
 }
 
 /// One step.

@@ -22,7 +22,7 @@ fn moved(dofs: &str, laws: &[&str], coupling: &str, steps: u32) -> Left {
     ];
     sets.extend(laws.iter().map(|l| format!("interfaces.grain.{l}")));
     let loaded = scene::loaded("verification/bond_mode_1", &sets);
-    let mut s = scene::built::<Dim2>(&loaded).simulation;
+    let mut s = scene::simulation::<Dim2>(&loaded);
     for _ in 0..steps {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

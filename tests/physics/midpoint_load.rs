@@ -1,9 +1,8 @@
 //! Damage laws that read the load of a contact, at the middle of a step: it is predicted under the
 //! impulses of the step before.
 
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::laws::{BuiltInLaws, SearchPath};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -54,7 +53,7 @@ fn laws() -> SearchPath {
 
 /// A ball (2D: disk) on a fixed one, pressed by a pressure over the area of their bond and sheared
 /// at a velocity (m/s).
-fn sheared<S: Dimensional>(
+fn sheared<S: Space>(
     damage: &str,
     coupling: &str,
     pressure: &str,
@@ -101,11 +100,10 @@ fn sheared<S: Dimensional>(
     let text = text.replace("DAMAGE", &parameters);
     let loaded = load_text("sheared.ron", &text, Path::new("."), &[]);
     let loaded = loaded.unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<S>(path).unwrap_or_else(|e| panic!("{e}"));
-    built.simulation
+    loaded.build_in(path).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn area<S: Dimensional>() -> f64 {
+fn area<S: Space>() -> f64 {
     match S::D {
         2 => 0.1,
         _ => std::f64::consts::PI * 0.01,
@@ -113,7 +111,7 @@ fn area<S: Dimensional>() -> f64 {
 }
 
 /// Takes steps until the bond breaks: the largest shear that it carried (Pa).
-fn strength<S: Dimensional>(s: &mut Simulation<S>) -> f64 {
+fn strength<S: Space>(s: &mut Simulation<S>) -> f64 {
     let mut most = 0.0f64;
     while s.state.network.bonds_broken() == 0 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -134,7 +132,7 @@ fn strength<S: Dimensional>(s: &mut Simulation<S>) -> f64 {
 const SHEAR: &str = r#"damage: "mohr-coulomb-brittle","#;
 
 /// |t_t| = c + phi p at the break, but for what a step shears, in every coupling; also where the step changes on the way.
-fn breaks_at_the_envelope<S: Dimensional>() {
+fn breaks_at_the_envelope<S: Space>() {
     let force = format!("Constant({:e})", -PRESSURE * area::<S>());
     let expected = COHESION + FRICTION * PRESSURE;
     let step = 1e-5;

@@ -4,8 +4,7 @@
 
 use crate::scene;
 use crate::stepping::{closes, go};
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 use std::f64::consts::TAU;
 
@@ -16,7 +15,7 @@ const POISSON: f64 = 0.33;
 const MODULUS: f64 = YOUNG / (2.0 * (1.0 - POISSON * POISSON));
 const SHEAR: f64 = YOUNG / (4.0 * (1.0 + POISSON) * (2.0 - POISSON));
 
-fn scene<S: Dimensional>(law: &str, step: f64, rest: &str) -> Simulation<S> {
+fn scene<S: Space>(law: &str, step: f64, rest: &str) -> Simulation<S> {
     let normal = if S::D == 2 {
         "[0.0, 1.0]"
     } else {
@@ -114,7 +113,7 @@ impl Annuli {
 }
 
 /// Whatever friction gave back it has taken before.
-fn steps<S: Dimensional>(s: &mut Simulation<S>, n: usize) {
+fn steps<S: Space>(s: &mut Simulation<S>, n: usize) {
     for _ in 0..n {
         go(s, 1);
         let e = s.state.energy;
@@ -290,7 +289,7 @@ fn wear_counts_the_slip_of_partial_slip() {
 #[test]
 fn friction_is_that_of_the_force_with_its_damping() {
     const MU: f64 = 0.1;
-    fn thrown<S: Dimensional>(law: &str, inertia: f64) -> (f64, f64) {
+    fn thrown<S: Space>(law: &str, inertia: f64) -> (f64, f64) {
         let (at, velocity) = match S::D {
             2 => ("[0.0, 0.0201]", "[4.0, -1.0]"),
             _ => ("[0.0, 0.0, 0.0201]", "[4.0, 0.0, -1.0]"),

@@ -3,11 +3,10 @@
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::laws::Kind;
-use fretwork::scene::build::Dimensional;
 use fretwork::shipped::built_in;
 use fretwork::step::Simulation;
 
-fn built<S: Dimensional>(text: &str) -> Simulation<S> {
+fn built<S: Space>(text: &str) -> Simulation<S> {
     scene::text::<S>(text)
 }
 
@@ -53,7 +52,7 @@ fn drift<S: Space>(s: &mut Simulation<S>, steps: usize) -> [f64; 2] {
 
 /// Five balls (2D: disks) of different sizes, a twentieth of their radius apart, which come
 /// together at a rate (1/s), and turn.
-fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
+fn cluster<S: Space>(rate: f64, interface: &str, more: &str) -> Simulation<S> {
     let places = [
         ([0.0, 0.0, 0.0], 0.010),
         ([0.0205, 0.0, 0.0], 0.010),
@@ -92,7 +91,7 @@ fn cluster<S: Dimensional>(rate: f64, interface: &str, more: &str) -> Simulation
 /// kept to rounding. Rigid balls, which come together by 8e-4 of their radius in a step, act on
 /// their surfaces, which are apart by what the step leaves of their gap: what they lose is less
 /// than that over their radius.
-fn every_law<S: Dimensional>() {
+fn every_law<S: Space>() {
     let laws = built_in();
     let mut count = 0;
     for (kind, name) in laws.names() {
@@ -144,7 +143,7 @@ fn every_law_keeps_the_momentum_of_an_isolated_cluster_in_space() {
 
 /// Two balls on a bond over a gap that turn about each other twice: neither is anything lost, nor
 /// does a turn as a whole shear the bond.
-fn turning_pair<S: Dimensional>(gap: f64, bond: &str) {
+fn turning_pair<S: Space>(gap: f64, bond: &str) {
     let (radius, rate) = (0.01, 20.0);
     let half = radius * (1.0 + 0.5 * gap);
     let grain = |side: f64| {

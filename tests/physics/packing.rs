@@ -1,8 +1,7 @@
 //! Conjugate gradients on a step of a real packing: a biaxial compression in motion.
 
 use crate::scene;
-use fretwork::scene::Scene;
-use fretwork::shipped::search_path;
+use fretwork::geometry::space::Dim2;
 use fretwork::solve::local::LocalProblem;
 use fretwork::solve::local::solver::{Limits, Method, solve};
 
@@ -21,11 +20,7 @@ fn steps(mu: &str, seed: u64) -> Vec<LocalProblem> {
     sets.push(format!("interfaces.grains.parameters.contact.mu={mu}"));
     sets.push(format!("seed={seed}"));
     let loaded = scene::loaded("biaxial", &sets);
-    let scene = loaded.build(&search_path());
-    let Scene::Dim2(built) = scene.unwrap_or_else(|e| panic!("{e}")) else {
-        panic!("the case is plane");
-    };
-    let mut s = built.simulation;
+    let mut s = scene::simulation::<Dim2>(&loaded);
     let mut problems = Vec::new();
     for time in [0.44, 0.48, 0.52, 0.56] {
         while s.state.time < time {

@@ -3,11 +3,10 @@
 //! threads that change the results.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
-fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
+fn scene<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     scene::case(&format!("benchmarks/{case}"), sets)
 }
 
@@ -118,7 +117,7 @@ fn a_load_that_has_not_crossed_the_packing_is_no_solution() {
 }
 
 /// All bits of the state after some steps on so many threads.
-fn bits<S: Dimensional>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
+fn bits<S: Space>(case: &str, threads: usize, steps: usize) -> Vec<u64> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

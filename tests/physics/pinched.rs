@@ -2,8 +2,7 @@
 //! the sum of the friction forces says whether they hang or fall.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 use std::f64::consts::PI;
 
@@ -83,7 +82,7 @@ impl Pinched {
     }
 
     /// The scene with a friction, solver settings and step.
-    fn scene<S: Dimensional>(&self, mu: f64, solver: &str, step: f64) -> Simulation<S> {
+    fn scene<S: Space>(&self, mu: f64, solver: &str, step: f64) -> Simulation<S> {
         let gravity = if self.dimension == 2 {
             "0.0, -9.81"
         } else {
@@ -106,7 +105,7 @@ impl Pinched {
     }
 
     /// The largest speed and displacement of what is held after a time, along gravity.
-    fn falls<S: Dimensional>(&self, mu: f64, solver: &str, step: f64, time: f64) -> [f64; 2] {
+    fn falls<S: Space>(&self, mu: f64, solver: &str, step: f64, time: f64) -> [f64; 2] {
         let mut s: Simulation<S> = self.scene(mu, solver, step);
         let held: Vec<usize> = s
             .state
@@ -394,13 +393,13 @@ fn sets_too_large_to_search_are_told() {
 const MU: f64 = 0.7;
 
 /// How far the lowest grain falls in half a second (m).
-fn fallen<S: Dimensional>(s: Simulation<S>) -> f64 {
+fn fallen<S: Space>(s: Simulation<S>) -> f64 {
     fallen_but(s, &[])
 }
 
 /// The same of those that are not among these. If they fall it is told, before they are a tenth of
 /// a millimetre down.
-fn fallen_but<S: Dimensional>(mut s: Simulation<S>, but: &[usize]) -> f64 {
+fn fallen_but<S: Space>(mut s: Simulation<S>, but: &[usize]) -> f64 {
     let driven: Vec<usize> = (s.state.bodies.driven.iter())
         .map(|d| d.body as usize)
         .collect();

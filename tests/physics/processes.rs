@@ -57,7 +57,7 @@ fn two_grains() -> Simulation<Dim2> {
         OneGrain::new([0.0, 0.0], 0.01),
         OneGrain::new([0.05, 0.0], 0.01),
     ];
-    let built = CaseBuilder::<Dim2>::new("two grains")
+    let built = CaseBuilder::in_plane("two grains")
         .time(1e-3, 1.0)
         .own_material("glass", 2500.0, "an example")
         .interface(InterfaceSpec::new(
@@ -67,8 +67,9 @@ fn two_grains() -> Simulation<Dim2> {
             &[],
         ))
         .grains(GrainSpec::balls("glass", grains))
-        .build(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}")).simulation
+        .load()
+        .and_then(|case| case.build_in(&search_path()));
+    built.unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn count(s: &Simulation<Dim2>) -> u64 {

@@ -4,7 +4,6 @@ use crate::scene;
 use crate::stepping::steps;
 use fretwork::bodies::Bodies;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -27,7 +26,7 @@ fn case(dimension: usize, lines: &str) -> String {
     )
 }
 
-fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
+fn build<S: Space>(lines: &str) -> Simulation<S> {
     scene::text(&case(S::D, lines))
 }
 

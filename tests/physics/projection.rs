@@ -2,8 +2,7 @@
 //! stays.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 use nalgebra::{Vector2, Vector3};
 
@@ -12,7 +11,7 @@ const G: f64 = 9.81;
 const DEPTH: f64 = 4e-4;
 
 /// Builds a case of grains of radius 0.1 m or so, of 1000 kg/m^3, with `head` for what differs.
-fn built<S: Dimensional>(head: &str) -> Simulation<S> {
+fn built<S: Space>(head: &str) -> Simulation<S> {
     let text = format!(
         r#"(
     name: "overlaps",

@@ -10,8 +10,7 @@
 //! Phys. Rev. E 73 (2006) 051304).
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::{Simulation, StepReport};
 use std::f64::consts::PI;
 
@@ -107,7 +106,7 @@ fn in_the_plane() -> Vec<Attraction> {
 }
 
 /// A ball on a floor, or on another ball that does not move, under a force upwards.
-fn scene<S: Dimensional>(
+fn scene<S: Space>(
     contact: &str,
     attraction: &Attraction,
     on_a_ball: bool,
@@ -146,7 +145,7 @@ fn scene<S: Dimensional>(
     scene::text::<S>(&text)
 }
 
-fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {
+fn step<S: Space>(s: &mut Simulation<S>) -> StepReport {
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.solver.converged, "step {}", s.state.steps);
     let closes = s.state.energy.relative_residual();
@@ -166,18 +165,13 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {
 }
 
 /// How far the gap has opened (m).
-fn opened<S: Dimensional>(s: &Simulation<S>) -> f64 {
+fn opened<S: Space>(s: &Simulation<S>) -> f64 {
     s.state.bodies.position[1][S::D - 1] - RADIUS
 }
 
 /// The force at which the ball leaves, under one that grows by half a per mille of what is expected
 /// in a step, from eight tenths of it on.
-fn pull_off<S: Dimensional>(
-    contact: &str,
-    attraction: &Attraction,
-    on_a_ball: bool,
-    h: f64,
-) -> f64 {
+fn pull_off<S: Space>(contact: &str, attraction: &Attraction, on_a_ball: bool, h: f64) -> f64 {
     let (from, to) = (0.8 * attraction.force, 1.2 * attraction.force);
     let ramp = format!(
         "Force(Table([(0.0, 0.0), ({h:e}, 0.0), ({:e}, {from:e}), ({:e}, {to:e})]))",
@@ -198,12 +192,7 @@ fn pull_off<S: Dimensional>(
     panic!("{} holds {to:e}", attraction.law);
 }
 
-fn compare<S: Dimensional>(
-    contact: &str,
-    attractions: &[Attraction],
-    on_a_ball: bool,
-    steps: &[f64],
-) {
+fn compare<S: Space>(contact: &str, attractions: &[Attraction], on_a_ball: bool, steps: &[f64]) {
     for attraction in attractions {
         for h in steps {
             let force = pull_off::<S>(contact, attraction, on_a_ball, *h);
@@ -239,7 +228,7 @@ fn compliant_balls_are_pulled_off_at_the_force_of_their_law() {
 /// a tenth of the range or ten times it.
 #[test]
 fn a_ball_that_leaves_loses_the_work_of_separation() {
-    fn check<S: Dimensional>(attractions: &[Attraction]) {
+    fn check<S: Space>(attractions: &[Attraction]) {
         for attraction in attractions {
             for share in [0.05, 1.0, 10.0] {
                 let probe = scene::<S>(COULOMB, attraction, false, 1e-6, "Free");

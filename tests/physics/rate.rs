@@ -7,15 +7,14 @@
 //! stiffness (b - a) P/D_c, and not below (ibid.).
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::{Simulation, StepReport};
 
 const MU_0: f64 = 0.6;
 const V_0: f64 = 1e-6;
 
 /// A block of 1 kg without rotation on a plane, with a contact law.
-fn block<S: Dimensional>(law: &str, step: f64, theta: f64, dofs: &str) -> Simulation<S> {
+fn block<S: Space>(law: &str, step: f64, theta: f64, dofs: &str) -> Simulation<S> {
     let (up, at) = if S::D == 2 {
         ("0.0, 1.0", "0.0, 0.1")
     } else {
@@ -44,7 +43,7 @@ fn block<S: Dimensional>(law: &str, step: f64, theta: f64, dofs: &str) -> Simula
     built(&text)
 }
 
-fn built<S: Dimensional>(text: &str) -> Simulation<S> {
+fn built<S: Space>(text: &str) -> Simulation<S> {
     scene::text::<S>(text)
 }
 
@@ -55,7 +54,7 @@ fn rate_and_state(a: f64, b: f64, d_c: f64, slip_law: bool) -> String {
     )
 }
 
-fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {
+fn step<S: Space>(s: &mut Simulation<S>) -> StepReport {
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(report.solver.converged, "step {}", s.state.steps);
     assert!(
@@ -68,7 +67,7 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) -> StepReport {
 }
 
 /// Friction coefficient of the only contact.
-fn mu<S: Dimensional>(s: &Simulation<S>) -> f64 {
+fn mu<S: Space>(s: &Simulation<S>) -> f64 {
     let contact = &s.state.network.contacts[0];
     let n = contact.normal.dot(&contact.impulse);
     S::tangential(&contact.normal, &contact.impulse).norm() / n

@@ -1,12 +1,11 @@
 //! Newton's restitution beside what else changes the velocity asked of a contact.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 /// A ball that moves towards a plane which it overlaps by 0.1 mm.
-fn ball<S: Dimensional>(speed: f64, correction: f64) -> Simulation<S> {
+fn ball<S: Space>(speed: f64, correction: f64) -> Simulation<S> {
     let (up, at, velocity) = match S::D {
         2 => ("0.0, 1.0", "0.0, 9.9e-3", format!("0.0, {:e}", -speed)),
         _ => (
@@ -29,7 +28,7 @@ fn ball<S: Dimensional>(speed: f64, correction: f64) -> Simulation<S> {
     scene::text::<S>(&text)
 }
 
-fn rebounds<S: Dimensional>() {
+fn rebounds<S: Space>() {
     // The correction alone would ask for 0.3 m/s.
     for speed in [0.1, 0.35, 2.0] {
         for correction in [0.0, 0.3] {

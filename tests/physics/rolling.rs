@@ -47,7 +47,7 @@ fn roll_until(end: f64, creepage: f64, step: f64, layered: bool) -> Rolling {
         sets.push("grains.1.count=1".to_owned());
     }
     let loaded = scene::loaded("wheel_rail_rolling", &sets);
-    let mut s = scene::built::<Dim2>(&loaded).simulation;
+    let mut s = scene::simulation::<Dim2>(&loaded);
     let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.expect("the case has a wheel");
     let wheel = s.state.bodies.driven[place].body;

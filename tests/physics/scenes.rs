@@ -2,30 +2,25 @@
 
 use crate::scene;
 use fretwork::contact::detect::centre;
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::Summary;
 use fretwork::record::picture::Camera;
 use fretwork::scene::Loaded;
-use fretwork::scene::build::{Built, Dimensional};
 use fretwork::step::{InDimension, Simulation};
 use fretwork_observe::picture::Shows;
 use std::path::Path;
 
 const G: f64 = 9.81;
 
-fn case(name: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
-    case_in(name, sets)
-}
-
-fn case_in<S: Dimensional>(name: &str, sets: &[&str]) -> (Loaded, Built<S>) {
+fn case<S: Space>(name: &str, sets: &[&str]) -> (Loaded, Simulation<S>) {
     let loaded = scene::loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
-    let built = scene::built::<S>(&loaded);
-    (loaded, built)
+    let simulation = scene::simulation(&loaded);
+    (loaded, simulation)
 }
 
 /// Runs a case to its end, in a folder that is left for `look` and then removed.
 fn finished(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
-    scene::ran::<Dim2>(name, sets, look)
+    scene::ran(name, sets, look)
 }
 
 fn place(s: &Simulation<Dim2>, name: &str) -> usize {
@@ -45,8 +40,8 @@ fn held(s: &Simulation<Dim2>) -> f64 {
 /// holds, and of Beverloo's size.
 #[test]
 fn a_silo_saturates_and_drains_at_a_constant_rate() {
-    let (_, built) = case("silo", &["grains.0.count=600", "grains.0.high=[0.16,0.5]"]);
-    let mut s = built.simulation;
+    let sets = ["grains.0.count=600", "grains.0.high=[0.16,0.5]"];
+    let (_, mut s) = case::<Dim2>("silo", &sets);
     let all = held(&s);
     let [gate_at, left, right] = ["gate", "left", "right"].map(|n| place(&s, n));
     let (mut gate, mut walls, mut count) = (0.0, 0.0, 0.0);
@@ -182,8 +177,7 @@ const QUIET: [&str; 3] = ["output.frames=0", "output.views=0", "output.figures=f
 #[ignore = "nightly: long statistics; the layer without attraction is plane_shear_has_the_friction_of_its_inertial_number"]
 fn cohesion_strengthens_a_sheared_layer_as_mohr_and_coulomb_say() {
     let (low, high, force, range) = (0.03, 0.13, 16.0, 1e-4);
-    let (_, built) = case("cohesive_shear", &QUIET);
-    let mut s = built.simulation;
+    let (_, mut s) = case::<Dim2>("cohesive_shear", &QUIET);
     let grain = s.state.bodies.grain_flags();
     let (mut tau, mut pressure, mut attraction) = (0.0, 0.0, 0.0);
     let (mut speeds, mut samples) = (0.0, 0.0);
@@ -257,8 +251,7 @@ fn end_walls_make_a_narrow_drum_steeper() {
             ],
             more,
         ];
-        let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets.concat());
-        let summary = scene::finished(&loaded, built, |_| {});
+        let summary = finished("rotating_drum_3d", &sets.concat(), |_| {});
         summary.found.number("measures.slope").unwrap().to_degrees()
     };
     let walls = angle(&[]);
@@ -289,8 +282,7 @@ fn frames_in_space_show_the_drum_and_the_speed() {
         let few = ["grains.0.count=60", "output.width=400"];
         [&few[..], more].concat()
     };
-    let (loaded, built) = case_in::<Dim3>("rotating_drum_3d", &sets(&[]));
-    let mut s = built.simulation;
+    let (loaded, mut s) = case("rotating_drum_3d", &sets(&[]));
     let is = |p: &[u8; 3], colour: bool| {
         let (low, high) = (p.iter().min().unwrap_or(&0), p.iter().max().unwrap_or(&0));
         colour == (high - low > 30)
@@ -310,8 +302,8 @@ fn frames_in_space_show_the_drum_and_the_speed() {
     let coloured = share(&moving, &|p| is(p, true));
     assert!(coloured > 0.01, "{coloured}");
     // Without first bodies near, the ground is white.
-    let (loaded, built) = case_in::<Dim3>("newton_cradle", &["output.width=400"]);
-    let cradle = pictured(&built.simulation, &loaded, "cradle");
+    let (loaded, cradle) = case("newton_cradle", &["output.width=400"]);
+    let cradle = pictured(&cradle, &loaded, "cradle");
     assert!(share(&cradle, &|p| *p == [255; 3]) > 0.3);
 }
 
@@ -380,7 +372,7 @@ impl Moved {
 
 /// A case with its grains in the mirror x = 0.25 m.
 fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
-    let mut s = case(name, sets).1.simulation;
+    let mut s = case::<Dim2>(name, sets).1;
     for b in s.state.bodies.grains().collect::<Vec<_>>() {
         s.state.bodies.position[b].x = 0.5 - s.state.bodies.position[b].x;
     }
@@ -391,7 +383,7 @@ fn mirrored(name: &str, sets: &[&str]) -> Simulation<Dim2> {
 #[test]
 fn a_fault_offsets_its_layer_by_its_throw() {
     let sets = [&QUIET[..], &COARSE].concat();
-    let straight = Moved::new(case("fault_propagation", &sets).1.simulation);
+    let straight = Moved::new(case("fault_propagation", &sets).1);
     let block = straight.block;
     // 40 mm/s for 0.75 s less half of the 0.02 s of the ramp, along 60 degrees.
     let (sin, cos) = 60f64.to_radians().sin_cos();
@@ -410,7 +402,7 @@ fn a_fault_offsets_its_layer_by_its_throw() {
 #[ignore = "nightly: two runs; one mirror is in a_fold_lifts_its_layer_with_the_block"]
 fn a_fault_in_the_mirror_is_the_fault() {
     let sets = [&QUIET[..], &COARSE].concat();
-    let straight = Moved::new(case("fault_propagation", &sets).1.simulation);
+    let straight = Moved::new(case("fault_propagation", &sets).1);
     let mirror = [
         "bodies.block.shapes.0.points=[(-1.5,-0.0003),(0.22,-0.0003),(0.22,-1)]",
         "phases.push.drives={\"left\":(x:Velocity(Ramp(from:0.0,to:0.02,start:0.0,end:0.02))),\
@@ -426,7 +418,7 @@ fn a_fault_in_the_mirror_is_the_fault() {
 #[test]
 fn a_fold_lifts_its_layer_with_the_block() {
     let sets = [&QUIET[..], &COARSE].concat();
-    let straight = Moved::new(case("forced_fold", &sets).1.simulation);
+    let straight = Moved::new(case("forced_fold", &sets).1);
     let rise = straight.block;
     assert!((rise - Vector::new(0.0, 0.025)).norm() < 1e-4, "{rise}");
     let over = straight.mean(0.225, 0.275);
@@ -443,8 +435,7 @@ fn a_fold_lifts_its_layer_with_the_block() {
 
 #[test]
 fn as_many_balls_leave_a_cradle_as_come() {
-    let (_, built) = case_in::<Dim3>("newton_cradle", &[]);
-    let mut s = built.simulation;
+    let (_, mut s) = case::<Dim3>("newton_cradle", &[]);
     while s.state.time < 0.06 {
         s.step().unwrap_or_else(|e| panic!("{e}"));
     }

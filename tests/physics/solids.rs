@@ -12,7 +12,7 @@ type V = Vector3<f64>;
 const G: f64 = 9.81;
 
 fn scene(case: &str, sets: &[String]) -> Simulation<Dim3> {
-    scene::built(&scene::loaded(case, sets)).simulation
+    scene::simulation(&scene::loaded(case, sets))
 }
 
 /// The greatest speed of a grain (m/s).

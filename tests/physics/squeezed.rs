@@ -2,12 +2,11 @@
 //! the names of the bodies.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::{ImpossibleMotions, Simulation};
 
 /// A lid over a floor with grains between them; the solver's settings and the contact law.
-fn pressed<S: Dimensional>(lid: &str, grains: &str, solver: &str, law: &str) -> Simulation<S> {
+fn pressed<S: Space>(lid: &str, grains: &str, solver: &str, law: &str) -> Simulation<S> {
     let (up, down, over, axis) = if S::D == 2 {
         ("[0.0, 1.0]", "[0.0, -1.0]", "[0.0, 0.02]", "y")
     } else {
@@ -56,7 +55,7 @@ fn grains(dimension: usize) -> Vec<String> {
 
 /// What a run of some steps says of its imposed motions, the largest force on the lid (N), and how
 /// many of the steps converged.
-fn told<S: Dimensional>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
+fn told<S: Space>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotions, f64, usize) {
     let (mut told, mut force, mut converged) = (ImpossibleMotions::default(), 0.0f64, 0);
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -68,7 +67,7 @@ fn told<S: Dimensional>(s: &mut Simulation<S>, steps: usize) -> (ImpossibleMotio
     (told, force / s.options.scheme.h, converged)
 }
 
-fn cannot_be_obeyed<S: Dimensional>() {
+fn cannot_be_obeyed<S: Space>() {
     for list in grains(S::D) {
         for method in ["Auto", "Anderson", "Newton", "Interior", "Nlgs"] {
             let solver = format!("method: {method}, max_iterations: 2000");
@@ -109,7 +108,7 @@ fn grains_between_driven_plates_cannot_yield() {
 }
 
 /// With a force in place of the motion, or springs in place of rigid contacts, all is possible.
-fn can_be_obeyed<S: Dimensional>() {
+fn can_be_obeyed<S: Space>() {
     for (lid, law) in [("Force(-10.0)", RIGID), (DRIVEN, SPRINGS)] {
         for list in grains(S::D) {
             let mut s: Simulation<S> = pressed(lid, &list, "", law);

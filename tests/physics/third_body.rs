@@ -10,7 +10,6 @@ use fretwork::record::statistics::Table;
 use fretwork::record::stress::love_weber;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Loaded, load_text};
 use fretwork::step::Simulation;
 use std::collections::BTreeMap;
@@ -84,9 +83,9 @@ struct Seen<S: Space> {
 }
 
 /// Changes a scene, looks at it once a second later, and reads what is written.
-fn seen<S: Dimensional>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
+fn seen<S: Space>(text: &str, change: impl FnOnce(&mut Simulation<S>)) -> Seen<S> {
     let loaded = opened(text).unwrap_or_else(|e| panic!("{e}"));
-    let mut s = scene::built::<S>(&loaded).simulation;
+    let mut s = scene::simulation::<S>(&loaded);
     let case = &loaded.case;
     let mut observers = measures::<S>(&case.measures, case.inertia_scaling, case.heat.is_some());
     observers.begin(&mut s);
@@ -358,7 +357,7 @@ fn a_column_carries_the_weight_above() {
 /// The bins' stresses add up to that of the whole layer, in the plane and in space.
 #[test]
 fn stresses_of_the_bins_add_up() {
-    fn added<S: Dimensional>(grains: &[([f64; 3], f64)]) {
+    fn added<S: Space>(grains: &[([f64; 3], f64)]) {
         let side = S::D - 1;
         let text = between::<S>(0.55, grains, 9).replace(
             "periodic:",
@@ -425,7 +424,7 @@ fn stresses_of_the_bins_add_up() {
 }
 
 fn fretting(sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
-    scene::ran::<Dim2>("wheel_rail_rigid", sets, look)
+    scene::ran("wheel_rail_rigid", sets, look)
 }
 
 /// Energies by place and by bin add up to the ledger's, mechanism by mechanism; the friction

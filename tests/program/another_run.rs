@@ -6,7 +6,6 @@ use fretwork::geometry::space::{Dim2, Dim3, MatrixLike, Space, VectorLike};
 use fretwork::record::picture::piece_outline;
 use fretwork::record::results::{Header, Part, Results};
 use fretwork::record::statistics::Column;
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
 use super::grains::{Folder, case};
@@ -15,7 +14,7 @@ const STEPS: u32 = 400;
 
 impl Folder {
     /// Runs a case into the folder `out`, and in this process too: the same bits.
-    fn run<S: Dimensional>(&self, case: &str) -> Simulation<S> {
+    fn run<S: Space>(&self, case: &str) -> Simulation<S> {
         self.record(case);
         let mut first = self
             .build::<S>(case)
@@ -82,7 +81,7 @@ fn compare<S: Space>(first: &Simulation<S>, second: &Simulation<S>) -> usize {
     ours.len()
 }
 
-fn begins_where_the_other_ended<S: Dimensional>(name: &str, grains: &str, count: usize) {
+fn begins_where_the_other_ended<S: Space>(name: &str, grains: &str, count: usize) {
     let folder = Folder::new(name);
     let first = folder.run::<S>(&case(S::D, "stone", grains, ""));
     assert!(

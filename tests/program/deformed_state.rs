@@ -3,7 +3,6 @@
 
 use super::grains::Folder;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use std::process::Command;
 
@@ -57,7 +56,7 @@ fn case<S: Space>(grains: &str, elastic: &str, begins: f64) -> String {
 }
 
 /// A folder with the state of a deposit.
-fn deposit<S: Dimensional>(name: &str, elastic: &str) -> Folder {
+fn deposit<S: Space>(name: &str, elastic: &str) -> Folder {
     let folder = Folder::new(name);
     folder.write("materials/soft.ron", &soft("1e6"));
     let path = folder.write("first.ron", &case::<S>(&grains::<S>(), elastic, DEPOSIT));
@@ -71,7 +70,7 @@ fn deposit<S: Dimensional>(name: &str, elastic: &str) -> Folder {
     folder
 }
 
-fn built<S: Dimensional>(folder: &Folder, case: &str) -> (Simulation<S>, String) {
+fn built<S: Space>(folder: &Folder, case: &str) -> (Simulation<S>, String) {
     let built = folder.build::<S>(case).unwrap_or_else(|e| panic!("{e}"));
     (built.simulation, built.samples.concat())
 }
@@ -108,7 +107,7 @@ fn apart<S: Space>(a: &Simulation<S>, b: &Simulation<S>) -> f64 {
     off.fold(0.0, f64::max)
 }
 
-fn goes_on<S: Dimensional>(name: &str) {
+fn goes_on<S: Space>(name: &str) {
     let folder = deposit::<S>(name, ELASTIC);
     let (mut one, _) = built::<S>(&folder, &case::<S>(&grains::<S>(), ELASTIC, DEPOSIT));
     for _ in 0..(DEPOSIT / STEP).round() as usize {

@@ -1,9 +1,10 @@
 //! Cases of grains on a floor, each in a folder of its own.
 
 use crate::temp::TempFolder;
-use fretwork::scene::build::{Built, Dimensional};
+use fretwork::geometry::space::Space;
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
+use fretwork::step::Simulation;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -31,6 +32,12 @@ pub fn case(dimension: usize, material: &str, grains: &str, bodies: &str) -> Str
 
 /// A folder of a test, with two materials; it goes with it.
 pub struct Folder(pub TempFolder);
+
+/// A simulation, and what is said of grains that were made at random or read.
+pub struct Sampled<S: Space> {
+    pub simulation: Simulation<S>,
+    pub samples: Vec<String>,
+}
 
 impl Folder {
     /// A new one of this name.
@@ -64,10 +71,14 @@ impl Folder {
     }
 
     /// Builds a case, written there.
-    pub fn build<S: Dimensional>(&self, case: &str) -> Result<Built<S>, String> {
+    pub fn build<S: Space>(&self, case: &str) -> Result<Sampled<S>, String> {
         let path = self.write("case.ron", case);
         let loaded = load(&path, &[]).map_err(|e| e.to_string())?;
-        let built = loaded.build_in::<S>(&search_path());
-        built.map_err(|e| e.to_string())
+        let built = loaded.build(&search_path()).map_err(|e| e.to_string())?;
+        let simulation = built.simulation.into_dimension();
+        Ok(Sampled {
+            simulation: simulation.map_err(|_| "it has another dimension".to_owned())?,
+            samples: built.samples,
+        })
     }
 }

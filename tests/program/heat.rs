@@ -7,20 +7,19 @@ use fretwork::record::heat::HeatChecks;
 use fretwork::record::statistics::Table;
 use fretwork::record::summary::Uncertainty;
 use fretwork::record::{RunEnd, Summary, run_observers};
-use fretwork::scene::Loaded;
-use fretwork::scene::build::Built;
+use fretwork::scene::{Built, Loaded};
 use std::process::Command;
 use std::time::Duration;
 
-fn built(case: &str, sets: &[&str]) -> (Loaded, Built<Dim2>) {
+fn built(case: &str, sets: &[&str]) -> (Loaded, Built) {
     let fixed = ["output.figures=false", "uncertainty.repeats=0"];
     let sets = [&fixed[..], sets].concat();
     let loaded = scene::loaded(&format!("verification/thermal/{case}"), &sets);
-    let built = scene::built::<Dim2>(&loaded);
+    let built = scene::built(&loaded);
     (loaded, built)
 }
 
-fn ran((loaded, built): (Loaded, Built<Dim2>)) -> Summary {
+fn ran((loaded, built): (Loaded, Built)) -> Summary {
     scene::finished(&loaded, built, |_| {})
 }
 
@@ -43,7 +42,8 @@ fn an_account_of_heat_that_does_not_close_is_a_reason() {
     assert!(summary.run.trustworthy, "{:?}", summary.run.warnings);
     // A joule that nothing put in, to the ten that flow.
     let (loaded, mut built) = built("half_space", &[]);
-    let heat = built.simulation.state.heat.as_mut().unwrap();
+    let heat = built.simulation.get_mut::<Dim2>().unwrap();
+    let heat = heat.state.heat.as_mut().unwrap();
     heat.ledger.imposed += 1.0;
     let summary = ran((loaded, built));
     let off = residual(&summary);
@@ -117,7 +117,7 @@ fn heat_that_contacts_put_in_beside_half_spaces_is_that_of_their_friction() {
             "heat.bodies.floor.store.over=[(-0.5e-3, 1.5e-3)]",
         ],
     );
-    let mut s = built.simulation;
+    let mut s = built.simulation.into_dimension::<Dim2>().unwrap();
     let mut observers = run_observers(&loaded, &s);
     observers.begin(&mut s);
     for _ in 0..100 {

@@ -1,8 +1,8 @@
 //! Laws of a material: the name of a material chooses the parameters of the laws at its contacts.
 
 use fretwork::geometry::space::Dim2;
-use fretwork::scene::build::Built;
 use fretwork::scene::load;
+use fretwork::step::Simulation;
 use std::path::{Path, PathBuf};
 
 /// A folder with a copy of the sliding block, and materials of these names and laws.
@@ -21,7 +21,7 @@ fn folder(name: &str, materials: &[(&str, &str)]) -> PathBuf {
 
 /// The block that slides on a profile, of this material, with what the interface says of
 /// parameters.
-fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Built<Dim2>, String> {
+fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Simulation<Dim2>, String> {
     let sets = [
         format!("materials.grain={material}"),
         "interfaces.grain.parameters_from=grain".to_owned(),
@@ -34,8 +34,7 @@ fn slides(folder: &Path, material: &str, parameters: &str) -> Result<Built<Dim2>
 }
 
 /// Volume worn (m³/m) after 0.1 s.
-fn worn(built: Built<Dim2>) -> f64 {
-    let mut simulation = built.simulation;
+fn worn(mut simulation: Simulation<Dim2>) -> f64 {
     let steps = (0..100).map(|_| simulation.step().unwrap().totals.worn_first);
     steps.sum()
 }

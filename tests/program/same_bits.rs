@@ -3,12 +3,12 @@
 //! set of contacts it ends in other forces, whose sums are compared instead.
 
 use fretwork::contact::Key;
-use fretwork::geometry::space::VectorLike;
-use fretwork::scene::build::{Dimensional, Scene};
+use fretwork::geometry::space::{Space, VectorLike};
 use fretwork::scene::{Loaded, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use fretwork::threads::divide_from;
+use fretwork::{AnySimulation, in_dimension};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -23,13 +23,13 @@ fn cases() -> Vec<PathBuf> {
     cases
 }
 
-fn built(loaded: &Loaded) -> Scene {
+fn built(loaded: &Loaded) -> AnySimulation {
     let built = loaded.build(&search_path());
-    built.unwrap_or_else(|e| panic!("{e}"))
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
 /// All bits of bodies and contacts, and how many steps led there: for so long (s), or so many.
-fn stepped<S: Dimensional>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
+fn stepped<S: Space>(s: &mut Simulation<S>, steps: Result<u64, Duration>) -> (Vec<u64>, u64) {
     let clock = Instant::now();
     let goes_on = |done: u64| match steps {
         Ok(n) => done < n,
@@ -60,15 +60,10 @@ fn bits(loaded: &Loaded, threads: usize, steps: Result<u64, Duration>) -> (Vec<u
         .unwrap();
     // Small scenes too.
     divide_from((threads > 1).then_some(0));
-    pool.install(|| match built(loaded) {
-        Scene::Dim2(mut b) => {
-            b.simulation.options.solver.parallel = threads > 1;
-            stepped(&mut b.simulation, steps)
-        }
-        Scene::Dim3(mut b) => {
-            b.simulation.options.solver.parallel = threads > 1;
-            stepped(&mut b.simulation, steps)
-        }
+    pool.install(|| {
+        let mut simulation = built(loaded);
+        simulation.options_mut().solver.parallel = threads > 1;
+        in_dimension!(&mut simulation, |s| stepped(s, steps))
     })
 }
 
@@ -231,7 +226,7 @@ impl Sums {
 
 /// The state after some steps with the grains' balls in their order, or the other way round: names,
 /// order and sides of contacts follow.
-fn sums<S: Dimensional>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
+fn sums<S: Space>(s: &mut Simulation<S>, turned: bool, steps: u64) -> Sums {
     if turned {
         let grain: Vec<bool> = s.state.bodies.grain_flags();
         let of_grains = |b: &usize| grain[s.shapes.balls[*b].body as usize];
@@ -274,10 +269,8 @@ fn contacts_in_another_order_give_the_same_sums() {
         for seed in 1..=samples {
             let set = (samples > 1).then(|| format!("seed={seed}"));
             let loaded = load(path.as_ref(), set.as_slice()).unwrap_or_else(|e| panic!("{e}"));
-            let [one, other] = [false, true].map(|turned| match built(&loaded) {
-                Scene::Dim2(mut built) => sums(&mut built.simulation, turned, steps),
-                Scene::Dim3(mut built) => sums(&mut built.simulation, turned, steps),
-            });
+            let [one, other] = [false, true]
+                .map(|turned| in_dimension!(&mut built(&loaded), |s| sums(s, turned, steps)));
             // A heap at rest may carry its load in ways that differ by this much.
             let apart = far(one.pressed, other.pressed);
             assert!(apart < 0.15, "{case}, sample {seed}: {apart:.1e}");

@@ -1,14 +1,13 @@
 //! Grains that are made at random or read: from tables, grading curves and other runs.
 
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::{Built, Dimensional};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use std::path::Path;
 
-use super::grains::{Folder, case};
+use super::grains::{Folder, Sampled, case};
 
 impl Folder {
     /// Builds a case with these grains.
-    fn sample<S: Dimensional>(&self, grains: &str) -> Result<Built<S>, String> {
+    fn sample<S: Space>(&self, grains: &str) -> Result<Sampled<S>, String> {
         self.build(&case(S::D, "stone", grains, ""))
     }
 }
@@ -142,7 +141,7 @@ fn a_table_gives_grains() {
 
 /// Positions, velocities and spins of a run's end are those that another case begins with, bit by
 /// bit.
-fn round_trip<S: Dimensional>(name: &str, grains: &str) {
+fn round_trip<S: Space>(name: &str, grains: &str) {
     let folder = Folder::new(name);
     let first = case(S::D, "stone", grains, "");
     folder.record(&first);

@@ -1,20 +1,14 @@
 //! Wear coefficients from K and the hardness of the materials: another steel wears differently.
 
-use fretwork::geometry::space::Dim2;
-use fretwork::scene::build::Built;
 use fretwork::scene::material::{Material, Sourced};
-use fretwork::scene::{Loaded, load};
+use fretwork::scene::{Built, Loaded, load};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
 /// A block that slides on a profile: the wear law takes what is in `wear`, and the two materials
 /// have these hardnesses.
-fn slides(
-    wear: &str,
-    law: &str,
-    hardness: [Option<(f64, &str)>; 2],
-) -> Result<Built<Dim2>, String> {
+fn slides(wear: &str, law: &str, hardness: [Option<(f64, &str)>; 2]) -> Result<Built, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/verification/worn_slide.ron");
     let sets = [
         r#"materials={"soft": "soft", "hard": "hard"}"#,
@@ -45,12 +39,12 @@ fn slides(
             .map_err(|e| e.to_string())?;
     }
     loaded
-        .build_in::<Dim2>(&fretwork::shipped::search_path())
+        .build(&fretwork::shipped::search_path())
         .map_err(|e| e.to_string())
 }
 
 /// Volume worn (m³/m) after 0.3 s.
-fn worn(mut built: Built<Dim2>) -> f64 {
+fn worn(mut built: Built) -> f64 {
     let mut sum = 0.0;
     for _ in 0..300 {
         sum += built.simulation.step().unwrap().totals.worn_first;

@@ -3,8 +3,8 @@
 #![allow(dead_code, reason = "each test program uses a part of it")]
 
 use crate::temp::TempFolder;
+use fretwork::geometry::space::Space;
 use fretwork::record::{RunOptions, Summary, run};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::{Built, Loaded, load, load_text};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -28,27 +28,29 @@ pub(crate) fn loaded_text(text: &str) -> Loaded {
 }
 
 /// The scene of a case, with what its files declare.
-pub(crate) fn built<S: Dimensional>(loaded: &Loaded) -> Built<S> {
-    let built = loaded.build_in::<S>(&search_path());
+pub(crate) fn built(loaded: &Loaded) -> Built {
+    let built = loaded.build(&search_path());
     built.unwrap_or_else(|e| panic!("{e}"))
 }
 
+/// The simulation of a case.
+pub(crate) fn simulation<S: Space>(loaded: &Loaded) -> Simulation<S> {
+    let simulation = loaded.build_in(&search_path());
+    simulation.unwrap_or_else(|e| panic!("{e}"))
+}
+
 /// The scene of a case of the repository, see [`loaded`].
-pub(crate) fn case<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
-    built(&loaded(name, sets)).simulation
+pub(crate) fn case<S: Space>(name: &str, sets: &[&str]) -> Simulation<S> {
+    simulation(&loaded(name, sets))
 }
 
 /// The scene of a case in text.
-pub(crate) fn text<S: Dimensional>(text: &str) -> Simulation<S> {
-    built(&loaded_text(text)).simulation
+pub(crate) fn text<S: Space>(text: &str) -> Simulation<S> {
+    simulation(&loaded_text(text))
 }
 
 /// Runs a scene to its end in a folder of its own, which is left for `look` and then removed.
-pub(crate) fn finished<S: Dimensional>(
-    loaded: &Loaded,
-    built: Built<S>,
-    look: impl FnOnce(&Path),
-) -> Summary {
+pub(crate) fn finished(loaded: &Loaded, built: Built, look: impl FnOnce(&Path)) -> Summary {
     let out = TempFolder::new("finished");
     let options = RunOptions {
         out: out.to_owned(),
@@ -60,7 +62,7 @@ pub(crate) fn finished<S: Dimensional>(
 }
 
 /// [`finished`] with a case of the repository, without repeated steps.
-pub(crate) fn ran<S: Dimensional>(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
+pub(crate) fn ran(name: &str, sets: &[&str], look: impl FnOnce(&Path)) -> Summary {
     let loaded = loaded(name, &[&["uncertainty.repeats=0"], sets].concat());
-    finished(&loaded, built::<S>(&loaded), look)
+    finished(&loaded, built(&loaded), look)
 }

@@ -193,7 +193,7 @@ fn roll(bare: bool, creepage: f64, seed: u64) -> Result<Rolling, Failure> {
         sets.push("grains.1.count=1".to_owned());
     }
     let loaded = load(&case, &sets)?;
-    let mut s = loaded.build_in::<Dim2>(&search_path())?.simulation;
+    let mut s = loaded.build_in::<Dim2>(&search_path())?;
     let place = s.state.bodies.driven.iter().position(|d| d.name == "wheel");
     let place = place.ok_or("the case has no wheel")?;
     let wheel = s.state.bodies.driven[place].body as usize;

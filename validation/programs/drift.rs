@@ -61,7 +61,7 @@ fn run(setting: &str, steps: u64) -> Result<(), Failure> {
         sets.push(format!("solver.{setting}"));
     }
     let loaded = load(&case, &sets)?;
-    let mut s = loaded.build_in::<Dim3>(&search_path())?.simulation;
+    let mut s = loaded.build_in::<Dim3>(&search_path())?;
     let part = steps.div_ceil(10);
     let (mut deepest, mut mean) = (0.0f64, 0.0f64);
     let (mut projected, mut sweeps) = (0u64, 0u64);

@@ -16,7 +16,6 @@ use fretwork::bodies::Bodies;
 use fretwork::contact::Bond;
 use fretwork::geometry::shape::Ball;
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::solve::Problem;
@@ -73,7 +72,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// their capacity when full, and are nearly full here; just after doubling they take twice as much.
 const CONTACTS: [f64; 2] = [32_400.0, 64_800.0];
 
-fn scene<S: Dimensional>(
+fn scene<S: Space>(
     name: &str,
     grains: Grains,
     features: &[Feature],
@@ -126,7 +125,7 @@ fn check<S: Space>(grains: Grains, sets: &[&str]) -> [usize; 2] {
 const RADIUS: f64 = 1e-3;
 
 /// A case of `count` grains: separate, or in a layer of constant depth.
-fn case<S: Dimensional>(grains: Grains, count: usize, apart: bool) -> String {
+fn case<S: Space>(grains: Grains, count: usize, apart: bool) -> String {
     let wide = 2.0 * RADIUS * (1.0 + 2e-6);
     let (axes, up) = if S::D == 2 {
         (2, "0.0, 1.0")
@@ -188,7 +187,7 @@ fn case<S: Dimensional>(grains: Grains, count: usize, apart: bool) -> String {
     )
 }
 
-fn measure<S: Dimensional>(
+fn measure<S: Space>(
     grains: Grains,
     count: usize,
     apart: bool,
@@ -200,7 +199,7 @@ fn measure<S: Dimensional>(
         let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
         let text = case::<S>(grains, count, apart);
         let loaded = load_text("memory.ron", &text, &cases, &sets)?;
-        loaded.build_in::<S>(&search_path())?.simulation
+        loaded.build_in::<S>(&search_path())?
     };
     for _ in 0..STEPS {
         s.step()?;

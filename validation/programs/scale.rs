@@ -6,7 +6,6 @@
 //! constant, and with it the number of iterations that a load needs to propagate across the layer.
 
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load_text;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -183,7 +182,7 @@ const RADIUS: f64 = 1e-3;
 const SETTLING: u32 = 60;
 
 /// A layer of `count` grains above a floor, periodic along the horizontal axes.
-fn layer<S: Dimensional>(count: usize) -> String {
+fn layer<S: Space>(count: usize) -> String {
     let wide = 2.0 * RADIUS * (1.0 + 2e-6);
     let (period, low, high, up) = if S::D == 2 {
         let width = (count as f64 / 20.0).ceil() * wide;
@@ -209,10 +208,10 @@ fn layer<S: Dimensional>(count: usize) -> String {
     )
 }
 
-fn measure<S: Dimensional>(count: usize) -> Result<Row, Failure> {
+fn measure<S: Space>(count: usize) -> Result<Row, Failure> {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
     let loaded = load_text("layer.ron", &layer::<S>(count), &cases, &[])?;
-    let mut s = loaded.build_in::<S>(&search_path())?.simulation;
+    let mut s = loaded.build_in::<S>(&search_path())?;
     settle(&mut s)?;
     // Number of steps for about ten million contact updates.
     let steps = (3_000_000 / count).clamp(8, 200);

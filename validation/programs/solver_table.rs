@@ -6,9 +6,9 @@
 //! (40) is the limit on the wall time of a fretting run (s), `SHORT` (4) that of other cases.
 //! `PARTS=page` only writes the page.
 
-use fretwork::geometry::space::Space;
-use fretwork::scene::build::Dimensional;
-use fretwork::scene::{Scene, load};
+use fretwork::geometry::space::{Dim2, Space};
+use fretwork::in_dimension;
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
@@ -152,7 +152,7 @@ struct Tally {
 }
 
 /// Steps until a time limit or the end; `follow` is called before and after each step.
-fn go<S: Dimensional>(
+fn go<S: Space>(
     s: &mut Simulation<S>,
     steps: u64,
     budget: f64,
@@ -188,15 +188,12 @@ fn go<S: Dimensional>(
 /// friction by cycle.
 fn fretting(tolerance: &str, method: Method, seed: u64, budget: f64) -> Result<String, Any> {
     let loaded = load(Path::new(FRETTING), &sets(format!("seed={seed}")))?;
-    let Scene::Dim2(built) = loaded.build(&search_path())? else {
-        return Err("the fretting case is plane".into());
-    };
+    let mut s = loaded.build_in::<Dim2>(&search_path())?;
     // Whether the laws rule the solver out.
     let asked = load(Path::new(FRETTING), &sets(word(method)))?;
     if let Err(e) = asked.build(&search_path()) {
         return Ok(format!("refused\t{e}"));
     }
-    let mut s = built.simulation;
     let total = (loaded.case.time.end / loaded.case.time.step).round() as u64;
     go(&mut s, SETTLE, f64::INFINITY, |_, _| {});
     (s.options.solver.method, s.options.solver.tolerance) = (method, tolerance.parse()?);
@@ -267,14 +264,9 @@ fn shipped(case: &Path, method: Method, budget: f64) -> Result<String, Any> {
         .max(1.0) as u64;
     let tally = match loaded.build(&search_path()) {
         Err(e) => return Ok(format!("refused\t{e}")),
-        Ok(Scene::Dim2(b)) => {
-            let mut b = b;
-            go(&mut b.simulation, total, budget, |_, _| {})
-        }
-        Ok(Scene::Dim3(b)) => {
-            let mut b = b;
-            go(&mut b.simulation, total, budget, |_, _| {})
-        }
+        Ok(mut built) => in_dimension!(&mut built.simulation, |s| {
+            go(s, total, budget, |_, _| {})
+        }),
     };
     Ok(format!(
         "{}\t{total}\t{}\t{:.1e}\t{}",

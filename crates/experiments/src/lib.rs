@@ -42,7 +42,7 @@ pub mod trade;
 pub use case::{build, load};
 pub use error::Error;
 
-use fretwork_scene::{InputError, Loaded, Scene};
+use fretwork_scene::{Built, InputError, Loaded};
 
 /// What experiments need of the program that makes their runs.
 #[derive(Clone, Debug)]
@@ -52,5 +52,5 @@ pub struct Program {
     /// Arguments of each run that say the same of its plugins.
     pub plugins: Vec<String>,
     /// Refuses a case whose run has two columns or two files of one name.
-    pub check_names: fn(&Loaded, &Scene) -> Result<(), InputError>,
+    pub check_names: fn(&Loaded, &Built) -> Result<(), InputError>,
 }

@@ -1,8 +1,8 @@
 //! Contacts on which an interface's bonds form, estimated from the scene before it runs.
 
 use fretwork_core::geometry::shape::point_radius;
-use fretwork_core::geometry::space::{Space, VectorLike};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
+use nalgebra::Vector3;
 
 /// A pair of bodies that a bond may join.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +43,10 @@ impl BondSites {
     /// Bond sites of the interface with index `law`; `None` if it governs no contact and no grain.
     /// While there are fewer contacts than grains, the lightest pairs that grains may form count
     /// for the largest ratios.
-    pub fn of<S: Space>(s: &Simulation<S>, law: usize) -> Option<Self> {
-        let area = |radius: f64| s.laws[law].area.area(S::D, radius);
+    pub fn of(s: &dyn RunView, law: usize) -> Option<Self> {
+        let area = |radius: f64| s.laws()[law].area.area(s.dimension(), radius);
         let pairs = of_contacts(s, law);
-        let grains = s.shapes.balls.len() + s.shapes.pieces.len();
+        let grains = s.balls().len() + s.pieces().len();
         if !pairs.is_empty() && pairs.len() >= grains {
             return Self::of_pairs(pairs.len(), pairs, &[], area);
         }
@@ -97,25 +97,27 @@ impl BondSites {
 }
 
 /// The contacts of an interface.
-fn of_contacts<S: Space>(s: &Simulation<S>, law: usize) -> Vec<BondPair> {
-    let contacts = s.state.network.contacts.iter();
-    let bonded = contacts.filter(|c| usize::from(c.law) == law && c.radius > 0.0);
-    bonded
-        .map(|c| {
-            let (mut normal, mut shear) = (0.0, 0.0);
-            for (body, arm) in c.bodies.iter().zip(&c.arms) {
-                let inverse = &s.state.bodies.inverse_mass[*body as usize];
-                let along: f64 = (0..S::D).map(|k| inverse[k] * c.normal[k].powi(2)).sum();
-                normal += of_deforming(s, *body).map_or(along, |inverse| inverse[0]);
-                shear += inverse_mass(s, *body) + arm.norm().powi(2) * inverse_inertia(s, *body);
-            }
-            BondPair {
-                radius: c.radius,
-                normal,
-                shear,
-            }
-        })
-        .collect()
+fn of_contacts(s: &dyn RunView, law: usize) -> Vec<BondPair> {
+    let mut pairs = Vec::new();
+    s.visit_contacts(&mut |c| {
+        if usize::from(c.interface) != law || c.radius <= 0.0 {
+            return;
+        }
+        let (mut normal, mut shear) = (0.0, 0.0);
+        for (body, arm) in c.bodies.iter().zip(&c.arms) {
+            let inverse = s.inverse_mass(*body as usize);
+            let along: f64 = (0..3).map(|k| inverse[k] * c.normal[k].powi(2)).sum();
+            normal += of_deforming(s, *body).map_or(along, |inverse| inverse[0]);
+            let arm = Vector3::from(*arm).norm();
+            shear += inverse_mass(s, *body) + arm.powi(2) * inverse_inertia(s, *body);
+        }
+        pairs.push(BondPair {
+            radius: c.radius,
+            normal,
+            shear,
+        });
+    });
+    pairs
 }
 
 /// A grain, or a surface of a body: its body, curvature (1/m), inverse mass along the normal and
@@ -150,9 +152,9 @@ struct Candidates {
 
 /// Pairs before there are contacts: each grain with the next one in the scene, or with each surface
 /// where the interface has no pairs of grains.
-fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
+fn of_grains(s: &dyn RunView, law: usize) -> Candidates {
     let governed = |a: &Side, b: &Side| {
-        let found = s.table.get(a.material, b.material);
+        let found = s.table().get(a.material, b.material);
         found.map(usize::from) == Some(law)
     };
     let join = |a: &Side, b: &Side| governed(a, b).then(|| a.with(b));
@@ -166,7 +168,7 @@ fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
     kinds.sort_unstable();
     kinds.dedup();
     let own = |g: &&Side| {
-        let with = |kind: &u16| s.table.get(g.material, *kind).map(usize::from) == Some(law);
+        let with = |kind: &u16| s.table().get(g.material, *kind).map(usize::from) == Some(law);
         kinds.iter().any(with)
     };
     let lightest = grains.iter().filter(own);
@@ -194,22 +196,22 @@ fn of_grains<S: Space>(s: &Simulation<S>, law: usize) -> Candidates {
     out
 }
 
-fn grains<S: Space>(s: &Simulation<S>) -> Vec<Side> {
+fn grains(s: &dyn RunView) -> Vec<Side> {
     // A point of a grain that deforms is as large as what it stands for.
-    let balls = s.shapes.balls.iter().map(|b| {
+    let balls = s.balls().into_iter().map(|b| {
         let size = match b.radius > 0.0 {
             true => b.radius,
-            false => point_radius::<S>(b.area.norm()),
+            false => point_radius(s.dimension(), Vector3::from(b.area).norm()),
         };
         (b.body, size, b.material)
     });
     let balls = balls.filter(|(_, size, _)| *size > 0.0);
-    let pieces = s.shapes.pieces.iter();
+    let pieces = s.pieces().into_iter();
     let pieces = pieces.map(|p| (p.body, p.size, p.material));
     let side = |(body, radius, material): (u32, f64, u16)| {
         let inverse = inverse_mass(s, body);
         let arm = match of_deforming(s, body) {
-            Some(_) => s.state.bodies.length[body as usize],
+            Some(_) => s.bodies().length[body as usize],
             None => radius,
         };
         let turning = arm * arm * inverse_inertia(s, body);
@@ -225,9 +227,9 @@ fn grains<S: Space>(s: &Simulation<S>) -> Vec<Side> {
 }
 
 /// One surface for each material and mass.
-fn surfaces<S: Space>(s: &Simulation<S>) -> Vec<Side> {
+fn surfaces(s: &dyn RunView) -> Vec<Side> {
     let mut out: Vec<Side> = Vec::new();
-    for surface in &s.shapes.surfaces {
+    for surface in s.surfaces() {
         let normal = inverse_mass(s, surface.body);
         let known = |x: &Side| x.material == surface.material && x.normal == normal;
         if !out.iter().any(known) {
@@ -245,25 +247,25 @@ fn surfaces<S: Space>(s: &Simulation<S>) -> Vec<Side> {
 
 /// Inverse mass and moment of inertia of a grain that deforms, as the rigid ball (2D: disk) of its
 /// mass; none of other bodies.
-fn of_deforming<S: Space>(s: &Simulation<S>, body: u32) -> Option<[f64; 2]> {
-    let (bodies, b) = (&s.state.bodies, body as usize);
+fn of_deforming(s: &dyn RunView, body: u32) -> Option<[f64; 2]> {
+    let (bodies, b) = (s.bodies(), body as usize);
     bodies.carrier(b).filter(|carrier| carrier.grain)?;
     let (mass, radius) = (bodies.mass[b], bodies.length[b]);
-    let share = if S::D == 2 { 0.5 } else { 0.4 };
+    let share = if s.dimension() == 2 { 0.5 } else { 0.4 };
     Some([1.0 / mass, 1.0 / (share * mass * radius * radius)])
 }
 
-fn inverse_inertia<S: Space>(s: &Simulation<S>, body: u32) -> f64 {
-    let rigid = s.state.bodies.inverse_inertia[body as usize];
+fn inverse_inertia(s: &dyn RunView, body: u32) -> f64 {
+    let rigid = s.bodies().inverse_inertia[body as usize];
     of_deforming(s, body).map_or(rigid, |inverse| inverse[1])
 }
 
-fn inverse_mass<S: Space>(s: &Simulation<S>, body: u32) -> f64 {
+fn inverse_mass(s: &dyn RunView, body: u32) -> f64 {
     if let Some([inverse, _]) = of_deforming(s, body) {
         return inverse;
     }
-    let inverse = &s.state.bodies.inverse_mass[body as usize];
-    (0..S::D).map(|k| inverse[k]).fold(0.0, f64::max)
+    let inverse = s.inverse_mass(body as usize);
+    inverse.into_iter().fold(0.0, f64::max)
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

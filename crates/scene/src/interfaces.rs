@@ -10,11 +10,10 @@ use super::source::{InputError, Source, ValidationError, nearest};
 use super::wear_coefficient::WearCoefficient;
 use fretwork_abi::{FLAG_2D_ONLY, FLAG_3D_ONLY};
 use fretwork_core::contact::detect::LawTable;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::{
     AreaRule, BondRule, Interface, Kind, LawError, Loaded, Plugin, SearchPath,
 };
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The interfaces of a case, and the materials they govern.
@@ -133,12 +132,12 @@ fn laws_of(spec: &InterfaceSpec) -> impl Iterator<Item = (Kind, &str)> {
 const LISTED: usize = 50;
 
 /// Pairs of materials in the scene without an interface: their bodies pass through each other.
-pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String> {
+pub fn without_interface(case: &Case, s: &dyn RunView) -> Vec<String> {
     let materials: Vec<&String> = case.materials.keys().collect();
     let mut bodies = vec![BTreeSet::new(); materials.len()];
-    let balls = s.shapes.balls.iter().map(|b| (b.material, b.body));
-    let pieces = s.shapes.pieces.iter().map(|p| (p.material, p.body));
-    let surfaces = s.shapes.surfaces.iter().map(|f| (f.material, f.body));
+    let balls = s.balls().into_iter().map(|b| (b.material, b.body));
+    let pieces = s.pieces().into_iter().map(|p| (p.material, p.body));
+    let surfaces = s.surfaces().into_iter().map(|f| (f.material, f.body));
     for (material, body) in balls.chain(pieces).chain(surfaces) {
         let of = &mut bodies[usize::from(material)];
         // Contact within a material needs two bodies of it.
@@ -153,7 +152,7 @@ pub fn without_interface<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<String
     for (k, a) in used.iter().enumerate() {
         for b in &used[k..] {
             let can_touch = a != b || bodies[*a].len() > 1;
-            if !can_touch || s.table.get(*a as u16, *b as u16).is_some() {
+            if !can_touch || s.table().get(*a as u16, *b as u16).is_some() {
                 continue;
             }
             if out.len() == LISTED {

@@ -43,7 +43,7 @@ pub mod standard;
 pub mod units;
 pub mod wear_coefficient;
 
-pub use build::{Built, Dimensional, Loaded, Scene, load, load_reader, load_text};
+pub use build::{Built, Loaded, load, load_reader, load_text};
 pub use builder::CaseBuilder;
 pub use case::Case;
 pub use fretwork_core::geometry::space::{Dim2, Dim3};

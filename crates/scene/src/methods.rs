@@ -1,10 +1,9 @@
 //! Which solvers support a case, determined before it runs.
 
-use fretwork_core::geometry::space::Space;
 use fretwork_core::laws::demand::{LawRequirements, Requirement};
 use fretwork_core::solve::local::solver::Method;
 use fretwork_core::solve::{Features, refusal};
-use fretwork_core::step::Simulation;
+use fretwork_core::view::RunView;
 
 /// Whether a solver supports a case.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,10 +22,10 @@ pub struct Demands(Vec<(String, Option<LawRequirements>)>);
 
 impl Demands {
     /// Determines the requirements by trial calls of the laws.
-    pub fn of<S: Space>(simulation: &Simulation<S>) -> Self {
-        let shapes = &simulation.shapes;
-        let pieces = shapes.pieces.iter().map(|p| p.size);
-        let radii = shapes.balls.iter().map(|b| b.radius).chain(pieces);
+    pub fn of(simulation: &dyn RunView) -> Self {
+        let pieces = simulation.pieces().into_iter().map(|p| p.size);
+        let balls = simulation.balls().into_iter().map(|b| b.radius);
+        let radii = balls.chain(pieces);
         let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
         // Two grains of the smallest radius, and the largest grain against a flat body.
         let radii = if high > 0.0 {
@@ -35,10 +34,10 @@ impl Demands {
             [1e-3, 1.0]
         };
         let ask = |law: &fretwork_core::laws::Interface| {
-            let demand = law.demand(S::D as u32, &radii).ok();
+            let demand = law.demand(simulation.dimension() as u32, &radii).ok();
             (law.name.clone(), demand)
         };
-        Self(simulation.laws.iter().map(ask).collect())
+        Self(simulation.laws().iter().map(ask).collect())
     }
 
     /// Names and requirements of the interfaces.

@@ -7,7 +7,8 @@ use fretwork_core::contact::{ContactId, ContactNames};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space};
 use fretwork_core::laws::{BuiltInLaws, SearchPath};
 use fretwork_core::step::{Simulation, State};
-use fretwork_scene::{Scene, load};
+use fretwork_core::view::AnySimulation;
+use fretwork_scene::load;
 use std::collections::{BTreeMap, BTreeSet};
 
 fn path() -> SearchPath {
@@ -17,7 +18,7 @@ fn path() -> SearchPath {
 }
 
 /// A case of grains on a plane, which are listed as given.
-fn scene(name: &str, dimension: usize, group: &str, grains: &[String]) -> Scene {
+fn scene(name: &str, dimension: usize, group: &str, grains: &[String]) -> AnySimulation {
     let (normal, gravity) = match dimension {
         2 => ("[0.0, 1.0]", "[0.0, -9.81]"),
         _ => ("[0.0, 0.0, 1.0]", "[0.0, 0.0, -9.81]"),
@@ -35,21 +36,15 @@ fn scene(name: &str, dimension: usize, group: &str, grains: &[String]) -> Scene 
     std::fs::write(&file, text).unwrap();
     let built = load(&file, &[]).and_then(|loaded| loaded.build(&path()));
     std::fs::remove_file(&file).ok();
-    built.unwrap_or_else(|e| panic!("{e}"))
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
 }
 
-fn plane(scene: Scene) -> Simulation<Dim2> {
-    match scene {
-        Scene::Dim2(built) => built.simulation,
-        Scene::Dim3(_) => panic!("the case has two dimensions"),
-    }
+fn plane(simulation: AnySimulation) -> Simulation<Dim2> {
+    simulation.into_dimension().unwrap()
 }
 
-fn solid(scene: Scene) -> Simulation<Dim3> {
-    match scene {
-        Scene::Dim3(built) => built.simulation,
-        Scene::Dim2(_) => panic!("the case has three dimensions"),
-    }
+fn solid(simulation: AnySimulation) -> Simulation<Dim3> {
+    simulation.into_dimension().unwrap()
 }
 
 fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {

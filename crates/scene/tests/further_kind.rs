@@ -7,12 +7,13 @@
 use fretwork_abi as abi;
 use fretwork_core::certify::certify;
 use fretwork_core::geometry::space::{Space, VectorLike};
+use fretwork_core::in_dimension;
 use fretwork_core::laws::commit::SlotCommit;
 use fretwork_core::laws::kind::{CertificateSpec, CheckSet, Domain, commit_record};
 use fretwork_core::laws::kind::{fits_always, no_outputs};
 use fretwork_core::laws::{BuiltInLaws, Call, Kind, KindSpec, LawError, Loaded, SearchPath};
 use fretwork_core::step::Simulation;
-use fretwork_scene::{Scene, load};
+use fretwork_scene::load;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -153,10 +154,8 @@ fn case(name: &str, sets: &[String], steps: u32) -> (Vec<u64>, f64) {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../cases");
     let loaded = load(&folder.join(format!("{name}.ron")), sets);
     let built = loaded.and_then(|l| l.build(&path()));
-    match built.unwrap_or_else(|e| panic!("{name}: {e}")) {
-        Scene::Dim2(mut b) => run(&mut b.simulation, steps),
-        Scene::Dim3(mut b) => run(&mut b.simulation, steps),
-    }
+    let mut built = built.unwrap_or_else(|e| panic!("{name}: {e}"));
+    in_dimension!(&mut built.simulation, |s| run(s, steps))
 }
 
 #[test]

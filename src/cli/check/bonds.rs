@@ -2,11 +2,10 @@
 //! the strength of a bond, its slide per step, and how well its oscillation is resolved.
 
 use super::load::Load;
-use crate::geometry::space::Space;
+use crate::RunView;
 use crate::laws::bench::Bench;
 use crate::laws::bench::scale::{BondScale, Mode};
 use crate::scene::bond_sites::BondSites;
-use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::step::Coupling;
 
@@ -33,10 +32,9 @@ const BRITTLE: f64 = 1.05;
 const USUAL_SPEED: f64 = 1e-3;
 
 /// Report lines on the bonds of every interface that has a cohesion law.
-pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'static str, String)> {
-    let s = &built.simulation;
+pub fn lines(case: &Case, s: &dyn RunView, load: &Load) -> Vec<(&'static str, String)> {
     let mut out = Vec::new();
-    for (place, law) in s.laws.iter().enumerate() {
+    for (place, law) in s.laws().iter().enumerate() {
         if !law.opens() || (law.bonding_time().is_none() && law.healing.is_none()) {
             continue;
         }
@@ -45,7 +43,7 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'sta
             continue;
         };
         let speed = load.speed.as_ref().map_or(USUAL_SPEED, |s| s.0);
-        let mut bench = Bench::new(law.clone(), S::D as u32, sites.radius);
+        let mut bench = Bench::new(law.clone(), s.dimension() as u32, sites.radius);
         let where_from = match sites.contacts {
             0 => "no contact yet, estimated from the grains".to_owned(),
             n => format!("{n} contacts at the start"),

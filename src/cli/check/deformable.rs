@@ -1,28 +1,24 @@
 //! Deformable bodies: their size, what their solutions take in memory, and what these cost in a
 //! step.
 
-use crate::bodies::{DynamicalSystem, SystemSize};
-use crate::geometry::space::{Space, VectorLike};
-use crate::step::Simulation;
+use crate::RunView;
+use crate::bodies::SystemSize;
 use cpu_time::ThreadTime;
-use fretwork_core::bodies::SystemStep;
+use fretwork_core::view::SystemView;
 
 /// Operations of a factorisation above which it is not timed: it would take more than some tenths
 /// of a second.
 const MOST_TIMED: f64 = 5e8;
 
 /// The lines of all deformable bodies: label and text.
-pub(super) fn lines<S: Space>(s: &Simulation<S>, timed: bool) -> Vec<(&'static str, String)> {
-    let systems = (0..s.state.systems.len()).filter_map(|k| s.state.systems.get(k));
+pub(super) fn lines(s: &dyn RunView, timed: bool) -> Vec<(&'static str, String)> {
+    let systems = (0..s.system_count()).filter_map(|k| s.system(k));
     let (grains, systems): (Vec<_>, Vec<_>) = systems.partition(|system| system.is_grain());
     let mut out = Vec::new();
     if !grains.is_empty() {
         let coordinates: usize = grains.iter().map(|g| g.freedoms()).sum();
-        let points = s
-            .shapes
-            .balls
-            .iter()
-            .filter(|b| b.area != S::Vector::zero());
+        let balls = s.balls().into_iter();
+        let points = balls.filter(|b| b.area != [0.0; 3]);
         let sizes = grains.iter().filter_map(|g| g.size());
         let text = format!(
             "{}: {coordinates} coordinates, {} points of surfaces; memory: compliance of surfaces up to {}; modes were found once for all balls, and for each polygon or polyhedron of its own",
@@ -33,35 +29,27 @@ pub(super) fn lines<S: Space>(s: &Simulation<S>, timed: bool) -> Vec<(&'static s
         out.push(("deformable grains", text));
     }
     for system in systems {
-        out.push(shape(system));
+        out.push(shape(&*system));
         let Some(size) = system.size() else { continue };
-        out.push(("", memory(system, &size)));
-        let step = SystemStep {
-            time: s.state.time,
-            h: s.options.scheme.h,
-            theta: s.options.scheme.theta,
-            gravity: s.state.gravity,
-        };
-        let times = (timed && size.operations[0] < MOST_TIMED).then(|| clock(system, &step));
+        out.push(("", memory(s.dimension(), &*system, &size)));
+        let times = (timed && size.operations[0] < MOST_TIMED).then(|| clock(&*system));
         out.push(("", cost(&size, times)));
     }
     out
 }
 
-fn shape<S: Space>(system: &dyn DynamicalSystem<S>) -> (&'static str, String) {
+fn shape(system: &dyn SystemView) -> (&'static str, String) {
     let (name, contactors) = (system.name(), system.contactors().len());
-    match system.deformed_mesh() {
+    match system.mesh_size() {
         None => {
             let coordinates = system.freedoms();
             let text = format!("{name}: {coordinates} coordinates; {contactors} contactors");
             ("half-space", text)
         }
-        Some(mesh) => {
+        Some([points, elements]) => {
+            let coordinates = system.freedoms();
             let text = format!(
-                "{name}: {} points, {} elements, {} coordinates; {contactors} contactors",
-                mesh.points.len(),
-                mesh.elements.len() / (S::D + 1),
-                system.freedoms(),
+                "{name}: {points} points, {elements} elements, {coordinates} coordinates; {contactors} contactors"
             );
             ("deformable body", text)
         }
@@ -87,7 +75,7 @@ fn scaled(mut value: f64, units: [&str; 4]) -> String {
     format!("{value:.digits$}{unit}")
 }
 
-fn memory<S: Space>(system: &dyn DynamicalSystem<S>, size: &SystemSize) -> String {
+fn memory(dimension: usize, system: &dyn SystemView, size: &SystemSize) -> String {
     let unknowns = size.unknowns;
     if size.factor == 0 {
         let cells = match size.surface {
@@ -99,12 +87,11 @@ fn memory<S: Space>(system: &dyn DynamicalSystem<S>, size: &SystemSize) -> Strin
             bytes(size.matrix)
         );
     }
-    let points = system.touching_surface().map_or(0, |s| s.points.len());
+    let points = system.surface_points();
     let surface = match (points, size.surface) {
         (0, _) => String::new(),
         (_, 0) => format!(
-            "; the compliance of its {points} points on the surface is too large to be kept, and each touched point takes {} solutions a step",
-            S::D
+            "; the compliance of its {points} points on the surface is too large to be kept, and each touched point takes {dimension} solutions a step"
         ),
         (_, all) => format!(
             ", compliance of the surface {} a point that was touched, {} for all {points}",
@@ -120,22 +107,14 @@ fn memory<S: Space>(system: &dyn DynamicalSystem<S>, size: &SystemSize) -> Strin
 }
 
 /// Processor times of a factorisation and of a solution (s).
-fn clock<S: Space>(system: &dyn DynamicalSystem<S>, step: &SystemStep<S>) -> [f64; 2] {
-    let mut copy = system.clone_box();
+fn clock(system: &dyn SystemView) -> [f64; 2] {
+    let mut trial = system.trial();
     let begun = ThreadTime::now();
-    copy.begin_step(step);
-    copy.linearise(step);
+    trial.linearise();
     let factorised = begun.elapsed().as_secs_f64();
-    let mut impulse = vec![0.0; copy.freedoms()];
-    for contactor in copy.contactors() {
-        for (node, _) in contactor.nodes.terms() {
-            let mut push = S::Vector::zero();
-            push[S::D - 1] = 1.0;
-            copy.add_impulse(node, &push, &mut impulse);
-        }
-    }
+    trial.push();
     let begun = ThreadTime::now();
-    copy.solve(&mut impulse);
+    trial.solve();
     [factorised, begun.elapsed().as_secs_f64()]
 }
 

@@ -1,19 +1,15 @@
 //! Features that a case enables or leaves disabled, and the memory per grain and contact.
 
-use crate::bodies::{Bodies, Dof};
-use crate::contact::Bond;
-use crate::geometry::shape::Ball;
-use crate::geometry::space::{Space, VectorLike};
+use crate::bodies::Dof;
 use crate::laws::Interface;
 use crate::laws::demand::{LawRequirements, Requirement};
 use crate::record::{meshes, views};
-use crate::scene::build::Built;
 use crate::scene::case::{BodySpec, Case};
 use crate::scene::methods::Demands;
 use crate::scene::phases::{drives_of, drives_of_holder, holder_name};
-use crate::solve::Problem;
 use crate::step::Coupling;
-use crate::step::Simulation;
+use crate::{AnySimulation, RunView};
+use fretwork_core::in_dimension;
 
 /// Names of the enabled and disabled features.
 #[derive(Default)]
@@ -24,14 +20,14 @@ pub struct Features {
 
 impl Features {
     /// The features of a case and its scene.
-    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
-        let s = &built.simulation;
+    pub fn of(case: &Case, simulation: &AnySimulation) -> Self {
+        let s = simulation.view();
         let mut out = Self::default();
         out.motion(s);
         out.programme(case, s);
         out.laws(s);
         out.scheme(case, s);
-        out.output(case, &built.simulation);
+        out.output(case, simulation);
         out
     }
 
@@ -42,31 +38,33 @@ impl Features {
         }
     }
 
-    fn motion<S: Space>(&mut self, s: &Simulation<S>) {
-        let text = format!("{} velocities, {} spins a body", S::D, S::Spin::N);
+    fn motion(&mut self, s: &dyn RunView) {
+        let velocities = s.dimension();
+        let spins = if velocities == 2 { 1 } else { 3 };
+        let text = format!("{velocities} velocities, {spins} spins a body");
         self.say("dimensions", Some(text));
-        let turning = s.state.bodies.inverse_inertia.iter().filter(|i| **i > 0.0);
+        let turning = s.bodies().inverse_inertia.iter().filter(|i| **i > 0.0);
         let turning = turning.count();
         // Only a contact whose force does not pass through the centre exerts a moment.
-        let levers = s.state.network.contacts.iter().any(|c| !c.central);
-        let turned = levers || asks(s, |d| d.friction) || s.laws.iter().any(Interface::opens);
+        let levers = has_levers(s);
+        let turned = levers || asks(s, |d| d.friction) || s.laws().iter().any(Interface::opens);
         let text = format!("{turning} bodies turn freely");
         self.say("rotation", (turned && turning > 0).then_some(text));
         let axes: Vec<&str> = ["x", "y", "z"]
             .into_iter()
-            .zip(s.shapes.periodic.period)
+            .zip(s.periodic().period)
             .filter_map(|(name, period)| period.map(|_| name))
             .collect();
         self.say(
             "periodic",
             (!axes.is_empty()).then(|| format!("along {}", axes.join(", "))),
         );
-        let g = s.state.gravity.norm();
+        let g = super::load::gravity(s);
         self.say("gravity", (g > 0.0).then(|| format!("{g:.3e} m/s^2")));
     }
 
     /// Changes during the run, and external loads.
-    fn programme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
+    fn programme(&mut self, case: &Case, s: &dyn RunView) {
         let phases = case.phases.iter().map(|p| match &p.repeat {
             None => p.name.clone(),
             Some(r) => match r.from.as_ref().filter(|from| **from != p.name) {
@@ -75,7 +73,7 @@ impl Features {
             },
         });
         self.list("phases", phases);
-        let names = BodySpec::names(S::D);
+        let names = BodySpec::names(s.dimension());
         let drives = |which: fn(&Dof) -> bool| {
             let mut found: Vec<String> = Vec::new();
             for body in &case.bodies {
@@ -115,16 +113,15 @@ impl Features {
         self.list("imposed force", drives(|d| matches!(d, Dof::Force(_))));
         let servo = |d: &Dof| matches!(d, Dof::Pressure { .. });
         self.list("servo pressure", drives(servo));
-        let gates = s.state.control.gates.iter();
-        let timed = gates
-            .map(|(place, time)| format!("{} at {time:e} s", s.state.bodies.driven[*place].name));
+        let (gates, driven) = (s.gates().iter(), s.bodies().driven);
+        let timed = gates.map(|(place, time)| format!("{} at {time:e} s", driven[*place].name));
         let opened = case.phases.iter().flat_map(|p| {
             let open = p.open.iter();
             open.map(|body| format!("{body} with phase {}", p.name))
         });
         self.list("gates", timed.chain(opened));
-        let turns = s.state.control.gravity_drive.is_some()
-            || case.phases.iter().any(|p| p.gravity_drive.is_some());
+        let turns =
+            s.gravity_drive().is_some() || case.phases.iter().any(|p| p.gravity_drive.is_some());
         self.say(
             "gravity that changes",
             turns.then(|| "by its drive".to_owned()),
@@ -136,7 +133,7 @@ impl Features {
         self.say(name, (!all.is_empty()).then(|| all.join(", ")));
     }
 
-    fn laws<S: Space>(&mut self, s: &Simulation<S>) {
+    fn laws(&mut self, s: &dyn RunView) {
         let demands = Demands::of(s);
         let names = |which: fn(&LawRequirements) -> Requirement| {
             let each = demands.each().filter_map(|(name, demand)| {
@@ -154,7 +151,7 @@ impl Features {
         self.say("friction", names(|d| d.friction));
         self.say("friction against rotation", names(|d| d.rotation));
         let laws = |text: &dyn Fn(&Interface) -> Option<String>| {
-            let each = s.laws.iter().filter_map(|law| Some((law, text(law)?)));
+            let each = s.laws().iter().filter_map(|law| Some((law, text(law)?)));
             let each: Vec<String> = each.map(|(l, t)| format!("in {}, {t}", l.name)).collect();
             (!each.is_empty()).then(|| each.join("; "))
         };
@@ -163,13 +160,10 @@ impl Features {
         self.say(
             "bonds",
             laws(&|law| {
-                let turn = if law.rotates() {
-                    size_of::<S::Spin>()
-                } else {
-                    0
-                };
+                let memory = s.memory_use();
+                let turn = if law.rotates() { memory.turn } else { 0 };
                 let cohesion = law.cohesion().filter(|_| law.opens() && bonding(law))?;
-                let bytes = size_of::<Bond<S>>() + turn;
+                let bytes = memory.bond + turn;
                 Some(format!("{}, {bytes} bytes a bond", cohesion.plugin.name))
             }),
         );
@@ -188,8 +182,8 @@ impl Features {
                 by.map(|l| l.plugin.name.clone())
             }),
         );
-        let scars = s.state.scars.iter().map(|c| {
-            let vertices = c.vertices().count();
+        let scars = s.scars().into_iter().map(|c| {
+            let vertices = c.vertices;
             format!("{}, {vertices} vertices, {:e} m thick", c.name, c.thickness)
         });
         let scars: Vec<String> = scars.collect();
@@ -217,18 +211,18 @@ impl Features {
         );
     }
 
-    fn scheme<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
-        let share = s.options.correction;
+    fn scheme(&mut self, case: &Case, s: &dyn RunView) {
+        let share = s.options().correction;
         self.say(
             "position correction",
             (share > 0.0).then(|| format!("{share} of a penetration a step")),
         );
-        let bound = s.options.projection;
+        let bound = s.options().projection;
         self.say(
             "projection of overlaps",
             (bound > 0.0).then(|| format!("beyond {bound:e} of the smaller body's length")),
         );
-        let implicit = match s.options.coupling {
+        let implicit = match s.options().coupling {
             Coupling::Implicit { tolerance, .. } => Some(format!("to {tolerance:e}")),
             Coupling::Explicit | Coupling::Midpoint => None,
         };
@@ -260,7 +254,7 @@ impl Features {
         self.say("biaxial test", walls);
     }
 
-    fn output<S: Space>(&mut self, case: &Case, s: &Simulation<S>) {
+    fn output(&mut self, case: &Case, s: &AnySimulation) {
         self.say(
             "circuit of grains",
             case.circuit.as_ref().map(|c| {
@@ -282,8 +276,8 @@ impl Features {
             "frames",
             (o.frames > 0).then(|| format!("{} of {} pixels", o.frames, o.width)),
         );
-        let [grain, contact] = views::bytes(s, case.circuit.is_some());
-        let meshes = match meshes::bytes(case, s) {
+        let [grain, contact] = in_dimension!(s, |s| views::bytes(s, case.circuit.is_some()));
+        let meshes = match in_dimension!(s, |s| meshes::bytes(case, s)) {
             0 => String::new(),
             bytes => format!(", {:.2} MB of deformable bodies", bytes as f64 / 1e6),
         };
@@ -298,29 +292,35 @@ impl Features {
     }
 }
 
-fn asks<S: Space>(s: &Simulation<S>, which: fn(&LawRequirements) -> Requirement) -> bool {
+fn asks(s: &dyn RunView, which: fn(&LawRequirements) -> Requirement) -> bool {
     let demands = Demands::of(s);
     let mut each = demands.each();
     each.any(|(_, d)| d.is_none_or(|d| which(d) != Requirement::Never))
 }
 
+/// Whether the force of a contact does not pass through the centres of its bodies.
+fn has_levers(s: &dyn RunView) -> bool {
+    let mut levers = false;
+    s.visit_contacts(&mut |c| levers |= !c.central);
+    levers
+}
+
 /// Bytes per grain and per contact, from the types that store them.
-pub fn memory<S: Space>(s: &Simulation<S>) -> [String; 2] {
-    let (state, line) = (Bodies::<S>::BYTES, Problem::<S>::BYTES_A_BODY);
-    let kept = state + size_of::<Ball<S>>() + size_of::<S::Vector>();
-    let [plain, full, levers, bonded_levers] = Problem::<S>::BYTES_A_CONTACT;
-    let bonded = s.laws.iter().any(|law| law.cohesion().is_some());
-    let central = s.state.network.contacts.iter().all(|c| c.central);
+pub fn memory(s: &dyn RunView) -> [String; 2] {
+    let memory = s.memory_use();
+    let (kept, line) = (memory.grain, memory.solver_body);
+    let [plain, full, levers, bonded_levers] = memory.rows;
+    let bonded = s.laws().iter().any(|law| law.cohesion().is_some());
     let mut rows = vec![if bonded {
         format!("{full} bytes in the sweep")
     } else {
         format!("{plain} bytes in the sweep")
     }];
-    if !central {
+    if has_levers(s) {
         let levers = if bonded { bonded_levers } else { levers };
         rows.push(format!("{levers} where it has levers"));
     }
-    let beside = Simulation::<S>::BYTES_A_CONTACT + Problem::<S>::BYTES_TO_SORT;
+    let beside = memory.contact;
     [
         format!(
             "{} bytes: {kept} of state, {line} in the solver",

@@ -2,14 +2,12 @@
 
 use super::CheckLine;
 use super::load::Load;
-use crate::geometry::space::Space;
 use crate::heat::{Heat, Node, Store};
 use crate::laws::bench::{Bench, Motion};
 use crate::laws::{Interface, Kind};
-use crate::process::expansion::ThermalExpansion;
-use crate::scene::build::Built;
 use crate::scene::case::Case;
-use crate::step::Simulation;
+use crate::{AnySimulation, RunView};
+use fretwork_core::in_dimension;
 use fretwork_observe::heat::without_heat;
 
 /// Biot number below which the temperature inside a body is taken as uniform (F. P. Incropera, D.
@@ -22,18 +20,18 @@ const UNIFORM: f64 = 0.1;
 const SPLIT: f64 = 0.5;
 
 /// The lines.
-pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckLine> {
-    let s = &built.simulation;
+pub fn lines(case: &Case, simulation: &AnySimulation, load: &Load) -> Vec<CheckLine> {
+    let s = simulation.view();
     let mut out = Vec::new();
     let Some(heat) = s.heat() else {
-        let idle = without_heat(s).into_iter();
+        let idle = in_dimension!(simulation, |s| without_heat(s)).into_iter();
         out.extend(idle.map(|text| ("NO HEAT".to_owned(), text)));
         return out;
     };
     out.push(("heat clock".to_owned(), clock(case, heat)));
     out.extend(sideways(case, heat));
     out.extend(expanding(s, heat));
-    let closed = s.laws.iter().filter(|l| l.transport().is_none());
+    let closed = s.laws().iter().filter(|l| l.transport().is_none());
     let closed: Vec<&str> = closed.map(|l| l.name.as_str()).collect();
     if !closed.is_empty() {
         let text = format!(
@@ -47,15 +45,15 @@ pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<CheckL
         let text = "heat capacities are not scaled with inertia; heat of impacts and damping is that of the scaled masses".to_owned();
         out.push(("heat and inertia".to_owned(), text));
     }
-    for (k, law) in s.laws.iter().enumerate() {
-        out.extend(conduction(case, built, heat, load, (k, law)));
+    for (k, law) in s.laws().iter().enumerate() {
+        out.extend(conduction(case, s, heat, load, (k, law)));
     }
     out
 }
 
 /// What is done with heat, in words.
-pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
-    let (heat, state) = (s.heat()?, s.state.heat.as_ref()?);
+pub fn stores(s: &dyn RunView) -> Option<String> {
+    let (heat, state) = (s.heat()?, s.heat_state()?);
     let of = |(name, range): &(String, std::ops::Range<usize>)| {
         let nodes = &state.nodes[range.clone()];
         let column = |n: &Node| matches!(n.store, Store::HalfSpace(_));
@@ -77,7 +75,7 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
         format!("{name} {what}")
     };
     let bodies: Vec<String> = heat.first_bodies.iter().map(of).collect();
-    let grains = match s.state.bodies.grains().count() {
+    let grains = match s.grains().len() {
         0 => String::new(),
         1 => "1 grain of one temperature; ".to_owned(),
         n => format!("{n} grains of one temperature each; "),
@@ -86,27 +84,26 @@ pub fn stores<S: Space>(s: &Simulation<S>) -> Option<String> {
 }
 
 /// Which bodies expand with their temperature, and which first bodies do not.
-fn expanding<S: Space>(s: &Simulation<S>, heat: &Heat) -> Option<CheckLine> {
-    let expansion = ThermalExpansion::of(s)?;
-    let bodies = &s.state.bodies;
-    let expands = |body: usize| expansion.coefficient[body] != 0.0;
-    let grains = bodies.grains().filter(|g| expands(*g)).count();
-    let driven = bodies.driven.iter();
+fn expanding(s: &dyn RunView, heat: &Heat) -> Option<CheckLine> {
+    let (coefficient, systems) = s.expanding()?;
+    let expands = |body: usize| coefficient[body] != 0.0;
+    let grains = s.grains().into_iter().filter(|g| expands(*g)).count();
+    let driven = s.bodies().driven.iter();
     let rigid = driven.filter(|d| expands(d.body as usize));
-    let mut named: Vec<&str> = rigid.map(|d| d.name.as_str()).collect();
-    let systems = expansion.systems.iter();
-    named.extend(systems.filter_map(|e| Some(s.state.systems.get(e.system)?.name())));
-    let firsts = heat.first_bodies.iter().map(|(name, _)| name.as_str());
-    let others: Vec<&str> = firsts.filter(|name| !named.contains(name)).collect();
+    let mut named: Vec<String> = rigid.map(|d| d.name.clone()).collect();
+    let systems = systems.into_iter().filter_map(|k| s.system(k));
+    named.extend(systems.map(|system| system.name().to_owned()));
+    let firsts = heat.first_bodies.iter().map(|(name, _)| name);
+    let others: Vec<&str> = firsts
+        .filter(|name| !named.contains(name))
+        .map(String::as_str)
+        .collect();
     let grains = match grains {
         0 => None,
         1 => Some("1 grain".to_owned()),
         n => Some(format!("{n} grains")),
     };
-    let all = grains
-        .into_iter()
-        .chain(named.iter().map(|n| (*n).to_owned()));
-    let all: Vec<String> = all.collect();
+    let all: Vec<String> = grains.into_iter().chain(named.iter().cloned()).collect();
     let mut text = format!("size changes with temperature: {}", all.join(", "));
     if !others.is_empty() {
         text += &format!("; size stays: {}", others.join(", "));
@@ -159,12 +156,12 @@ const COUNTING: [(Kind, &str, &str); 2] = [
 ];
 
 /// Laws that count time or speed of the mechanics where heat has a clock of its own.
-fn mechanical_time<S: Space>(s: &Simulation<S>, heat: &Heat) -> Vec<CheckLine> {
+fn mechanical_time(s: &dyn RunView, heat: &Heat) -> Vec<CheckLine> {
     let mut out: Vec<CheckLine> = Vec::new();
     if heat.clock == 1.0 {
         return out;
     }
-    for law in &s.laws {
+    for law in s.laws() {
         for loaded in law.loaded() {
             let plugin = &loaded.plugin;
             let counts = COUNTING
@@ -185,14 +182,13 @@ fn mechanical_time<S: Space>(s: &Simulation<S>, heat: &Heat) -> Vec<CheckLine> {
 
 /// Conductance of the median contact of an interface under the load, its Biot number, and the time
 /// in which a grain takes the temperature of its neighbours.
-fn conduction<S: Space>(
+fn conduction(
     case: &Case,
-    built: &Built<S>,
+    s: &dyn RunView,
     heat: &Heat,
     load: &Load,
     (place, law): (usize, &Interface),
 ) -> Vec<CheckLine> {
-    let s = &built.simulation;
     let (Some(_), Some((pressure, _))) = (law.transport(), load.pressure) else {
         return Vec::new();
     };
@@ -208,20 +204,19 @@ fn conduction<S: Space>(
     let diameter = 2.0 * radius;
     // Of equal grains; of one on a surface its radius.
     let grains = |name: &String| {
-        s.shapes
-            .balls
-            .iter()
-            .map(|b| (b.body, b.material))
-            .chain(s.shapes.pieces.iter().map(|p| (p.body, p.material)))
-            .filter(|(body, _)| s.state.bodies.driven.iter().all(|d| d.body != *body))
+        let pieces = s.pieces().into_iter().map(|p| (p.body, p.material));
+        let balls = s.balls().into_iter().map(|b| (b.body, b.material));
+        balls
+            .chain(pieces)
+            .filter(|(body, _)| s.bodies().driven.iter().all(|d| d.body != *body))
             .any(|(_, m)| Some(usize::from(m)) == index(name))
     };
     let both = grains(&spec.between.0) && grains(&spec.between.1);
     let reduced = if both { 0.5 * radius } else { radius };
     let conductivity = a.pair_conductivity(b);
-    let mut bench = Bench::new(law.clone(), S::D as u32, reduced)
+    let mut bench = Bench::new(law.clone(), s.dimension() as u32, reduced)
         .of_material([conductivity, a.pair_resistivity(b)]);
-    let force = pressure * diameter.powi(S::D as i32 - 1);
+    let force = pressure * diameter.powi(s.dimension() as i32 - 1);
     let motion = Motion {
         pressure: force / bench.area(),
         ..Motion::default()
@@ -235,7 +230,7 @@ fn conduction<S: Space>(
         let text = format!("{}: nothing under {pressure:.2e} Pa", law.name);
         return vec![("conduction".to_owned(), text)];
     }
-    let (biot, unit, capacity) = match S::D {
+    let (biot, unit, capacity) = match s.dimension() {
         2 => (
             conductance / conductivity,
             "W/(m K)",
@@ -263,11 +258,10 @@ fn conduction<S: Space>(
 }
 
 /// Median radius of the balls and pieces (m).
-fn median_radius<S: Space>(s: &Simulation<S>) -> Option<f64> {
-    let balls = s.shapes.balls.iter().map(|b| b.radius);
-    let mut radii: Vec<f64> = balls
-        .chain(s.shapes.pieces.iter().map(|p| p.size))
-        .collect();
+fn median_radius(s: &dyn RunView) -> Option<f64> {
+    let balls = s.balls().into_iter().map(|b| b.radius);
+    let pieces = s.pieces().into_iter().map(|p| p.size);
+    let mut radii: Vec<f64> = balls.chain(pieces).collect();
     radii.sort_unstable_by(f64::total_cmp);
     radii.get(radii.len() / 2).copied()
 }

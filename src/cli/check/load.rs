@@ -1,11 +1,11 @@
 //! External loads on a scene, as far as the case gives them: sliding speed and pressure.
 
 use crate::bodies::{Dof, TimeFunction};
-use crate::geometry::space::{Space, VectorLike};
 use crate::record::biaxial::Biaxial;
-use crate::scene::build::Built;
 use crate::scene::case::Case;
 use crate::scene::phases::drives_of;
+use crate::{AnySimulation, RunView};
+use fretwork_core::in_dimension;
 use std::f64::consts::TAU;
 
 /// Number of samples of a drive over the run.
@@ -22,13 +22,13 @@ pub struct Load {
 
 impl Load {
     /// The loads of a case and its scene.
-    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
-        let test = friction_pressure(case, built).map(|p| (p, "of the friction test"));
-        let biaxial = || biaxial_pressure(case, built).map(|p| (p, "of the biaxial test"));
+    pub fn of(case: &Case, s: &AnySimulation) -> Self {
+        let test = friction_pressure(case, s).map(|p| (p, "of the friction test"));
+        let biaxial = || biaxial_pressure(case, s).map(|p| (p, "of the biaxial test"));
         let servo = || servo_pressure(case).map(|p| (p, "of the servo"));
-        let weight = || weight(built).map(|p| (p, "estimated from the weight of the grains"));
+        let weight = || weight(s).map(|p| (p, "estimated from the weight of the grains"));
         Self {
-            speed: speed::<S>(case),
+            speed: speed(case),
             pressure: test.or_else(biaxial).or_else(servo).or_else(weight),
         }
     }
@@ -59,11 +59,11 @@ fn peak_speed(dof: &Dof, end: f64) -> f64 {
     each.fold(0.0, f64::max)
 }
 
-fn speed<S: Space>(case: &Case) -> Option<(f64, String)> {
+fn speed(case: &Case) -> Option<(f64, String)> {
     // In a friction test the imposed sliding counts, not the motion along the normal.
     let test = case.friction.as_ref();
     let slide = test.and_then(|t| fastest(case, |name, k| name == t.body && k == t.along));
-    slide.or_else(|| fastest(case, |_, k| k < S::D))
+    slide.or_else(|| fastest(case, |_, k| k < case.dimension as usize))
 }
 
 /// Largest speed of the drives accepted by `counts`, by body and axis.
@@ -83,32 +83,33 @@ fn fastest(case: &Case, counts: impl Fn(&str, usize) -> bool) -> Option<(f64, St
 }
 
 /// Imposed force over the contact area of the test.
-pub fn friction_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
-    let (test, s) = (case.friction.as_ref()?, &built.simulation);
-    let driven = s.state.bodies.driven.iter().find(|d| d.name == test.body)?;
+pub fn friction_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
+    let test = case.friction.as_ref()?;
+    let driven = s.bodies().driven_named(&test.body)?;
     let force = largest(case.time.end, |t| driven.dofs[test.normal].force(t));
-    let pressure = force / friction_area::<S>(case, built)?;
+    let pressure = force / friction_area(case, s)?;
     (pressure > 0.0).then_some(pressure)
 }
 
 /// Contact area of a friction test that is periodic along the sliding (m^2; m in 2D).
-pub fn friction_area<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
-    let (test, s) = (case.friction.as_ref()?, &built.simulation);
-    let period = s.shapes.periodic.period[test.along]?;
-    Some(if S::D == 2 {
+pub fn friction_area(case: &Case, s: &AnySimulation) -> Option<f64> {
+    let test = case.friction.as_ref()?;
+    let periods = s.periodic().period;
+    let period = periods[test.along]?;
+    Some(if s.dimension() == 2 {
         period
     } else {
-        period * s.shapes.periodic.period[3 - test.along - test.normal].unwrap_or(period)
+        period * periods[3 - test.along - test.normal].unwrap_or(period)
     })
 }
 
 /// Lateral force on a square sample of compacity 0.82.
-fn biaxial_pressure<S: Space>(case: &Case, built: &Built<S>) -> Option<f64> {
-    let (spec, s) = (case.biaxial.as_ref()?, &built.simulation);
-    let test = Biaxial::new(spec, s)?;
-    let walls = s.state.bodies.driven.iter();
+fn biaxial_pressure(case: &Case, s: &AnySimulation) -> Option<f64> {
+    let spec = case.biaxial.as_ref()?;
+    let test = in_dimension!(s, |s| Biaxial::new(spec, s))?;
+    let walls = s.bodies().driven.iter();
     let walls = walls.filter(|d| d.name == spec.lateral.0 || d.name == spec.lateral.1);
-    let forces = walls.flat_map(|d| &d.dofs[..S::D]);
+    let forces = walls.flat_map(|d| &d.dofs[..s.dimension()]);
     let force = forces.map(|dof| largest(case.time.end, |t| dof.force(t)));
     let pressure = force.fold(0.0, f64::max) / (test.solid() / 0.82).sqrt();
     (pressure > 0.0 && pressure.is_finite()).then_some(pressure)
@@ -127,29 +128,30 @@ fn servo_pressure(case: &Case) -> Option<f64> {
     (most > 0.0).then_some(most)
 }
 
+/// Magnitude of the acceleration of gravity (m/s^2).
+pub fn gravity(s: &dyn RunView) -> f64 {
+    let squares = s.gravity().into_iter().map(|g| g * g);
+    squares.sum::<f64>().sqrt()
+}
+
 /// Weight of all grains over the base area below them.
-fn weight<S: Space>(built: &Built<S>) -> Option<f64> {
-    let s = &built.simulation;
-    let g = s.state.gravity.norm();
-    let down = (0..S::D).max_by(|a, b| {
-        s.state.gravity[*a]
-            .abs()
-            .total_cmp(&s.state.gravity[*b].abs())
-    })?;
+fn weight(s: &AnySimulation) -> Option<f64> {
+    let g = gravity(s.view());
+    let along = s.gravity();
+    let size = |k: &usize| along[*k].abs();
+    let down = (0..s.dimension()).max_by(|a, b| size(a).total_cmp(&size(b)))?;
+    let (bodies, grains) = (s.bodies(), s.grains());
     let (mut mass, mut area) = (0.0, 1.0);
-    for body in s.state.bodies.grains() {
-        mass += s.state.bodies.mass[body];
+    for body in &grains {
+        mass += bodies.mass[*body];
     }
-    for k in (0..S::D).filter(|k| *k != down) {
+    for k in (0..s.dimension()).filter(|k| *k != down) {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for body in s.state.bodies.grains() {
-            let (x, r) = (
-                s.state.bodies.position[body][k],
-                s.state.bodies.length[body],
-            );
+        for body in &grains {
+            let (x, r) = (s.motion(*body).position[k], bodies.length[*body]);
             (low, high) = (low.min(x - r), high.max(x + r));
         }
-        area *= s.shapes.periodic.period[k].unwrap_or(high - low);
+        area *= s.periodic().period[k].unwrap_or(high - low);
     }
     let pressure = mass * g / area;
     (pressure > 0.0 && pressure.is_finite()).then_some(pressure)

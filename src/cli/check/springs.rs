@@ -2,12 +2,11 @@
 //! stiffness number.
 
 use super::load::Load;
-use crate::geometry::space::Space;
+use crate::RunView;
 use crate::laws::bench::Bench;
 use crate::laws::bench::spring::SpringAnswer;
 use crate::laws::{Interface, LawError};
 use crate::scene::bond_sites::BondSites;
-use crate::scene::build::Built;
 use crate::scene::case::Case;
 
 /// Overlap over the radius of a grain from which grains are too soft: contacts no longer act one by
@@ -21,15 +20,14 @@ const SHOWN: f64 = 0.01;
 const QUANTILES: [f64; 4] = [0.5, 0.75, 0.95, 1.0];
 
 /// Report lines on every interface whose contacts are springs.
-pub fn lines<S: Space>(case: &Case, built: &Built<S>, load: &Load) -> Vec<(&'static str, String)> {
-    let s = &built.simulation;
+pub fn lines(case: &Case, s: &dyn RunView, load: &Load) -> Vec<(&'static str, String)> {
     let mut out = Vec::new();
-    let compliant = s.laws.iter().enumerate().filter(|(_, l)| l.compliant());
+    let compliant = s.laws().iter().enumerate().filter(|(_, l)| l.compliant());
     for (place, law) in compliant {
         let Some(sites) = BondSites::of(s, place) else {
             continue;
         };
-        let text = match text::<S>(law, case.time.step, &sites, load) {
+        let text = match text(s.dimension(), law, case.time.step, &sites, load) {
             Ok(text) => text,
             Err(e) => format!("NOT KNOWN: on the test bench, {e}"),
         };
@@ -50,16 +48,17 @@ struct Pressed {
 
 impl Pressed {
     /// A contact of a reduced radius (m); `None` where the law cannot carry the load.
-    fn find<S: Space>(
+    fn find(
+        dimension: usize,
         law: &Interface,
         reduced: f64,
         load: &Load,
     ) -> Result<Option<Self>, LawError> {
         let radius = 2.0 * reduced;
-        let mut bench = Bench::new(law.clone(), S::D as u32, reduced);
+        let mut bench = Bench::new(law.clone(), dimension as u32, reduced);
         let overlap = match load.pressure.filter(|p| p.0 > 0.0) {
             Some((p, _)) => {
-                let force = p * (2.0 * radius).powi(S::D as i32 - 1);
+                let force = p * (2.0 * radius).powi(dimension as i32 - 1);
                 bench.overlap_under(force)?
             }
             None => Some(SHOWN * radius),
@@ -76,19 +75,20 @@ impl Pressed {
     }
 }
 
-fn text<S: Space>(
+fn text(
+    dimension: usize,
     law: &Interface,
     h: f64,
     sites: &BondSites,
     load: &Load,
 ) -> Result<String, LawError> {
-    let per = if S::D == 2 { "N/m per m" } else { "N/m" };
+    let per = if dimension == 2 { "N/m per m" } else { "N/m" };
     let known = load.pressure.filter(|p| p.0 > 0.0);
     let Some(Pressed {
         radius,
         overlap,
         spring,
-    }) = Pressed::find::<S>(law, sites.radius, load)?
+    }) = Pressed::find(dimension, law, sites.radius, load)?
     else {
         return Ok(String::new());
     };
@@ -96,7 +96,7 @@ fn text<S: Space>(
     let mut kappas = Vec::new();
     for quantile in QUANTILES {
         let pair = sites.pair(quantile);
-        if let Some(contact) = Pressed::find::<S>(law, pair.radius, load)? {
+        if let Some(contact) = Pressed::find(dimension, law, pair.radius, load)? {
             kappas.push(contact.spring.stiffness * pair.normal * h * h);
         }
     }

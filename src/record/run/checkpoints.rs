@@ -2,11 +2,11 @@
 
 use super::clear;
 use super::{Recorder, RunError, unwritable};
-use crate::geometry::space::Space;
 use crate::record::checkpoint::{Kind, LAST, ResumeError, ResumePoint};
 use crate::record::code::{CodeError, decode, encode};
-use crate::step::{ProcessState, State};
+use crate::step::ProcessState;
 use crate::view::Paint;
+use fretwork_core::in_dimension;
 use fretwork_observe::accuracy::AccuracyControl;
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::observer::ObserverState;
@@ -16,12 +16,11 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// State of the run loop, beyond what follows from the case. Rows are in the results file; the
-/// number of rows that belong to this state is stored here.
+/// State of the run loop, beyond what follows from the case and the state of the simulation, behind
+/// which it stands. Rows are in the results file; the number of rows that belong to this state is
+/// stored here.
 #[derive(Serialize, Deserialize)]
-#[serde(bound = "")]
-struct RunLoopState<'a, S: Space> {
-    simulation: Cow<'a, State<S>>,
+struct RunLoopState<'a> {
     /// Number of steps over which states and pictures are distributed.
     spread: u64,
     /// Rows and chunks of each growing dataset of the results, in the order of their declaration.
@@ -40,7 +39,7 @@ struct RunLoopState<'a, S: Space> {
     time_spent: TimeSpent,
 }
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Writes a checkpoint of the current state to the results.
     pub(super) fn write_checkpoint(&mut self) -> Result<(), RunError> {
         let begun = Instant::now();
@@ -89,8 +88,8 @@ impl<S: Space> Recorder<'_, S> {
 
     fn state(&mut self) -> Result<Vec<u8>, RunError> {
         let rows = self.results.rows()?;
-        Ok(encode(&RunLoopState {
-            simulation: Cow::Borrowed(&self.simulation.state),
+        let mut bytes = self.simulation.save()?;
+        bytes.extend(encode(&RunLoopState {
             spread: self.spread,
             rows,
             paints: Cow::Borrowed(self.camera.paints()),
@@ -104,7 +103,8 @@ impl<S: Space> Recorder<'_, S> {
             wall: self.elapsed_before_resume.0 + self.clock.elapsed(),
             processor: self.elapsed_before_resume.1 + self.processor.elapsed(),
             time_spent: self.summary.run.time_spent,
-        })?)
+        })?);
+        Ok(bytes)
     }
 
     /// Restores the state of a stopped run, and its rows up to there, in a new file that then
@@ -115,10 +115,9 @@ impl<S: Space> Recorder<'_, S> {
             path: path.clone(),
             source,
         };
-        let state: RunLoopState<'_, S> = decode(&stop.state).map_err(refused)?;
-        if !self.simulation.restore(state.simulation.into_owned()) {
-            return Err(refused(CodeError::other("bodies or laws")).into());
-        }
+        let restored = self.simulation.restore(&stop.state).map_err(refused)?;
+        let other = || refused(CodeError::other("bodies or laws"));
+        let state: RunLoopState<'_> = decode(restored.ok_or_else(other)?).map_err(refused)?;
         let processes = self.simulation.restore_processes(&state.processes);
         processes.map_err(refused)?;
         self.observers.restore(&state.observers).map_err(refused)?;
@@ -127,7 +126,7 @@ impl<S: Space> Recorder<'_, S> {
         (self.done, self.resumed_at) = (state.done, state.done);
         self.accuracy = state.accuracy.into_owned();
         if let Some(accuracy) = &mut self.accuracy {
-            accuracy.resume(&mut self.simulation);
+            in_dimension!(&mut self.simulation, |s| accuracy.resume(s));
         }
         (self.problems, self.unconverged) = (state.problems, state.unconverged);
         self.estimate = state.estimate.into_owned();

@@ -1,11 +1,10 @@
 //! Output of steps as FCLIB problems.
 
 use super::{Recorder, RunError, unwritable};
-use crate::geometry::space::Space;
 use crate::record::fclib;
 use crate::step::StepReport;
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Writes the contact problem of a step as an FCLIB file.
     pub(super) fn write_problem(&mut self, step: u64, report: &StepReport) -> Result<(), RunError> {
         self.lock.kept()?;
@@ -22,19 +21,23 @@ impl<S: Space> Recorder<'_, S> {
         std::fs::create_dir_all(&folder).map_err(|e| unwritable(&folder, &e))?;
         let (case, s) = (&self.loaded.case, &self.simulation);
         let title = format!("{}, step {step}", case.name);
-        let per = if S::D == 2 { " per m of depth" } else { "" };
+        let per = if s.dimension() == 2 {
+            " per m of depth"
+        } else {
+            ""
+        };
         let description = format!(
             "u: velocities of the candidate of a contact relative to its antagonist, (n, t) or (n, t1, t2), n \
              towards the candidate (m/s); u_n includes the step's shift (an open gap over h, the correction \
              of a penetration, restitution). r: impulses of the step times {scale:e}, so that the mean \
              normal diagonal of W is 1; r/{scale:e} is in N s{per}. Step {:e} s, theta {}, time {:e} s; solved \
              in the run by {} to an error of {:.1e}, {}.",
-            s.options.scheme.h,
-            s.options.scheme.theta,
-            s.state.time,
+            s.options().scheme.h,
+            s.options().scheme.theta,
+            s.time(),
             report.solver.used.name(),
             report.solver.error,
-            s.options.solver.norm.formula(),
+            s.options().solver.norm.formula(),
         );
         fclib::write_local(&path, &problem, &title, &description)
             .map_err(|e| unwritable(&path, &e))?;

@@ -7,13 +7,13 @@
 
 use super::end::{self, LAST};
 use super::{Recorder, RunError};
-use crate::geometry::space::Space;
 use crate::laws::watch::{self, Ready};
 use crate::record::results::Results;
 use crate::record::statistics::Table;
 use crate::record::summary::{Summary, Uncertainty};
 use crate::step::StepReport;
 use cpu_time::ProcessTime;
+use fretwork_core::in_dimension;
 use fretwork_observe::Observers;
 use fretwork_observe::error_estimate::Repeats;
 use fretwork_store::folder_lock::FolderLock;
@@ -75,11 +75,11 @@ impl UnsavedOutputs {
     }
 }
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// A step, during which the watch can save what was recorded.
     pub(super) fn step(&mut self) -> Result<StepReport, RunError> {
         let begun = Instant::now();
-        self.observers.before_step(&self.simulation);
+        self.observers.before_step(self.simulation.view());
         let outputs = UnsavedOutputs {
             table: std::mem::take(&mut self.table),
             results: std::mem::take(&mut self.results),
@@ -91,7 +91,9 @@ impl<S: Space> Recorder<'_, S> {
         let place = || place.lock().unwrap_or_else(|e| e.into_inner());
         *place() = Some(outputs);
         // A law may not come back from a repeated step either.
-        let repeated = self.estimate.before_step(&mut self.simulation, self.done);
+        let repeated = in_dimension!(&mut self.simulation, |s| {
+            self.estimate.before_step(s, self.done)
+        });
         let repeated = repeated.map_err(RunError::from);
         let report = repeated.and_then(|()| self.part());
         // The watch took it just before the law came back: it is written.
@@ -108,16 +110,19 @@ impl<S: Space> Recorder<'_, S> {
     /// A step, or a part of one where the run chooses how many parts it has.
     fn part(&mut self) -> Result<StepReport, RunError> {
         let most = self.until_record();
-        let simulation = &mut self.simulation;
         let Some(control) = &mut self.accuracy else {
-            return Ok(simulation.step()?);
+            return Ok(self.simulation.step()?);
         };
+        let spans = [self.done, self.total];
         let parts = match &mut self.parts {
             Some(parts) => parts,
-            none => none.insert(control.begin_step(simulation, [self.done, self.total], most)?),
+            none => none.insert(in_dimension!(&mut self.simulation, |s| {
+                control.begin_step(s, spans, most)
+            })?),
         };
         let report = loop {
-            if let Some(report) = control.part(simulation, parts)? {
+            let part = in_dimension!(&mut self.simulation, |s| control.part(s, parts));
+            if let Some(report) = part? {
                 break report;
             }
         };

@@ -3,7 +3,6 @@
 use super::error::unreadable;
 use super::notice::band;
 use super::{Recorder, RunError, unwritable};
-use crate::geometry::space::Space;
 use crate::record::checkpoint::Kind;
 pub(super) use crate::record::checkpoint::LAST;
 use crate::record::output::Output;
@@ -18,7 +17,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Writes the final output of a run, however it ended.
     pub(super) fn finish(&mut self) -> Result<(), RunError> {
         self.lock.kept()?;
@@ -29,12 +28,11 @@ impl<S: Space> Recorder<'_, S> {
         run.cpu_seconds = (self.elapsed_before_resume.1 + self.processor.elapsed()).as_secs_f64();
         let mut found = self.observers.report(&self.end(wall));
         self.report_problems(&mut found);
-        let state = &self.simulation.state;
-        let driven = state.bodies.driven.iter();
+        let driven = self.simulation.bodies().driven.iter();
         let driven = driven
-            .map(|d| state.bodies.energy_of(d.body as usize))
+            .map(|d| self.simulation.kinetic_energy(d.body as usize))
             .sum();
-        let repeats = self.estimate.report(&state.energy, driven);
+        let repeats = self.estimate.report(self.simulation.energies(), driven);
         self.uncertainty = Uncertainty::new(&found, repeats);
         self.uncertainty.report(&mut found);
         let accuracy = self.accuracy.as_ref().map(|a| a.report(self.done));
@@ -77,7 +75,7 @@ impl<S: Space> Recorder<'_, S> {
     /// What observers see of the run now that it has ended.
     fn end(&self, wall: Duration) -> RunEnd<'_> {
         RunEnd {
-            simulation: &self.simulation,
+            simulation: self.simulation.view(),
             table: &self.table,
             title: &self.loaded.case.name,
             uncertainty: &self.uncertainty,

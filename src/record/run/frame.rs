@@ -2,9 +2,9 @@
 
 use super::drawing::{self, Picture};
 use super::{Recorder, RunError};
-use crate::geometry::space::Space;
 use crate::step::InDimension;
 use crate::view::quantity;
+use fretwork_core::in_dimension;
 use fretwork_observe::picture::Shows;
 use fretwork_observe::run_state::damage_ratio;
 use std::path::PathBuf;
@@ -12,38 +12,33 @@ use std::path::PathBuf;
 /// Name prefixes of pictures: `frames/NAME_STEP.png`.
 pub(super) const PICTURES: [&str; 5] = ["frame", "shear", "bonds", "circuit", "chains"];
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Has the pictures of a step drawn, beside the steps that follow.
     pub(super) fn draw_pictures(&mut self, step: u64) -> Result<(), RunError> {
         if self.loaded.case.output.frames == 0 {
             return Ok(());
         }
         self.lock.kept()?;
-        let mut caption = vec![format!(
-            "t = {}",
-            quantity(self.simulation.state.time, "s", 4)
-        )];
-        if let Some(phase) = self.simulation.state.control.begun().last() {
+        let mut caption = vec![format!("t = {}", quantity(self.simulation.time(), "s", 4))];
+        if let Some(phase) = self.simulation.begun().last() {
             caption.push(phase.name.clone());
         }
-        caption.extend(self.observers.caption(&self.simulation));
-        if self.simulation.state.network.bonds_made() > 0 {
+        caption.extend(self.observers.caption(self.simulation.view()));
+        if self.simulation.bonds_made() > 0 {
             caption.push(format!(
                 "damage ratio {:.3}",
-                damage_ratio(&self.simulation)
+                in_dimension!(&self.simulation, |s| damage_ratio(s))
             ));
         }
-        self.camera.follow(InDimension::of(&self.simulation));
+        self.camera.follow((&self.simulation).into());
         let mut pictures = vec![("frame", Shows::Scene)];
-        if self.loaded.case.output.layers.is_some()
-            && self.simulation.state.network.bonds_made() > 0
-        {
+        if self.loaded.case.output.layers.is_some() && self.simulation.bonds_made() > 0 {
             pictures.push(("bonds", Shows::Bonds));
         }
-        let own = self.observers.pictures(&self.simulation);
+        let own = self.observers.pictures(self.simulation.view());
         pictures.extend(own.into_iter().map(|p| (p.name, p.shows)));
         let (notice, title) = (self.notice(), &self.loaded.case.name);
-        let simulation = InDimension::of(&self.simulation);
+        let simulation = InDimension::from(&self.simulation);
         let shown = pictures.into_iter().filter_map(|(name, shows)| {
             let Shows::Charts(mut charts) = shows else {
                 let frame = self

@@ -30,12 +30,13 @@ use super::results::Results;
 use super::statistics::{Column, Table};
 use super::summary::{RunFacts, Summary, Uncertainty};
 use super::views;
-use crate::geometry::space::Space;
-use crate::scene::build::{Built, Dimensional, Loaded, Scene};
 use crate::scene::case::Case;
 use crate::scene::processes;
-use crate::step::{InDimension, Simulation, StepReport};
+use crate::scene::{Built, Loaded};
+use crate::step::StepReport;
+use crate::{AnySimulation, RunView};
 use cpu_time::ProcessTime;
+use fretwork_core::in_dimension;
 use fretwork_observe::accuracy::{AccuracyControl, StepParts};
 use fretwork_observe::error_estimate::ErrorEstimate;
 use fretwork_observe::run_state::damage_ratio;
@@ -82,10 +83,10 @@ pub struct RunOptions {
 pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 
 /// A run of a case that is about to begin, with what a user of the library adds to it. Processes
-/// are added to the simulation itself ([`Simulation::add_process`]) before.
+/// are added to the simulation in its dimension before
+/// ([`Simulation::add_process`](crate::step::Simulation::add_process)).
 ///
 /// ```no_run
-/// use fretwork::geometry::space::Dim2;
 /// use fretwork::record::{Run, RunOptions};
 /// use fretwork::scene::load;
 /// use fretwork::shipped::search_path;
@@ -94,7 +95,7 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 ///
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// let loaded = load(Path::new("cases/block_tower.ron"), &[])?;
-/// let built = loaded.build_in::<Dim2>(&search_path())?;
+/// let built = loaded.build(&search_path())?;
 /// let options = RunOptions { out: "results/tower".into(), threads: 1 };
 /// let summary = Run::new(&loaded, built, &options).execute(&mut |progress| {
 ///     if progress.damage_ratio > 0.5 {
@@ -109,18 +110,18 @@ pub type OnProgress<'a> = dyn FnMut(&Progress) -> ControlFlow<String> + 'a;
 /// # }
 /// ```
 #[derive(Debug)]
-pub struct Run<'a, S: Space> {
+pub struct Run<'a> {
     loaded: &'a Loaded,
-    built: Built<S>,
+    built: Built,
     options: &'a RunOptions,
     stop: Option<ResumePoint>,
     observers: Observers,
     hurry: Option<&'a AtomicBool>,
 }
 
-impl<'a, S: Space> Run<'a, S> {
+impl<'a> Run<'a> {
     /// A run of a case from its start.
-    pub fn new(loaded: &'a Loaded, built: Built<S>, options: &'a RunOptions) -> Self {
+    pub fn new(loaded: &'a Loaded, built: Built, options: &'a RunOptions) -> Self {
         Self {
             loaded,
             built,
@@ -185,62 +186,43 @@ impl<'a, S: Space> Run<'a, S> {
 ///
 /// # Errors
 /// As [`Run::execute`].
-pub fn run<S: Dimensional>(
+pub fn run(
     loaded: &Loaded,
-    built: Built<S>,
+    built: Built,
     options: &RunOptions,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<Summary, RunError> {
-    run_scene(loaded, S::scene(built), options, progress)
-}
-
-/// Not generic: compiled here, once for each dimension, and not again in every program that calls
-/// [`run`].
-fn run_scene(
-    loaded: &Loaded,
-    scene: Scene,
-    options: &RunOptions,
-    progress: &mut dyn FnMut(&Progress),
-) -> Result<Summary, RunError> {
-    let progress: &mut OnProgress<'_> = &mut |p| {
+    Run::new(loaded, built, options).execute(&mut |p| {
         progress(p);
         ControlFlow::Continue(())
-    };
-    match scene {
-        Scene::Dim2(built) => Run::new(loaded, *built, options).execute(progress),
-        Scene::Dim3(built) => Run::new(loaded, *built, options).execute(progress),
-    }
+    })
 }
 
 /// Finds the state of a stopped run of this case in the folder of the results.
 ///
 /// # Errors
 /// The state cannot be read, is damaged, or belongs to another version or case.
-pub fn stopped<S: Space>(
-    loaded: &Loaded,
-    built: &Built<S>,
-    options: &RunOptions,
-) -> Result<Found, RunError> {
+pub fn stopped(loaded: &Loaded, built: &Built, options: &RunOptions) -> Result<Found, RunError> {
     Ok(find(&options.out, &Identity::of(loaded, built)?)?)
 }
 
 /// The observers that a run of a case has, for who steps without one. Its processes are
 /// [installed](processes::install) before.
-pub fn run_observers<S: Space>(loaded: &Loaded, s: &Simulation<S>) -> Observers {
-    let any = !(s.shapes.surfaces.is_empty() && s.state.bodies.driven.is_empty());
+pub fn run_observers(loaded: &Loaded, s: &dyn RunView) -> Observers {
+    let any = !(s.surfaces().is_empty() && s.bodies().driven.is_empty());
     standard::observers(&loaded.case, s, density_of(loaded, any))
 }
 
 /// The columns of the statistics that a run of a case has.
-pub fn statistics_columns<S: Space>(case: &Case, s: &Simulation<S>) -> Vec<Column> {
+pub fn statistics_columns(case: &Case, s: &dyn RunView) -> Vec<Column> {
     standard::observers(case, s, 0.0).columns()
 }
 
 /// A run as it goes.
-struct Recorder<'a, S: Space> {
+struct Recorder<'a> {
     loaded: &'a Loaded,
     out: PathBuf,
-    simulation: Simulation<S>,
+    simulation: AnySimulation,
     observers: Observers,
     table: Table,
     results: Results,
@@ -283,18 +265,18 @@ struct Recorder<'a, S: Space> {
     lock: FolderLock,
 }
 
-impl<'a, S: Space> Recorder<'a, S> {
+impl<'a> Recorder<'a> {
     /// From the start, or from where a run was stopped.
-    fn new(run: Run<'a, S>) -> Result<Self, RunError> {
+    fn new(run: Run<'a>) -> Result<Self, RunError> {
         let (loaded, mut built, options) = (run.loaded, run.built, run.options);
         let case = &loaded.case;
         let number = run.stop.as_ref().map_or(0, |s| s.number + 1);
         let identity = Identity::of(loaded, &built)?;
         let checkpoint_writer = CheckpointWriter::new(case.output.checkpoint, &identity, number)?;
         let simulation = &mut built.simulation;
-        simulation.options.solver.parallel = options.threads > 1;
-        processes::install(case, simulation);
-        let mut observers = run_observers(loaded, simulation);
+        simulation.options_mut().solver.parallel = options.threads > 1;
+        in_dimension!(simulation, |s| processes::install(case, s));
+        let mut observers = run_observers(loaded, simulation.view());
         observers.append(run.observers);
         names::check(loaded, &observers)?;
         let lock = match &run.stop {
@@ -309,8 +291,8 @@ impl<'a, S: Space> Recorder<'a, S> {
         std::fs::create_dir_all(&frames).map_err(|e| unwritable(&frames, &e))?;
         let facts = RunFacts {
             case: case.name.clone(),
-            dimension: S::D,
-            plugins: stamps(&simulation.laws),
+            dimension: simulation.dimension(),
+            plugins: stamps(simulation.laws()),
             wear_coefficients: std::mem::take(&mut built.wear_coefficients),
             threads: options.threads,
             seed: case.seed,
@@ -326,11 +308,11 @@ impl<'a, S: Space> Recorder<'a, S> {
         let simulation = built.simulation;
         let total = (case.time.end / case.time.step - 1e-6).ceil().max(1.0) as u64;
         let mut recorder = Self {
-            estimate: ErrorEstimate::new(case, &simulation, total),
-            accuracy: AccuracyControl::new(case, &simulation),
+            estimate: in_dimension!(&simulation, |s| ErrorEstimate::new(case, s, total)),
+            accuracy: in_dimension!(&simulation, |s| AccuracyControl::new(case, s)),
             parts: None,
             done: 0,
-            camera: Camera::new(InDimension::of(&simulation), &case.output),
+            camera: Camera::new((&simulation).into(), &case.output),
             drawing: Drawing::default(),
             out: options.out.clone(),
             table: Table::new(columns),
@@ -348,7 +330,7 @@ impl<'a, S: Space> Recorder<'a, S> {
             processor: ProcessTime::now(),
             summary: Summary {
                 run: facts,
-                found: Findings::new(S::D),
+                found: Findings::new(simulation.dimension()),
             },
             uncertainty: Uncertainty::default(),
             simulation,
@@ -357,7 +339,7 @@ impl<'a, S: Space> Recorder<'a, S> {
             unwritten: None,
             lock,
         };
-        recorder.observers.begin(&mut recorder.simulation);
+        recorder.observers.begin(&mut *recorder.simulation);
         let begun = match run.stop {
             Some(stop) => recorder.restore(stop),
             None => recorder.publish(Kind::Begun, Vec::new()),
@@ -374,25 +356,25 @@ impl<'a, S: Space> Recorder<'a, S> {
 
     /// Steps to the end or until a stop is requested; returns the reason of the stop.
     fn run_steps(&mut self, progress: &mut OnProgress<'_>) -> Result<Option<String>, RunError> {
-        if self.simulation.state.steps == 0 {
+        if self.simulation.steps() == 0 {
             self.timed(|t| &mut t.files, Self::record_state)?;
             self.timed(|t| &mut t.pictures, |run| run.draw_pictures(0))?;
         }
         while self.done < self.total {
-            let phase = self.simulation.state.control.phase();
+            let phase = self.simulation.phase();
             let recurs = self.simulation.phase_recurs();
             let report = self.whole_step()?;
             self.done += self.accuracy.as_ref().map_or(1, AccuracyControl::spanned);
             let step = self.done;
-            if phase == 1 && self.simulation.state.control.phase() == 2 {
-                self.camera.assign_layers(InDimension::of(&self.simulation));
-                self.observers.begin(&mut self.simulation);
+            if phase == 1 && self.simulation.phase() == 2 {
+                self.camera.assign_layers((&self.simulation).into());
+                self.observers.begin(&mut *self.simulation);
             }
             self.simulation.between_steps()?;
             let worn_through = self.simulation.check_worn_through();
             let finished = self.simulation.finished() || worn_through.is_err();
             let last = step == self.total || finished;
-            let turned = phase > 0 && self.simulation.state.control.phase() > phase && !recurs;
+            let turned = phase > 0 && self.simulation.phase() > phase && !recurs;
             self.record(&report, last, finished, turned)?;
             if let Some(e) = self.unwritten.take() {
                 // The results are whole: the run can go on where there is room.
@@ -421,10 +403,10 @@ impl<'a, S: Space> Recorder<'a, S> {
         loop {
             let report = self.step()?;
             self.unconverged += u64::from(!report.solver.converged);
-            self.estimate.after_step(&self.simulation, &report);
+            in_dimension!(&self.simulation, |s| self.estimate.after_step(s, &report));
             self.timed(
                 |t| &mut t.observers,
-                |run| run.observers.after_step(&run.simulation, &report),
+                |run| run.observers.after_step(run.simulation.view(), &report),
             );
             // What the run loop does after a step of the case stands for its last part.
             if self.parts.is_none() {
@@ -435,7 +417,7 @@ impl<'a, S: Space> Recorder<'a, S> {
                 self.parts = None;
                 return Ok(report);
             }
-            for event in self.observers.after_processes(&self.simulation) {
+            for event in self.observers.after_processes(self.simulation.view()) {
                 self.results.append_event(&event)?;
             }
         }
@@ -455,7 +437,7 @@ impl<'a, S: Space> Recorder<'a, S> {
         if last {
             self.simulation.end()?;
         }
-        for event in self.observers.after_processes(&self.simulation) {
+        for event in self.observers.after_processes(self.simulation.view()) {
             self.results.append_event(&event)?;
         }
         if output.fclib > 0 && step.is_multiple_of(output.fclib) {
@@ -477,7 +459,7 @@ impl<'a, S: Space> Recorder<'a, S> {
     fn record_row(&mut self) -> Result<(), RunError> {
         let row = self.timed(
             |t| &mut t.observers,
-            |run| run.observers.sample(&run.simulation),
+            |run| run.observers.sample(run.simulation.view()),
         );
         if row.len() != self.table.columns.len() {
             return Err(RunError::Row {
@@ -499,40 +481,46 @@ impl<'a, S: Space> Recorder<'a, S> {
 
     /// Writes the current state.
     fn record_state(&mut self) -> Result<(), RunError> {
-        let values = self.observers.grain_values(&self.simulation);
-        let (results, s) = (&mut self.results, &self.simulation);
-        Ok(views::append(results, s, self.loaded, values)?)
+        let values = self.observers.grain_values(self.simulation.view());
+        let results = &mut self.results;
+        in_dimension!(&self.simulation, |s| {
+            Ok(views::append(results, s, self.loaded, values)?)
+        })
     }
 
     fn progress(&self, step: u64, report: &StepReport) -> Progress {
-        let s = &self.simulation;
         Progress {
             steps: (step, self.total),
             resumed_at: self.resumed_at,
-            cycle: self.observers.cycle(s.state.time).unwrap_or((0, 0)),
+            cycle: self
+                .observers
+                .cycle(self.simulation.time())
+                .unwrap_or((0, 0)),
             contacts: report.contacts,
             iterations: report.solver.iterations,
             error: report.solver.error,
             unconverged: self.unconverged,
-            damage_ratio: damage_ratio(s),
+            damage_ratio: in_dimension!(&self.simulation, |s| damage_ratio(s)),
         }
     }
 }
 
 /// Begins the file of results, under a name that it has until there is something in it.
-fn create_results<S: Space>(
+fn create_results(
     part: &Path,
     loaded: &Loaded,
-    built: &Built<S>,
+    built: &Built,
     facts: &RunFacts,
     observers: &Observers,
 ) -> Result<Results, RunError> {
-    let made = views::Made {
-        simulation: &built.simulation,
-        materials: &built.materials,
-        densities: &built.densities,
-        deforming: &built.deforming,
-    };
-    let header = views::header(loaded, &made, facts, observers);
+    let header = in_dimension!(&built.simulation, |simulation| {
+        let made = views::Made {
+            simulation,
+            materials: &built.materials,
+            densities: &built.densities,
+            deforming: &built.deforming,
+        };
+        views::header(loaded, &made, facts, observers)
+    });
     Ok(Results::create(part, &header)?)
 }

@@ -3,9 +3,9 @@
 
 use super::clear::{FIGURES, OWN};
 use super::{RunError, run_observers};
-use crate::scene::build::{Loaded, Scene};
 use crate::scene::case::Case;
 use crate::scene::source::{InputError, ValidationError};
+use crate::scene::{Built, Loaded};
 use fretwork_observe::Observers;
 use fretwork_store::folder_lock::RUN_LOCK;
 use std::collections::BTreeSet;
@@ -40,11 +40,8 @@ pub(super) fn check(loaded: &Loaded, observers: &Observers) -> Result<(), RunErr
 ///
 /// # Errors
 /// The name, at the line of the case that gives it.
-pub fn check_names(loaded: &Loaded, scene: &Scene) -> Result<(), InputError> {
-    let twice = match scene {
-        Scene::Dim2(built) => twice(&run_observers(loaded, &built.simulation)),
-        Scene::Dim3(built) => twice(&run_observers(loaded, &built.simulation)),
-    };
+pub fn check_names(loaded: &Loaded, built: &Built) -> Result<(), InputError> {
+    let twice = twice(&run_observers(loaded, built.simulation.view()));
     let error = twice.and_then(|(what, name)| at_line(loaded, what, &name));
     error.map_or(Ok(()), Err)
 }

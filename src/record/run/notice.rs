@@ -1,7 +1,6 @@
 //! Warnings of a run over its pictures.
 
 use super::Recorder;
-use crate::geometry::space::Space;
 use crate::record::summary::Summary;
 use crate::record::warning::Warning;
 
@@ -12,13 +11,13 @@ pub(super) fn band(list: &[Warning]) -> Option<String> {
     (!names.is_empty()).then(|| format!("NOT TRUSTWORTHY: {} (see summary.json)", names.join(", ")))
 }
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Text of the band over a picture during the run, as far as known.
     pub(super) fn notice(&mut self) -> Option<String> {
-        self.observers.before_step(&self.simulation);
+        self.observers.before_step(self.simulation.view());
         let mut now = Summary {
             run: self.summary.run.clone(),
-            found: self.observers.report_so_far(S::D),
+            found: self.observers.report_so_far(self.simulation.dimension()),
         };
         band(&now.check())
     }

@@ -1,10 +1,9 @@
 //! When rows, states, pictures and checkpoints of a run are due.
 
 use super::Recorder;
-use crate::geometry::space::Space;
 use crate::scene::case::Checkpoint;
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Steps of the case until the next record, which no step passes. With `every: 1`, the default,
     /// there is a row after each step, however many of the case it spans, unless measures and tests
     /// average over rows.

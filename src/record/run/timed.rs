@@ -1,12 +1,11 @@
 //! Measures what the wall time of a run is spent on.
 
 use super::Recorder;
-use crate::geometry::space::Space;
 use crate::step::StepReport;
 use fretwork_observe::summary::TimeSpent;
 use std::time::Instant;
 
-impl<S: Space> Recorder<'_, S> {
+impl Recorder<'_> {
     /// Does something, and adds the time that it takes to a part of the time spent.
     pub(super) fn timed<T>(
         &mut self,

@@ -2,12 +2,12 @@
 //! space.
 
 use super::{close, driven, scene, step};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::Space;
 
 /// Pulls the face of a case open until its bonds, so many, are broken: peak, begin of the damage,
 /// end and work of a law with strength 0.3 MPa and 0.5 J/m^2 over the whole face (m^2; m in 2D),
 /// whose bonds add up to it within a part.
-pub fn opens_by_its_law<S: Dimensional>(case: &str, bonds: u64, face: f64, part: f64) {
+pub fn opens_by_its_law<S: Space>(case: &str, bonds: u64, face: f64, part: f64) {
     let (strength, energy, stiffness) = (3e5, 0.5, 1e12);
     let (first, last) = (strength / stiffness, 2.0 * energy / strength);
     let mut s = scene::<S>(case, &[]);

@@ -7,16 +7,16 @@ mod plate;
 mod space;
 
 use crate::scene;
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::Space;
 use fretwork::step::Simulation;
 
 /// A case of the project, with `--set`s.
-fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
+fn scene<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     scene::case::<S>(case, sets)
 }
 
 /// One step, which must converge.
-fn step<S: Dimensional>(s: &mut Simulation<S>) {
+fn step<S: Space>(s: &mut Simulation<S>) {
     let report = s.step().unwrap_or_else(|e| panic!("{e}"));
     assert!(
         report.solver.converged,
@@ -26,7 +26,7 @@ fn step<S: Dimensional>(s: &mut Simulation<S>) {
 }
 
 /// The place of a driven body among them.
-fn driven<S: Dimensional>(s: &Simulation<S>, name: &str) -> usize {
+fn driven<S: Space>(s: &Simulation<S>, name: &str) -> usize {
     let mut all = s.state.bodies.driven.iter();
     all.position(|d| d.name == name).unwrap()
 }

@@ -1,8 +1,7 @@
 //! A bonded Voronoi plate that tears pays for its crack.
 
 use super::{scene, step};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 
 #[test]
 fn a_plate_pays_for_its_crack() {
@@ -23,7 +22,7 @@ fn a_plate_in_space_pays_within_its_step() {
 
 /// Damage is coupled explicitly: what is missing goes with the step. More than `cracked` points
 /// break until `end` (s).
-fn pays<S: Dimensional>(case: &str, end: f64, cracked: u64) {
+fn pays<S: Space>(case: &str, end: f64, cracked: u64) {
     let far = [2.0, 1.0].map(|part| (paid::<S>(case, end, cracked, part) - 1.0).abs());
     println!("{far:?}");
     assert!(far[1] < 0.03 && far[1] < 0.7 * far[0], "{far:?}");
@@ -31,7 +30,7 @@ fn pays<S: Dimensional>(case: &str, end: f64, cracked: u64) {
 
 /// The fracture energy of the ledger over that of the law at the damages reached, with steps `part`
 /// times as long.
-fn paid<S: Dimensional>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
+fn paid<S: Space>(case: &str, end: f64, cracked: u64, part: f64) -> f64 {
     let (strength, energy, stiffness) = (1e6, 10.0, 1e12);
     let mut s = scene::<S>(case, &[]);
     s.options.scheme.h *= part;

@@ -23,7 +23,11 @@ const RAIL: Elasticity = Elasticity {
 const STEP: f64 = 1e-3;
 
 /// At rest, undriven, flat, filling what is below.
-fn half_space<S: Space>(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
+fn half_space<S: Deformable>(
+    material: Elasticity,
+    grid: Grid,
+    axes: &[Dof],
+) -> HalfSpaceSpec<'_, S> {
     HalfSpaceSpec {
         name: "lower",
         material,
@@ -56,7 +60,7 @@ fn put<S: Deformable>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
     s.add_system(system)
 }
 
-fn empty<S: Dimensional>(mu: f64, plane: &str) -> Simulation<S> {
+fn empty<S: Deformable>(mu: f64, plane: &str) -> Simulation<S> {
     let bodies = format!(
         "(name: \"plane\", material: \"m0\", shapes: [HalfSpace(normal: {plane})], position: [{}-1.0]),",
         "0.0, ".repeat(S::D - 1)
@@ -87,7 +91,7 @@ struct Traction<V> {
 
 /// Those of the points that carry a load. A point above a corner of the surface's facets may touch
 /// several of them.
-fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
+fn tractions<S: Deformable>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
     let contacts = s.state.network.contacts.iter();
     let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
     let mut points = std::collections::BTreeMap::new();

@@ -38,8 +38,7 @@ use fretwork::elastic::generate::{
 use fretwork::elastic::{
     BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
 };
-use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
 use fretwork::step::Simulation;
 
 /// Steel of the field's benchmarks.
@@ -69,7 +68,11 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
 }
 
 /// Undamped, without a surface that touches, at rest.
-fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> BodySpec<'_, S> {
+fn body<S: Deformable>(
+    mesh: Mesh<S>,
+    material: Elasticity,
+    supports: &[Support],
+) -> BodySpec<'_, S> {
     BodySpec {
         name: "specimen",
         mesh,
@@ -95,7 +98,7 @@ fn sketch(step: f64, theta: f64) -> Sketch {
     }
 }
 
-fn scene<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+fn scene<S: Deformable>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -104,12 +107,12 @@ fn add<S: Deformable>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
     s.add_system(system)
 }
 
-fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
+fn mesh<S: Deformable>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
     let system = s.state.systems.get(system).unwrap();
     system.deformed_mesh().unwrap()
 }
 
-fn holder<S: Space>(s: &Simulation<S>, system: usize, part: &str, axis: usize) -> Holder {
+fn holder<S: Deformable>(s: &Simulation<S>, system: usize, part: &str, axis: usize) -> Holder {
     let held = s.state.systems.get(system).unwrap().holders();
     let found = held.into_iter().find(|h| h.part == part && h.axis == axis);
     found.unwrap()

@@ -4,7 +4,6 @@
 use super::bench::{G, Sketch, ball, floor, grains, place};
 use crate::stepping::steps;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 
 fn still() -> Sketch {
@@ -15,7 +14,7 @@ fn still() -> Sketch {
     }
 }
 
-fn built<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+fn built<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -137,7 +136,7 @@ fn a_spinning_rod_hits_the_grain_in_its_way() {
 
 /// Head on at ten radii a step: without restitution they stay together; with e the lighter part of
 /// the velocity is exchanged, v1 = (1 - e) v/2 and v2 = (1 + e) v/2.
-fn head_on<S: Dimensional>() {
+fn head_on<S: Space>() {
     for (contact, e) in [("coulomb", 0.0), ("newton-restitution", 0.8)] {
         let expected = [50.0 * (1.0 - e), 50.0 * (1.0 + e)];
         let moving = format!(

@@ -4,13 +4,12 @@
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
 use crate::extremes::bench::{Sketch, ball, floor, grains, place, volume};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use std::sync::Arc;
 
 /// Both balls rub on the floor: their two contacts are asked once for their nodes, A^-1 is applied
 /// to each axis of each node, for the free velocity and for the impulses.
-fn once_a_step<S: Dimensional>() {
+fn once_a_step<S: Space>() {
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),
         ..sketch()
@@ -33,7 +32,7 @@ fn a_step_asks_once_for_nodes_and_compliance() {
 
 /// A bond to a grain softens as it opens, and the step is solved until damage and opening agree:
 /// the compliance stays.
-fn iterates<S: Dimensional>() {
+fn iterates<S: Space>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let opens = v / omega;
     let stiffness = m * omega * omega / R;

@@ -4,13 +4,12 @@ use super::spring::Spring;
 use super::{R, at, built, closes, go, sketch};
 use crate::extremes::bench::{Sketch, ball, floor, grains, place};
 use fretwork::contact::Contact;
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::solve::local::solver::Method;
 
 /// It slides on the floor and pushes a grain before it, which spins: all methods give the motion
 /// that sweeps give.
-fn solved_by<S: Dimensional>(method: Method) -> Vec<S::Vector> {
+fn solved_by<S: Space>(method: Method) -> Vec<S::Vector> {
     let row = [ball(&place::<S>(0.75, 0.0, R), R)];
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),
@@ -37,7 +36,7 @@ fn solved_by<S: Dimensional>(method: Method) -> Vec<S::Vector> {
         .collect()
 }
 
-fn agree<S: Dimensional>() {
+fn agree<S: Space>() {
     let swept = solved_by::<S>(Method::Nlgs);
     for method in Method::ALL.iter().copied() {
         for (x, y) in solved_by::<S>(method).iter().zip(&swept) {

@@ -11,7 +11,6 @@ use crate::extremes::bench::{G, Sketch, ball, floor, grains, place, plane, volum
 use crate::stepping::{closes, go, near, steps};
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::record::code::{decode, encode};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::{Simulation, State};
 use spring::{Spring, Touching};
 
@@ -25,7 +24,7 @@ fn sketch() -> Sketch {
     }
 }
 
-fn built<S: Dimensional>(sketch: &Sketch) -> Simulation<S> {
+fn built<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -57,7 +56,7 @@ fn momentum<S: Space>(s: &Simulation<S>, mass: [f64; 2]) -> f64 {
 
 /// Free vibration. The midpoint rule conserves energy and turns the phase by 2 atan(w h/2) a step:
 /// tan(w' h/2) = w h/2.
-fn vibrates<S: Dimensional>() {
+fn vibrates<S: Space>() {
     let (mass, k, stretch) = ([2.0, 3.0], 4e3, 0.01);
     let mut s = built::<S>(&Sketch {
         gravity: 0.0,
@@ -95,7 +94,7 @@ fn it_vibrates_at_the_frequency_of_the_midpoint_rule() {
 
 /// Dropped upright on a floor, without restitution: the lower ball then carries the weight of both,
 /// the spring that of the upper.
-fn comes_to_rest<S: Dimensional>() {
+fn comes_to_rest<S: Space>() {
     let (mass, k) = ([2.0, 3.0], 5e4);
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),
@@ -128,7 +127,7 @@ fn it_comes_to_rest_and_the_contact_carries_its_weight() {
 }
 
 /// Both balls rub on the floor at mu g, whatever their masses: v^2/(2 mu g) to the stop.
-fn slides<S: Dimensional>() {
+fn slides<S: Space>() {
     let (v, mu) = (1.0, 0.3);
     let mut s = built::<S>(&Sketch {
         mu,
@@ -160,7 +159,7 @@ fn it_slides_to_a_stop_at_mu_g() {
 
 /// It strikes a grain: momentum stays, the ball leaves at e times the speed that it came with, the
 /// ledger closes.
-fn strikes<S: Dimensional>(touching: Touching, theta: f64, stiffening: f64) {
+fn strikes<S: Space>(touching: Touching, theta: f64, stiffening: f64) {
     let (mass, e) = ([2.0, 3.0], 0.6);
     let row = [ball(&place::<S>(1.0, 0.0, 1.0), R)];
     let mut s = built::<S>(&Sketch {
@@ -225,7 +224,7 @@ fn a_stiffening_one_strikes_a_grain_and_momentum_and_energy_are_booked() {
 }
 
 /// Without a spring each mass is a smooth grain of the same mass: it falls and bounces as one.
-fn is_a_grain<S: Dimensional>() {
+fn is_a_grain<S: Space>() {
     let row = [ball(&place::<S>(0.0, 0.0, 0.5), R)];
     let rigid = Sketch {
         mu: 0.0,
@@ -260,7 +259,7 @@ fn masses_without_a_spring_bounce_as_grains() {
 /// A bond between a grain and the second mass, as stiff as the spring, makes a chain of three equal
 /// masses. Outwards at v, at rest, outwards at v is its mode of w^2 = k/m: the bond opens by v/w
 /// sin w' t.
-fn is_bonded<S: Dimensional>() {
+fn is_bonded<S: Space>() {
     let (m, v, omega) = (1000.0 * volume::<S>(R), 0.01, 40.0f64);
     let k = m * omega * omega;
     let reduced: f64 = 0.5 * R;
@@ -311,7 +310,7 @@ fn a_bond_holds_it_to_a_grain() {
 
 /// A heap of rough grains falls on a sprung body whose balls may touch each other, and on a second
 /// one that runs into it, between walls.
-fn heap<S: Dimensional>(theta: f64) -> Simulation<S> {
+fn heap<S: Space>(theta: f64) -> Simulation<S> {
     let mut row = Vec::new();
     for k in 0..24u32 {
         let (x, y) = (
@@ -371,7 +370,7 @@ fn kinds<S: Space>(s: &Simulation<S>, seen: &mut [bool; 3]) {
     }
 }
 
-fn ledger_of_heap<S: Dimensional>(theta: f64, count: usize, tolerance: f64) {
+fn ledger_of_heap<S: Space>(theta: f64, count: usize, tolerance: f64) {
     let mut s = heap::<S>(theta);
     let mut seen = [false; 3];
     for _ in 0..count {
@@ -394,7 +393,7 @@ fn state<S: Space>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }
 
-fn goes_on<S: Dimensional>() {
+fn goes_on<S: Space>() {
     let (mut whole, mut resumed) = (heap::<S>(0.5), heap::<S>(0.5));
     steps(&mut whole, 300);
     let bytes = state(&whole);

@@ -4,12 +4,11 @@
 use super::spring::Spring;
 use super::{R, at, built, go, sketch};
 use crate::extremes::bench::{G, Sketch, floor};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 
 /// Dropped upright, and an imposed one beside it that never rests: the phase ends when m g d of the
 /// first has been above its kinetic energy for long enough, d the length over both balls.
-fn phase_of_rest<S: Dimensional>() {
+fn phase_of_rest<S: Space>() {
     let (mass, share, held) = ([2.0, 3.0], 1e-4, 0.05);
     let mut s = built::<S>(&Sketch {
         bodies: floor::<S>(),

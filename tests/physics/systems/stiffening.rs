@@ -4,8 +4,7 @@
 use super::spring::Spring;
 use super::{R, at, built, closes, contactors, go, near, sketch};
 use crate::extremes::bench::{Sketch, floor};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -45,7 +44,7 @@ fn crossing(h: f64, [x, v]: [f64; 2], [y, w]: [f64; 2]) -> f64 {
 }
 
 /// Mean period of ten, and the largest change of the energy as a share of it.
-fn vibration<S: Dimensional>(h: f64) -> (f64, f64) {
+fn vibration<S: Space>(h: f64) -> (f64, f64) {
     let [k, stretch, stiffening] = SPRING;
     let mut s = built::<S>(&Sketch {
         step: h,
@@ -83,7 +82,7 @@ fn vibration<S: Dimensional>(h: f64) -> (f64, f64) {
 
 /// The period tends to that of Duffing's oscillator with the square of the step, and so does the
 /// energy.
-fn follows_the_exact_period<S: Dimensional>() {
+fn follows_the_exact_period<S: Space>() {
     let [k, stretch, stiffening] = SPRING;
     let reduced = MASS[0] * MASS[1] / (MASS[0] + MASS[1]);
     let exact = period(k / reduced, k * stiffening / reduced, stretch);

@@ -6,7 +6,6 @@ use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::code::{decode, encode};
 use fretwork::record::run::{RunOptions, run};
 use fretwork::scene::Loaded;
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -33,12 +32,12 @@ fn loaded(dimension: usize, lines: &str) -> Loaded {
     scene::loaded_text(&text(dimension, lines))
 }
 
-fn build<S: Dimensional>(lines: &str) -> Simulation<S> {
+fn build<S: Space>(lines: &str) -> Simulation<S> {
     scene::text(&text(S::D, lines))
 }
 
 /// One body of 3 kg with this drive on one degree of freedom.
-fn driven<S: Dimensional>(dof: &str, drive: &str, theta: f64, more: &str) -> Simulation<S> {
+fn driven<S: Space>(dof: &str, drive: &str, theta: f64, more: &str) -> Simulation<S> {
     let at = vec!["0.25"; S::D].join(", ");
     build(&format!(
         r#"time: (step: {H:?}, end: 1000.0, theta: {theta:?}),
@@ -462,7 +461,7 @@ fn slides_are_the_way_and_summaries_tell_of_coarse_drives() {
     };
     let ran = |frequency: f64| {
         let loaded = case(frequency);
-        let built = scene::built::<Dim2>(&loaded);
+        let built = scene::built(&loaded);
         let name = format!("fretwork-drives-{}-{frequency}", std::process::id());
         let out = std::env::temp_dir().join(name);
         let options = RunOptions {

@@ -119,10 +119,7 @@ fn slide_to_stop(table: &mut Table) {
 }
 
 /// Velocity, time and place where rolling begins.
-fn rolling<S: fretwork::scene::build::Dimensional>(
-    s: &mut Simulation<S>,
-    axis: usize,
-) -> (f64, f64, f64) {
+fn rolling<S: Space>(s: &mut Simulation<S>, axis: usize) -> (f64, f64, f64) {
     let (ball, r) = (mover(s), 0.1);
     let mut at = None;
     until(s, 0.2, |s| {

@@ -3,7 +3,7 @@
 use super::Table;
 use crate::scene;
 use fretwork::energy::Energy;
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::Dim3;
 use fretwork::record::friction_report::Friction;
 
 pub fn all(table: &mut Table) {
@@ -15,7 +15,7 @@ pub fn all(table: &mut Table) {
 /// Bonds and friction under a moving lid, theta = 1/2, as the program runs and reports it.
 fn ledger(table: &mut Table) {
     let sets = ["output.frames=0", "output.figures=false"];
-    let summary = scene::ran::<Dim2>("verification/energy", &sets, |_| {});
+    let summary = scene::ran("verification/energy", &sets, |_| {});
     let found = &summary.found;
     let e = found.get::<Energy>().unwrap();
     let cycles = &found.get::<Friction>().unwrap().cycles;
@@ -37,7 +37,7 @@ fn ledger(table: &mut Table) {
 
 /// A frictionless bond pulled away and sheared: there is no pressure, so no friction coefficient.
 fn pulled(table: &mut Table) {
-    let summary = scene::ran::<Dim2>("verification/pulled_friction", &[], |_| {});
+    let summary = scene::ran("verification/pulled_friction", &[], |_| {});
     let mu = summary.found.number("friction_coefficient").unwrap_or(0.0);
     table.compare(
         "pulled_friction",

@@ -25,7 +25,7 @@ fn grain<S: Space>(s: &Simulation<S>) -> usize {
 /// Thrown at v it slides until rolling, then loses g (l/R)/(1 + k) a second: measured over the
 /// rolling part.
 fn rolling(table: &mut Table) {
-    fn slow<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> (f64, f64) {
+    fn slow<S: Space>(mut s: Simulation<S>) -> (f64, f64) {
         let b = grain(&s);
         let mut seen = Vec::new();
         until(&mut s, 2.5, |s| {
@@ -59,7 +59,7 @@ fn rolling(table: &mut Table) {
 
 /// Static shear and bending of a glued grain: R = 0.1 m, reduced radius 0.05 m.
 fn beams(table: &mut Table) {
-    fn held<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> [f64; 4] {
+    fn held<S: Space>(mut s: Simulation<S>) -> [f64; 4] {
         until(&mut s, 1.0, |_| {});
         let b = grain(&s);
         let weight = s.state.bodies.mass[b] * G;

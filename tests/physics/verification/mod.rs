@@ -15,8 +15,7 @@ mod stages;
 mod thermal;
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 /// Acceleration of gravity in the cases (m/s^2).
@@ -56,7 +55,7 @@ impl Table {
     }
 }
 
-fn scene<S: Dimensional>(case: &str, sets: &[&str]) -> Simulation<S> {
+fn scene<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
     scene::case(&format!("verification/{case}"), sets)
 }
 
@@ -69,7 +68,7 @@ fn solid(case: &str, sets: &[&str]) -> Simulation<Dim3> {
 }
 
 /// Steps until a time and calls `seen` after each.
-fn until<S: Dimensional>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
+fn until<S: Space>(s: &mut Simulation<S>, end: f64, mut seen: impl FnMut(&Simulation<S>)) {
     while s.state.time < end - 0.5 * s.options.scheme.h {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(

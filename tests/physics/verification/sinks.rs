@@ -162,7 +162,7 @@ fn column(table: &mut Table) {
 
 /// Just above k/(1 + k) tan it rolls (row 5).
 fn rolling_limit(table: &mut Table) {
-    fn slip<S: fretwork::scene::build::Dimensional>(mut s: Simulation<S>) -> f64 {
+    fn slip<S: Space>(mut s: Simulation<S>) -> f64 {
         until(&mut s, 0.5, |_| {});
         let b = (0..s.state.bodies.len())
             .find(|b| !s.state.bodies.immovable(*b))

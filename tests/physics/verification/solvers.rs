@@ -2,8 +2,7 @@
 
 use super::{G, Table, scene};
 use crate::scene::loaded;
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::Simulation;
@@ -142,7 +141,7 @@ fn thrown(table: &mut Table) {
 }
 
 /// Ends a case by plain Gauss-Seidel and by others: the same displacements.
-fn alike<S: Dimensional>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str]) {
+fn alike<S: Space>(table: &mut Table, case: &str, sets: &[&str], methods: &[&str]) {
     let end = |method: &str| {
         let set = format!("solver.method={method}");
         let mut all = vec![set.as_str()];

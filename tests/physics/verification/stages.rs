@@ -115,7 +115,7 @@ fn momentum(s: &Simulation<Dim2>) -> [f64; 2] {
 fn biaxial(table: &mut Table) {
     let name = "biaxial";
     let loaded = scene::loaded("verification/biaxial", &[""; 0]);
-    let mut s = scene::built::<Dim2>(&loaded).simulation;
+    let mut s = scene::simulation::<Dim2>(&loaded);
     let spec = loaded
         .case
         .biaxial

@@ -6,7 +6,7 @@ use fretwork::record::Summary;
 use fretwork::record::circuit::CircuitSummary;
 
 fn summary(case: &str, sets: &[&str]) -> Summary {
-    scene::ran::<Dim2>(case, sets, |_| {})
+    scene::ran(case, sets, |_| {})
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn debris_remembers_the_bonds_that_broke_before_the_last() {
     ]
     .map(str::to_owned);
     let loaded = scene::loaded("verification/falling_debris", &sets);
-    let mut s = scene::built::<Dim2>(&loaded).simulation;
+    let mut s = scene::simulation::<Dim2>(&loaded);
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let (mut when, mut cost) = (Vec::new(), 0.0);

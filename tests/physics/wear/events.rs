@@ -2,13 +2,12 @@
 
 use crate::scene;
 use fretwork::contact::ContactDissipation;
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
 /// Runs so many steps of a case: each step's spending by contact adds up to what the ledger books,
 /// and what breaks tell of themselves adds up to the fracture energy, with what intact bonds lost
 /// on the way.
-fn told<S: Dimensional>(case: &str, sets: &[&str], steps: usize) -> u64 {
+fn told<S: Space>(case: &str, sets: &[&str], steps: usize) -> u64 {
     let mut s = scene::case::<S>(case, sets);
     s.state.network.dissipation = Some(Vec::new());
     let (mut fracture, mut breaks, mut most) = (0.0, 0, 0.0f64);

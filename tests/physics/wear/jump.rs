@@ -1,7 +1,6 @@
 //! Jumps over cycles, against runs that compute every cycle.
 
 use crate::scene;
-use fretwork::geometry::space::Dim2;
 use fretwork::record::Summary;
 use fretwork::record::jump::JumpSummary;
 use fretwork::scene::load;
@@ -10,7 +9,7 @@ use fretwork::scene::load;
 fn ran(case: &str, sets: &[&str]) -> (Summary, Vec<f64>) {
     let sets = [&["output.figures=false", "output.frames=0"], sets].concat();
     let mut depths: Vec<f64> = Vec::new();
-    let summary = scene::ran::<Dim2>(case, &sets, |out| {
+    let summary = scene::ran(case, &sets, |out| {
         let text = std::fs::read_to_string(out.join("scar_flat.csv")).unwrap_or_default();
         let depth = |line: &str| line.rsplit(',').next().and_then(|x| x.parse::<f64>().ok());
         depths.extend(text.lines().skip(1).filter_map(depth));

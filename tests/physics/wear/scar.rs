@@ -2,11 +2,10 @@
 
 use crate::scene;
 use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use fretwork::wear::{Form, shape};
 
-fn scene<S: Dimensional>(name: &str, sets: &[&str]) -> Simulation<S> {
+fn scene<S: Space>(name: &str, sets: &[&str]) -> Simulation<S> {
     let mut s = scene::case::<S>(name, sets);
     s.state.network.dissipation = Some(Vec::new());
     s
@@ -37,11 +36,7 @@ struct Rubbed {
 /// Runs and adds up what a law makes of each contact and step; compares with the scar, with the
 /// surface, and closes the ledger. The slip is the way that the slider itself went along the
 /// contact, it does not turn.
-fn worn<S: Dimensional>(
-    name: &str,
-    sets: &[&str],
-    law: impl Fn(f64, &Rubbed) -> f64,
-) -> Simulation<S> {
+fn worn<S: Space>(name: &str, sets: &[&str], law: impl Fn(f64, &Rubbed) -> f64) -> Simulation<S> {
     let mut s = scene::<S>(name, sets);
     let slider = s.state.bodies.driven[1].body as usize;
     let steps = (0.5 / s.options.scheme.h).round() as usize;

@@ -35,7 +35,7 @@ fn run(out: &Folder, sets: &[&str]) -> Output {
 
 fn build(sets: &[String]) -> Simulation<Dim2> {
     let loaded = scene::loaded("verification/worn_slide", sets);
-    scene::built(&loaded).simulation
+    scene::simulation(&loaded)
 }
 
 /// x, z, z_first, depth, row by row.

@@ -2,9 +2,8 @@
 //! its grip.
 
 use crate::scene;
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::process::circuit::Circuit;
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::circuit;
 use fretwork::step::Simulation;
 use std::collections::HashSet;
@@ -20,7 +19,7 @@ fn a_plate_of_polyhedra_comes_loose() {
 }
 
 /// The bodies that unbroken bonds tie to one, by a walk over all of them.
-fn walk<S: Dimensional>(s: &Simulation<S>, from: u32) -> Vec<bool> {
+fn walk<S: Space>(s: &Simulation<S>, from: u32) -> Vec<bool> {
     let grains: HashSet<u32> = s.state.bodies.grains().map(|b| b as u32).collect();
     let mut tied = vec![false; s.state.bodies.len()];
     tied[from as usize] = true;
@@ -43,7 +42,7 @@ fn walk<S: Dimensional>(s: &Simulation<S>, from: u32) -> Vec<bool> {
     }
 }
 
-fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
+fn comes_loose<S: Space>(case: &str, steps: u64) {
     // With damage at the start of a step bonds release more, and the crack of this sample runs
     // through.
     let sets = [
@@ -52,7 +51,7 @@ fn comes_loose<S: Dimensional>(case: &str, steps: u64) {
     ]
     .map(str::to_owned);
     let loaded = scene::loaded(&format!("verification/{case}"), &sets);
-    let mut s = scene::built::<S>(&loaded).simulation;
+    let mut s = scene::simulation::<S>(&loaded);
     s.step().unwrap();
     let mut account = Circuit::new(circuit::install(&loaded.case, &s).unwrap(), &s);
     let base = account.bases()[0];

@@ -3,7 +3,7 @@
 
 use super::trial::{PLANE, SOLID, Trial, with};
 use fretwork::laws::SearchPath;
-use fretwork::scene::{Scene, load};
+use fretwork::scene::load;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -59,8 +59,7 @@ fn damaged(text: &str, numbers: bool, rng: &mut Pcg64) -> Vec<u8> {
 fn tried(case: &Path, laws: &SearchPath) -> bool {
     let built = load(case, &[]).and_then(|loaded| loaded.build(laws));
     match built {
-        Ok(Scene::Dim2(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
-        Ok(Scene::Dim3(mut built)) => (0..2).for_each(|_| drop(built.simulation.step())),
+        Ok(mut built) => (0..2).for_each(|_| drop(built.simulation.step())),
         Err(error) => {
             assert!(!error.to_string().is_empty() && !error.message.is_empty());
             return false;

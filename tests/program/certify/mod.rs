@@ -5,7 +5,6 @@ use fretwork::certify::{Certificate, Outcome, certify, certify_parameters};
 use fretwork::geometry::space::Dim2;
 use fretwork::laws::bench::{Bench, Motion};
 use fretwork::laws::{Interface, Kind, Loaded, Plugin, SearchPath};
-use fretwork::scene::build::Scene;
 use fretwork::scene::load;
 use fretwork::shipped::{built_in, search_path};
 use fretwork::step::Simulation;
@@ -79,10 +78,8 @@ fn laws_of_shipped_cases_are_certified() {
         let cases = files.map(|f| f.path());
         for case in cases.filter(|p| p.extension().is_some_and(|e| e == "ron")) {
             let built = load(&case, &[]).and_then(|loaded| loaded.build(&path));
-            let laws = match built.unwrap_or_else(|e| panic!("{e}")) {
-                Scene::Dim2(built) => built.simulation.laws,
-                Scene::Dim3(built) => built.simulation.laws,
-            };
+            let built = built.unwrap_or_else(|e| panic!("{e}"));
+            let laws = built.simulation.laws();
             for (interface, law) in laws.iter().flat_map(|i| i.loaded().map(move |l| (i, l))) {
                 let damage = law.plugin.kind == Kind::DAMAGE;
                 let partner = interface.cohesion().filter(|_| damage);
@@ -208,8 +205,7 @@ fn a_wrong_energy_shows_in_the_residual() {
         let mut s: Simulation<Dim2> = fretwork::scene::load(&case, &sets)
             .unwrap_or_else(|e| panic!("{e}"))
             .build_in(&SearchPath::new(&[place]).with_built_in(built_in()))
-            .unwrap_or_else(|e| panic!("{e}"))
-            .simulation;
+            .unwrap_or_else(|e| panic!("{e}"));
         while s.state.time < 5e-6 {
             s.step().unwrap_or_else(|e| panic!("{e}"));
         }

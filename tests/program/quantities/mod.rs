@@ -5,7 +5,6 @@ mod named;
 mod page;
 
 use crate::resume::common::Folder;
-use fretwork::geometry::space::{Dim3, Space};
 use fretwork::record::observer::{Event, EventTable};
 use fretwork::record::quantity::unit::{ENERGY, METRE};
 use fretwork::record::quantity::{Catalogue, Findings};
@@ -13,7 +12,7 @@ use fretwork::record::statistics::Column;
 use fretwork::record::{Observer, Run, RunEnd, RunOptions, RunView, Summary};
 use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
-use fretwork::step::{Simulation, StepReport};
+use fretwork::step::StepReport;
 use fretwork_experiments::runs::quantity::Quantity;
 use fretwork_experiments::runs::unit::unit_of;
 use std::ops::ControlFlow;
@@ -79,11 +78,11 @@ impl Observer for Summit {
     }
 }
 
-fn cradle() -> (Loaded, Built<Dim3>) {
+fn cradle() -> (Loaded, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let sets = ["time.end=0.01", "output.frames=0", "output.figures=false"].map(str::to_owned);
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim3>(&search_path());
+    let built = loaded.build(&search_path());
     (loaded, built.unwrap_or_else(|e| panic!("{e}")))
 }
 

@@ -1,10 +1,8 @@
 //! The tables of docs/outputs.md list what the shipped observers declare. With
 //! `FRETWORK_WRITE_PAGES=1` the test writes them.
 
-use fretwork::geometry::space::Space;
 use fretwork::record::quantity::{Role, Topic};
-use fretwork::scene::build::Built;
-use fretwork::scene::{Loaded, Scene, load};
+use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard;
 use std::collections::BTreeMap;
@@ -24,8 +22,8 @@ const CASES: [&str; 8] = [
 /// Path, units in space and in the plane, explanation, and whether it is of the course of the run.
 pub type Declared = (String, [String; 2], String, bool);
 
-fn add<S: Space>(loaded: &Loaded, built: &Built<S>, all: &mut Vec<Declared>) {
-    let found = standard::declared(&loaded.case, &built.simulation);
+fn add(loaded: &Loaded, built: &Built, all: &mut Vec<Declared>) {
+    let found = standard::declared(&loaded.case, built.simulation.view());
     let spelled =
         |unit: fretwork::record::quantity::Unit| [3, 2].map(|d| unit.symbol(d).to_owned());
     // Names that a case chose.
@@ -57,10 +55,8 @@ pub fn declared() -> Vec<Declared> {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
         let built = loaded.build(&search_path());
-        match built.unwrap_or_else(|e| panic!("{e}")) {
-            Scene::Dim2(built) => add(&loaded, &built, &mut all),
-            Scene::Dim3(built) => add(&loaded, &built, &mut all),
-        }
+        let built = built.unwrap_or_else(|e| panic!("{e}"));
+        add(&loaded, &built, &mut all);
     }
     let mut first: BTreeMap<String, Declared> = BTreeMap::new();
     for d in all.into_iter().filter(|d| !d.1[0].is_empty()) {

@@ -1,12 +1,10 @@
 //! Every column and every key that a run writes stands in docs/outputs.md.
 
 use fretwork::fields::{Fields, orientation, removed};
-use fretwork::geometry::space::Space;
-use fretwork::geometry::space::{Dim2, Dim3};
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{of_bodies, of_grains, of_surfaces};
 use fretwork::record::statistics_columns;
-use fretwork::scene::build::{Built, Dimensional, Loaded};
-use fretwork::scene::{Scene, load};
+use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork_observe::standard::declared;
 use std::collections::BTreeSet;
@@ -21,7 +19,7 @@ fn documented() -> BTreeSet<String> {
     words.map(str::to_owned).collect()
 }
 
-fn missing<S: Space>(loaded: &Loaded, built: &Built<S>, page: &BTreeSet<String>) -> Vec<String> {
+fn missing(loaded: &Loaded, built: &Built, page: &BTreeSet<String>) -> Vec<String> {
     let case = &loaded.case;
     // Names that a case chose stand in the page as BODY and NAME.
     let bodies = case.bodies.iter().map(|b| (b.name.as_str(), "BODY"));
@@ -35,7 +33,7 @@ fn missing<S: Space>(loaded: &Loaded, built: &Built<S>, page: &BTreeSet<String>)
         });
         page.contains(column) || spelled.into_iter().any(|c| page.contains(&c))
     };
-    let columns = statistics_columns(case, &built.simulation);
+    let columns = statistics_columns(case, built.simulation.view());
     let names = columns.into_iter().map(|c| c.name);
     names.filter(|name| !known(name)).collect()
 }
@@ -57,10 +55,7 @@ fn every_column_of_the_shipped_cases_is_documented() {
         let path = format!("{}/cases/{case}.ron", env!("CARGO_MANIFEST_DIR"));
         let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
         let built = loaded.build(&search_path());
-        let missing = match built.unwrap_or_else(|e| panic!("{e}")) {
-            Scene::Dim2(built) => missing(&loaded, &built, &page),
-            Scene::Dim3(built) => missing(&loaded, &built, &page),
-        };
+        let missing = missing(&loaded, &built.unwrap_or_else(|e| panic!("{e}")), &page);
         assert!(
             missing.is_empty(),
             "{case}: docs/outputs.md lacks {missing:?}"
@@ -104,7 +99,7 @@ pub(super) fn field_tables() -> Vec<(String, BTreeSet<String>)> {
 
 #[test]
 fn every_field_of_the_views_is_documented() {
-    fn missing<S: Dimensional>() -> Vec<String> {
+    fn missing<S: Space>() -> Vec<String> {
         let mut fields = Fields::<S>::default();
         let more = orientation().into_iter().chain([removed()]);
         more.for_each(|f| fields.grains.add(f));
@@ -132,7 +127,7 @@ fn every_key_of_the_summary_is_documented() {
     let loaded = load(path.as_ref(), &[]).unwrap_or_else(|e| panic!("{e}"));
     let built = loaded.build_in::<Dim2>(&search_path());
     let built = built.unwrap_or_else(|e| panic!("{e}"));
-    let found = declared(&loaded.case, &built.simulation);
+    let found = declared(&loaded.case, &built);
     let summary = serde_json::to_value(&found).unwrap();
     let keys = summary.as_object().unwrap().keys();
     let missing: Vec<&String> = keys.filter(|key| !page.contains(*key)).collect();

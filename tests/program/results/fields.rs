@@ -2,18 +2,17 @@
 
 use super::folder;
 use fretwork::fields::{Field, id_fields};
-use fretwork::geometry::space::Space;
+use fretwork::geometry::space::{Dim3, Space};
 use fretwork::record::{RunOptions, run};
-use fretwork::scene::build::{Dimensional, Loaded};
-use fretwork::scene::{Built, Scene, load};
+use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
 use hdf5::H5File;
 use std::path::Path;
 
 /// Registers two fields, runs the case and reads back what the last state has of them.
-fn ran<S: Dimensional>(loaded: &Loaded, mut built: Built<S>, out: &Path) {
-    let s = &mut built.simulation;
+fn ran<S: Space>(loaded: &Loaded, mut built: Built, out: &Path) {
+    let s = built.simulation.get_mut::<S>().unwrap();
     let age = |s: &Simulation<S>, c: &fretwork::contact::Contact<S>| s.state.time - c.formed_at;
     let age = Field::number("age", "s", "time since the contact formed", age);
     s.fields.contacts.add(age);
@@ -80,8 +79,5 @@ fn a_registered_field_is_in_the_results() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &["output.frames=0".to_owned()]).unwrap();
     let out = folder("fields");
-    match loaded.build(&search_path()).unwrap() {
-        Scene::Dim2(built) => ran(&loaded, *built, &out),
-        Scene::Dim3(built) => ran(&loaded, *built, &out),
-    }
+    ran::<Dim3>(&loaded, loaded.build(&search_path()).unwrap(), &out);
 }

@@ -7,8 +7,7 @@ use fretwork::fields::{FieldList, Fields, orientation};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::record::mesh_fields::{MeshField, of_bodies, of_grains, of_surfaces};
 use fretwork::record::{RunOptions, run, statistics_columns};
-use fretwork::scene::build::{Built, Dimensional, Loaded};
-use fretwork::scene::{Scene, load};
+use fretwork::scene::{Built, Loaded, load};
 use fretwork::shipped::search_path;
 use hdf5::H5File;
 use std::collections::{BTreeMap, BTreeSet};
@@ -63,17 +62,15 @@ fn ran(case: &str, out: &Path, check: &dyn Fn(&H5File)) {
     ];
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
     let search = search_path();
-    match loaded.build(&search).unwrap_or_else(|e| panic!("{e}")) {
-        Scene::Dim2(built) => statistics_agree(&loaded, *built, out),
-        Scene::Dim3(built) => statistics_agree(&loaded, *built, out),
-    }
+    let built = loaded.build(&search).unwrap_or_else(|e| panic!("{e}"));
+    statistics_agree(&loaded, built, out);
     check(&H5File::open(out.join("results.h5")).unwrap());
     std::fs::remove_dir_all(out).ok();
 }
 
 /// The columns of `statistics.csv`, of `/statistics` and of the observers are the same.
-fn statistics_agree<S: Dimensional>(loaded: &Loaded, built: Built<S>, out: &Path) {
-    let columns = statistics_columns(&loaded.case, &built.simulation);
+fn statistics_agree(loaded: &Loaded, built: Built, out: &Path) {
+    let columns = statistics_columns(&loaded.case, built.simulation.view());
     let options = RunOptions {
         out: out.to_owned(),
         threads: 1,

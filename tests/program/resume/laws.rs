@@ -3,8 +3,9 @@
 
 use super::common::Folder;
 use super::state::goes_on;
+use fretwork::AnySimulation;
 use fretwork::laws::Kind;
-use fretwork::scene::{Scene, load};
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork_abi::FLAG_TEMPERATURE;
 
@@ -79,10 +80,10 @@ fn goes_on_with(kind: Kind, name: &str, dimension: usize) -> bool {
     let file = folder.0.join("case.ron");
     std::fs::write(&file, case(dimension, &laws, heated)).unwrap();
     let loaded = load(&file, &[]).unwrap_or_else(|e| panic!("{kind} {name}: {e}"));
-    let built = || loaded.build(&search_path());
+    let built = || loaded.build(&search_path()).map(|built| built.simulation);
     match [built(), built()] {
-        [Ok(Scene::Dim2(a)), Ok(Scene::Dim2(b))] => goes_on([*a, *b], 70, 70),
-        [Ok(Scene::Dim3(a)), Ok(Scene::Dim3(b))] => goes_on([*a, *b], 70, 70),
+        [Ok(AnySimulation::Plane(a)), Ok(AnySimulation::Plane(b))] => goes_on([*a, *b], 70, 70),
+        [Ok(AnySimulation::Space(a)), Ok(AnySimulation::Space(b))] => goes_on([*a, *b], 70, 70),
         [Err(e), _] if e.to_string().contains("dimensions only") => return false,
         [Err(e), _] => panic!("{kind} {name}: {e}"),
         _ => panic!("{kind} {name}: built once in two ways"),

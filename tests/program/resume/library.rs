@@ -109,12 +109,13 @@ impl<S: Space> Process<S> for Push {
 const SETS: [&str; 2] = ["output.checkpoint=Never", "output.frames=2"];
 
 /// Newton's cradle with a push on the ball in its middle.
-fn cradle() -> (Loaded, Built<Dim3>) {
+fn cradle() -> (Loaded, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim3>(&search_path());
+    let built = loaded.build(&search_path());
     let mut built = built.unwrap_or_else(|e| panic!("{e}"));
-    built.simulation.add_process(Push {
+    let simulation = built.simulation.get_mut::<Dim3>().unwrap();
+    simulation.add_process(Push {
         body: 2,
         given: 0.0,
     });
@@ -158,7 +159,7 @@ fn resume(folder: &Folder, observer: Option<MeanGap>) -> Result<Summary, RunErro
 fn an_observer_and_a_process_of_a_user_are_recorded() {
     let folder = Folder::new("library-whole");
     let (loaded, built) = cradle();
-    let mass = built.simulation.state.bodies.mass[0];
+    let mass = built.simulation.bodies().mass[0];
     let options = options(&folder);
     let run = Run::new(&loaded, built, &options).observe(MeanGap::default());
     let summary = run.execute(&mut |_| ControlFlow::Continue(())).unwrap();

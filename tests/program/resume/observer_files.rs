@@ -4,7 +4,6 @@
 
 use super::common::{Folder, files, same};
 use crate::scene;
-use fretwork::geometry::space::{Dim3, Space, VectorLike};
 use fretwork::record::checkpoint::Found;
 use fretwork::record::code::{CodeError, decode, encode};
 use fretwork::record::output::Output;
@@ -13,7 +12,7 @@ use fretwork::record::{
     Observer, Paint, Picture, Run, RunEnd, RunOptions, RunView, Shows, Summary, stopped,
 };
 use fretwork::scene::{Built, Loaded, load};
-use fretwork::step::{Simulation, StepReport};
+use fretwork::step::StepReport;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -81,10 +80,10 @@ const SETS: [&str; 4] = [
 ];
 
 /// Newton's cradle, 600 steps.
-fn cradle() -> (Loaded, Built<Dim3>) {
+fn cradle() -> (Loaded, Built) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/newton_cradle.ron");
     let loaded = load(&path, &SETS.map(str::to_owned)).unwrap_or_else(|e| panic!("{e}"));
-    let built = scene::built::<Dim3>(&loaded);
+    let built = scene::built(&loaded);
     (loaded, built)
 }
 

@@ -3,8 +3,9 @@
 
 use super::common::{Folder, Job};
 use super::state::{all, built, steps};
+use fretwork::AnySimulation;
 use fretwork::geometry::space::{Dim2, Space};
-use fretwork::scene::{Built, Scene, load};
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::step::Coupling;
 use fretwork::step::Simulation;
@@ -13,8 +14,8 @@ use std::path::Path;
 
 /// Steps of a simulation of which some are repeated with other settings, and of one of which none
 /// are.
-fn leave_no_trace<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
-    let (mut whole, mut repeated) = (one.simulation, other.simulation);
+fn leave_no_trace<S: Space>(both: [Simulation<S>; 2], before: u32, after: u32) {
+    let [mut whole, mut repeated] = both;
     for s in [&mut whole, &mut repeated] {
         // Recession is a process of the scene; it declares that it can be repeated.
         assert_eq!(s.repeatable(), Ok(()));
@@ -49,8 +50,12 @@ fn parameters<S: Space>(s: &Simulation<S>) -> Vec<Vec<f64>> {
 
 fn check(case: &str, sets: &[&str], before: u32, after: u32) {
     match [built(case, sets), built(case, sets)] {
-        [Scene::Dim2(a), Scene::Dim2(b)] => leave_no_trace([*a, *b], before, after),
-        [Scene::Dim3(a), Scene::Dim3(b)] => leave_no_trace([*a, *b], before, after),
+        [AnySimulation::Plane(a), AnySimulation::Plane(b)] => {
+            leave_no_trace([*a, *b], before, after)
+        }
+        [AnySimulation::Space(a), AnySimulation::Space(b)] => {
+            leave_no_trace([*a, *b], before, after)
+        }
         _ => panic!("one case, two dimensions"),
     }
 }
@@ -130,8 +135,7 @@ fn slide_to_a_stop(length: u32) {
     let mut sets = sets.map(str::to_owned).to_vec();
     sets.push(format!("uncertainty.steps={length}"));
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let built = loaded.build_in::<Dim2>(&search_path()).unwrap();
-    let mut s = built.simulation;
+    let mut s = loaded.build_in::<Dim2>(&search_path()).unwrap();
     let block = s.state.bodies.len() - 1;
     s.state.bodies.velocity[block].x = v;
     let total = 200;

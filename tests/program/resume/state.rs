@@ -1,19 +1,26 @@
 //! The state of a simulation, put into bytes and taken up by a simulation that was built anew.
 
+use fretwork::AnySimulation;
 use fretwork::geometry::space::{Dim2, Space};
 use fretwork::record::code::{decode, encode};
-use fretwork::scene::{Built, Scene, load};
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::solver::Method;
 use fretwork::step::{Simulation, State};
 use std::path::Path;
 
-pub fn built(case: &str, sets: &[&str]) -> Scene {
+pub fn built(case: &str, sets: &[&str]) -> AnySimulation {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{case}.ron"));
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     let loaded = load(&path, &sets).unwrap_or_else(|e| panic!("{e}"));
-    let scene = loaded.build(&search_path());
-    scene.unwrap_or_else(|e| panic!("{e}"))
+    let built = loaded.build(&search_path());
+    built.unwrap_or_else(|e| panic!("{e}")).simulation
+}
+
+/// The simulation of a case of this dimension.
+fn in_its_dimension<S: Space>(case: &str, sets: &[&str]) -> Simulation<S> {
+    let simulation = built(case, sets).into_dimension();
+    simulation.unwrap_or_else(|_| panic!("{case} has another dimension"))
 }
 
 /// All that a simulation holds, as text: numbers are printed so that they read back as they are.
@@ -27,8 +34,8 @@ pub fn steps<S: Space>(s: &mut Simulation<S>, count: u32) {
     }
 }
 
-pub fn goes_on<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
-    let (mut whole, mut resumed) = (one.simulation, other.simulation);
+pub fn goes_on<S: Space>(both: [Simulation<S>; 2], before: u32, after: u32) {
+    let [mut whole, mut resumed] = both;
     steps(&mut whole, before);
     let bytes = all(&whole);
     let saved: State<S> = decode(&bytes).unwrap();
@@ -50,8 +57,8 @@ pub fn goes_on<S: Space>([one, other]: [Built<S>; 2], before: u32, after: u32) {
 
 fn check(case: &str, sets: &[&str], before: u32, after: u32) {
     match [built(case, sets), built(case, sets)] {
-        [Scene::Dim2(a), Scene::Dim2(b)] => goes_on([*a, *b], before, after),
-        [Scene::Dim3(a), Scene::Dim3(b)] => goes_on([*a, *b], before, after),
+        [AnySimulation::Plane(a), AnySimulation::Plane(b)] => goes_on([*a, *b], before, after),
+        [AnySimulation::Space(a), AnySimulation::Space(b)] => goes_on([*a, *b], before, after),
         _ => panic!("one case, two dimensions"),
     }
 }
@@ -114,13 +121,8 @@ fn a_body_in_large_strain_goes_on_with_the_same_bits() {
 
 #[test]
 fn a_state_of_another_scene_is_not_taken() {
-    let [Scene::Dim2(one), Scene::Dim2(other)] = [
-        built("verification/column", &[]),
-        built("wheel_rail_rigid", &[]),
-    ] else {
-        panic!("two plane cases");
-    };
-    let (one, mut other) = (one.simulation, other.simulation);
+    let one = in_its_dimension::<Dim2>("verification/column", &[]);
+    let mut other = in_its_dimension::<Dim2>("wheel_rail_rigid", &[]);
     let before = all(&other);
     let saved = decode(&all(&one)).unwrap();
     assert!(!other.restore(saved));
@@ -151,10 +153,7 @@ fn what_auto_learned_goes_on_with_the_same_bits() {
     let path = folder.0.join("case.ron");
     std::fs::write(&path, case).unwrap();
     let loaded = load(&path, &[]).unwrap_or_else(|e| panic!("{e}"));
-    let build = || match loaded.build(&search_path()) {
-        Ok(Scene::Dim2(built)) => built.simulation,
-        _ => panic!("the case is of the plane"),
-    };
+    let build = || loaded.build_in::<Dim2>(&search_path()).unwrap();
     // Twice the weight in each step: what the step before found does not help.
     fn step<S: Space>(s: &mut Simulation<S>) {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
@@ -191,10 +190,7 @@ fn what_phases_have_set_goes_on() {
     ]"#;
     let sets = [phases, "gravity=[5.0, -9.81]"];
     check("verification/slide_to_stop", &sets, 30, 20);
-    let scene = |sets: &[&str]| match built("verification/slide_to_stop", sets) {
-        Scene::Dim2(built) => built.simulation,
-        Scene::Dim3(_) => panic!("a plane case"),
-    };
+    let scene = |sets: &[&str]| in_its_dimension::<Dim2>("verification/slide_to_stop", sets);
     let (mut whole, mut resumed) = (scene(&sets), scene(&sets));
     let mu = |s: &Simulation<_>| s.laws[0].contact().parameters.clone();
     let (given, first) = (resumed.options, mu(&resumed));
@@ -218,10 +214,7 @@ fn what_phases_have_set_goes_on() {
 /// part of the state.
 #[test]
 fn bonds_of_the_last_step_are_part_of_the_state() {
-    let scene = || match built("verification/healing", &[]) {
-        Scene::Dim2(built) => built.simulation,
-        Scene::Dim3(_) => panic!("a plane case"),
-    };
+    let scene = || in_its_dimension::<Dim2>("verification/healing", &[]);
     let mut whole = scene();
     let formed = (0..2000).any(|_| {
         steps(&mut whole, 1);
@@ -252,10 +245,7 @@ fn bonds_of_the_last_step_are_part_of_the_state() {
 /// resumption and the next step is what was read before.
 #[test]
 fn readings_of_the_last_step_are_the_same_after_a_resumption() {
-    let scene = || match built("wheel_rail_rigid", &[]) {
-        Scene::Dim2(built) => built.simulation,
-        Scene::Dim3(_) => panic!("a plane case"),
-    };
+    let scene = || in_its_dimension::<Dim2>("wheel_rail_rigid", &[]);
     let (mut whole, mut resumed) = (scene(), scene());
     steps(&mut whole, 40);
     assert!(resumed.restore(whole.state.clone()));
@@ -270,10 +260,7 @@ fn readings_of_the_last_step_are_the_same_after_a_resumption() {
 #[test]
 fn a_state_of_no_scene_is_refused() {
     use fretwork::geometry::space::Dim3;
-    let scene = || match built("shear_cell_3d", &[]) {
-        Scene::Dim3(built) => built.simulation,
-        Scene::Dim2(_) => panic!("a case in space"),
-    };
+    let scene = || in_its_dimension::<Dim3>("shear_cell_3d", &[]);
     let mut whole = scene();
     steps(&mut whole, 20);
     let bytes = all(&whole);
@@ -363,10 +350,7 @@ type Fault<'a> = (&'a str, fn(&mut State<Dim2>));
 
 /// States of a plane case that are no states of it any more.
 fn none_of(case: &str, changes: &[Fault<'_>]) {
-    let scene = || match built(case, &[]) {
-        Scene::Dim2(built) => built.simulation,
-        Scene::Dim3(_) => panic!("a plane case"),
-    };
+    let scene = || in_its_dimension::<Dim2>(case, &[]);
     let mut whole = scene();
     steps(&mut whole, 20);
     let bytes = all(&whole);

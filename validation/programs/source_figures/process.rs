@@ -2,7 +2,7 @@
 
 use fretwork::geometry::space::Dim2;
 use fretwork::record::biaxial::{Biaxial, State};
-use fretwork::scene::{Scene, load};
+use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::solve::local::LocalProblem;
 use fretwork::step::Simulation;
@@ -42,10 +42,7 @@ pub struct Trace {
 /// Runs a 2D case to a time, or to its end.
 pub fn run(case: &Path, sets: &[String], until: Option<f64>) -> Result<Trace, Box<dyn Error>> {
     let loaded = load(case, sets)?;
-    let Scene::Dim2(built) = loaded.build(&search_path())? else {
-        return Err(format!("{}: not a case of two dimensions", case.display()).into());
-    };
-    let mut s: Simulation<Dim2> = built.simulation;
+    let mut s = loaded.build_in::<Dim2>(&search_path())?;
     let mut test = loaded
         .case
         .biaxial

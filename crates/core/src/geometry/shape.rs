@@ -38,7 +38,7 @@ impl<S: Space> Ball<S> {
         } else {
             match S::D {
                 2 => 0.5 * self.area.norm(),
-                _ => point_radius::<S>(self.area.norm()),
+                _ => point_radius(S::D, self.area.norm()),
             }
         }
     }
@@ -60,14 +60,14 @@ impl<S: Space> Ball<S> {
             return self.contact_radius(lengths);
         }
         let least = LEAST_SHARE * self.area.norm();
-        point_radius::<S>(least.max(-self.area.dot(normal)))
+        point_radius(S::D, least.max(-self.area.dot(normal)))
     }
 }
 
 /// The radius of a contact (m) that stands for a length (2D, m) or an area (3D, m^2) of a surface:
 /// that length, as it is for the sides of polygons; the radius of the disk of that area.
-pub fn point_radius<S: Space>(area: f64) -> f64 {
-    match S::D {
+pub fn point_radius(dimension: usize, area: f64) -> f64 {
+    match dimension {
         2 => area,
         _ => (area / std::f64::consts::PI).sqrt(),
     }

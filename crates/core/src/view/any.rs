@@ -2,9 +2,9 @@
 
 use super::{RunControl, RunView};
 use crate::geometry::space::{Dim2, Dim3, Space};
-use crate::step::{InDimension, Simulation};
+use crate::step::{InDimension, Simulation, StepError, StepReport};
 use std::any::Any;
-use std::ops::{Deref, DerefMut};
+use std::ops::{ControlFlow, Deref, DerefMut};
 
 /// A simulation of either dimension. It dereferences to [`RunControl`], by which it is stepped, and
 /// [`RunView`], by which it is read; [`AnySimulation::get`] gives the simulation in its dimension.
@@ -45,6 +45,19 @@ impl AnySimulation {
     pub fn get_mut<S: Space>(&mut self) -> Option<&mut Simulation<S>> {
         let simulation: &mut dyn Any = in_dimension!(self, |s| &mut **s);
         simulation.downcast_mut()
+    }
+
+    /// Steps until a time (s), or until `after`, which is called after each step, breaks; see
+    /// [`Simulation::run_until`].
+    ///
+    /// # Errors
+    /// As [`Simulation::run_until`].
+    pub fn run_until<B>(
+        &mut self,
+        time: f64,
+        mut after: impl FnMut(&dyn RunView, &StepReport) -> ControlFlow<B>,
+    ) -> Result<ControlFlow<B>, StepError> {
+        in_dimension!(self, |s| s.run_until(time, |s, report| after(s, report)))
     }
 
     /// Takes the simulation out in dimension `S`.

@@ -26,8 +26,6 @@ pub trait RunControl: RunView + Send {
     /// # Errors
     /// As [`Simulation::end`].
     fn end(&mut self) -> Result<(), StepError>;
-    /// Whether phases or processes end the run before its time.
-    fn finished(&self) -> bool;
     /// Whether the current phase is repeated later.
     fn phase_recurs(&self) -> bool;
     /// Whether a surface was worn through.
@@ -86,9 +84,6 @@ impl<S: Space> RunControl for Simulation<S> {
     }
     fn end(&mut self) -> Result<(), StepError> {
         self.end()
-    }
-    fn finished(&self) -> bool {
-        self.finished()
     }
     fn phase_recurs(&self) -> bool {
         self.phase_recurs()

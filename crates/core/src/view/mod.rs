@@ -40,6 +40,7 @@
 mod any;
 mod control;
 mod fields;
+mod memory;
 pub mod placement;
 mod rows;
 mod run_view;
@@ -48,11 +49,12 @@ mod systems;
 pub use any::AnySimulation;
 pub use control::RunControl;
 pub use fields::{FieldInfo, FieldKind, FieldValues, GrainFields};
+pub use memory::MemoryUse;
 pub use rows::{
     BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
 };
 pub use run_view::RunView;
-pub use systems::SystemView;
+pub use systems::{SystemTrial, SystemView};
 
 #[cfg(test)]
 mod tests;

@@ -26,7 +26,7 @@ pub struct BodyColumns<'a> {
     pub carriers: &'a [Option<Carrier>],
 }
 
-impl BodyColumns<'_> {
+impl<'a> BodyColumns<'a> {
     /// Number of bodies.
     pub fn len(&self) -> usize {
         self.id.len()
@@ -43,7 +43,7 @@ impl BodyColumns<'_> {
     }
 
     /// The driven first body of a name.
-    pub fn driven_named(&self, name: &str) -> Option<&Driven> {
+    pub fn driven_named(&self, name: &str) -> Option<&'a Driven> {
         self.driven.iter().find(|d| d.name == name)
     }
 }

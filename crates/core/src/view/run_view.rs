@@ -1,11 +1,13 @@
 //! Reading a simulation.
 
 use super::fields::{self, FieldInfo, FieldValues, GrainFields};
+use super::memory::MemoryUse;
 use super::placement;
 use super::rows::{
     BallView, BodyColumns, ContactView, Motion, Outline, PieceView, ScarView, SurfaceView,
 };
 use super::systems::{Seen, SystemView};
+use crate::bodies::SystemStep;
 use crate::contact::detect::{self, LawTable};
 use crate::contact::{Contact, StepSizeDiagnostics};
 use crate::energy::Energy;
@@ -42,6 +44,8 @@ pub trait RunView: Debug {
     fn solver_in_force(&self) -> solve::Options;
     /// Number of the current phase, from 1; 0 before the first step and without phases.
     fn phase(&self) -> usize;
+    /// Whether phases or processes end the run before its time.
+    fn finished(&self) -> bool;
     /// The phases begun so far, in order.
     fn begun(&self) -> &[Begun];
     /// Acceleration of gravity (m/s^2).
@@ -110,6 +114,8 @@ pub trait RunView: Debug {
     fn bonds_broken(&self) -> u64;
     /// Mean damage of the bonds.
     fn mean_damage(&self) -> f64;
+    /// What grains and contacts take in memory.
+    fn memory_use(&self) -> MemoryUse;
     /// Diagnostics of the step size.
     fn step_size(&self) -> &StepSizeDiagnostics;
 
@@ -125,7 +131,9 @@ pub trait RunView: Debug {
     /// dynamical systems that expand; `None` where no body expands.
     fn expanding(&self) -> Option<(&[f64], Vec<usize>)>;
 
-    /// Centres of the parts of grains and first bodies that carry fields, in the periodic cell (m).
+    /// Centres of the parts of grains and first bodies that carry fields (m).
+    fn grain_centres(&self) -> Vec<[f64; 3]>;
+    /// These centres in the periodic cell (m).
     fn grain_points(&self) -> Vec<[f64; 3]>;
     /// The fields of the parts of grains and first bodies, in the order in which they are written.
     fn grain_fields(&self, with: GrainFields) -> Vec<FieldInfo>;
@@ -197,6 +205,9 @@ impl<S: Space> RunView for Simulation<S> {
     }
     fn phase(&self) -> usize {
         self.state.control.phase()
+    }
+    fn finished(&self) -> bool {
+        self.finished()
     }
     fn begun(&self) -> &[Begun] {
         self.state.control.begun()
@@ -355,7 +366,13 @@ impl<S: Space> RunView for Simulation<S> {
     }
     fn system(&self, system: usize) -> Option<Box<dyn SystemView + '_>> {
         let system = self.state.systems.get(system)?;
-        Some(Box::new(Seen(system)))
+        let step = SystemStep {
+            time: self.state.time,
+            h: self.options.scheme.h,
+            theta: self.options.scheme.theta,
+            gravity: self.state.gravity,
+        };
+        Some(Box::new(Seen { system, step }))
     }
     fn bodies_of_system(&self, system: usize) -> &[u32] {
         self.state.systems.bodies(system)
@@ -387,6 +404,9 @@ impl<S: Space> RunView for Simulation<S> {
     fn mean_damage(&self) -> f64 {
         self.state.network.mean_damage()
     }
+    fn memory_use(&self) -> MemoryUse {
+        MemoryUse::of::<S>()
+    }
     fn step_size(&self) -> &StepSizeDiagnostics {
         &self.state.network.step_size
     }
@@ -409,6 +429,11 @@ impl<S: Space> RunView for Simulation<S> {
         Some((&expansion.coefficient, systems))
     }
 
+    fn grain_centres(&self) -> Vec<[f64; 3]> {
+        GrainPart::all(self)
+            .map(|part| part.centre.padded())
+            .collect()
+    }
     fn grain_points(&self) -> Vec<[f64; 3]> {
         let wrapped = |part: GrainPart<S>| self.shapes.periodic.wrapped(part.centre).padded();
         GrainPart::all(self).map(wrapped).collect()

@@ -1,7 +1,7 @@
 //! Dynamical systems without their dimension.
 
-use crate::bodies::{Contactor, DynamicalSystem, Holder, SystemSize};
-use crate::geometry::space::Space;
+use crate::bodies::{Contactor, DynamicalSystem, Holder, SystemSize, SystemStep};
+use crate::geometry::space::{Space, VectorLike};
 
 /// A body that is more than rigid, for reading; see [`DynamicalSystem`], whose methods have the
 /// same names.
@@ -24,38 +24,86 @@ pub trait SystemView {
     fn mesh_size(&self) -> Option<[usize; 2]>;
     /// Number of points of the surface by which it touches; 0 where it has none.
     fn surface_points(&self) -> usize;
+    /// A copy of it, to try out what its solutions cost.
+    fn trial(&self) -> Box<dyn SystemTrial + '_>;
+}
+
+/// A copy of a dynamical system at the start of a step, see [`SystemView::trial`].
+pub trait SystemTrial {
+    /// Begins the step and linearises, which factorises where the system has a factor.
+    fn linearise(&mut self);
+    /// Puts a unit impulse on every node of its contactors, along the last axis.
+    fn push(&mut self);
+    /// Solves once for these impulses.
+    fn solve(&mut self);
 }
 
 /// A system in its dimension.
-pub(super) struct Seen<'a, S: Space>(pub &'a dyn DynamicalSystem<S>);
+pub(super) struct Seen<'a, S: Space> {
+    pub system: &'a dyn DynamicalSystem<S>,
+    /// The step that comes next.
+    pub step: SystemStep<S>,
+}
 
 impl<S: Space> SystemView for Seen<'_, S> {
     fn name(&self) -> &str {
-        self.0.name()
+        self.system.name()
     }
     fn freedoms(&self) -> usize {
-        self.0.freedoms()
+        self.system.freedoms()
     }
     fn is_grain(&self) -> bool {
-        self.0.is_grain()
+        self.system.is_grain()
     }
     fn length(&self) -> f64 {
-        self.0.length()
+        self.system.length()
     }
     fn contactors(&self) -> Vec<Contactor> {
-        self.0.contactors()
+        self.system.contactors()
     }
     fn holders(&self) -> Vec<Holder> {
-        self.0.holders()
+        self.system.holders()
     }
     fn size(&self) -> Option<SystemSize> {
-        self.0.size()
+        self.system.size()
     }
     fn mesh_size(&self) -> Option<[usize; 2]> {
-        let mesh = self.0.deformed_mesh()?;
+        let mesh = self.system.deformed_mesh()?;
         Some([mesh.points.len(), mesh.elements.len() / (S::D + 1)])
     }
     fn surface_points(&self) -> usize {
-        self.0.touching_surface().map_or(0, |s| s.points.len())
+        self.system.touching_surface().map_or(0, |s| s.points.len())
+    }
+    fn trial(&self) -> Box<dyn SystemTrial + '_> {
+        Box::new(Trial {
+            copy: self.system.clone_box(),
+            step: &self.step,
+            impulse: vec![0.0; self.system.freedoms()],
+        })
+    }
+}
+
+struct Trial<'a, S: Space> {
+    copy: Box<dyn DynamicalSystem<S>>,
+    step: &'a SystemStep<S>,
+    impulse: Vec<f64>,
+}
+
+impl<S: Space> SystemTrial for Trial<'_, S> {
+    fn linearise(&mut self) {
+        self.copy.begin_step(self.step);
+        self.copy.linearise(self.step);
+    }
+    fn push(&mut self) {
+        let mut push = S::Vector::zero();
+        push[S::D - 1] = 1.0;
+        for contactor in self.copy.contactors() {
+            for (node, _) in contactor.nodes.terms() {
+                self.copy.add_impulse(node, &push, &mut self.impulse);
+            }
+        }
+    }
+    fn solve(&mut self) {
+        self.copy.solve(&mut self.impulse);
     }
 }

@@ -15,7 +15,7 @@ use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_math::fit::bounds::{Bounds, Parameter};
 use fretwork_math::fit::residuals::{Curve, Measurement, Target};
-use fretwork_scene::{InputError, Scene};
+use fretwork_scene::InputError;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -106,10 +106,7 @@ impl Tests {
                     ..
                 } => {
                     let quantity = Quantity::parse(output).map_err(|why| at(".output", why))?;
-                    let offer = match &scene {
-                        Scene::Dim2(built) => Offer::of(&loaded.case, built),
-                        Scene::Dim3(built) => Offer::of(&loaded.case, built),
-                    };
+                    let offer = Offer::of(&loaded.case, &scene);
                     offer.check(&quantity).map_err(|why| at(".output", why))?;
                     let single = Measurement {
                         name: name.to_owned(),

@@ -1,11 +1,9 @@
 //! Outputs that a case has, determined before anything runs.
 
 use super::quantity::{Quantity, listed};
-use fretwork_core::geometry::space::Space;
 use fretwork_observe::quantity::{Catalogue, Findings, Role, unit};
 use fretwork_observe::standard;
-use fretwork_scene::Scene;
-use fretwork_scene::build::Built;
+use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 use fretwork_scene::measures::MeasureSpec;
 use serde_json::Value;
@@ -23,10 +21,10 @@ pub struct Offer {
 
 impl Offer {
     /// The outputs of a case and its scene.
-    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
+    pub fn of(case: &Case, built: &Built) -> Self {
         Self {
-            found: standard::declared(case, &built.simulation),
-            columns: columns_of(case, built),
+            found: standard::declared(case, built.simulation.view()),
+            columns: columns(case, built),
             measures: case.measures.iter().map(|m| m.name().to_owned()).collect(),
         }
     }
@@ -133,14 +131,7 @@ pub fn measure_names(case: &Case) -> Vec<&str> {
 }
 
 /// Names of the columns of the statistics of a case.
-pub fn columns(case: &Case, scene: &Scene) -> Vec<String> {
-    match scene {
-        Scene::Dim2(built) => columns_of(case, built),
-        Scene::Dim3(built) => columns_of(case, built),
-    }
-}
-
-fn columns_of<S: Space>(case: &Case, built: &Built<S>) -> Vec<String> {
-    let observers = standard::observers(case, &built.simulation, 0.0);
+pub fn columns(case: &Case, built: &Built) -> Vec<String> {
+    let observers = standard::observers(case, built.simulation.view(), 0.0);
     observers.columns().into_iter().map(|c| c.name).collect()
 }

@@ -3,9 +3,7 @@
 
 use crate::duration::seconds;
 use cpu_time::ThreadTime;
-use fretwork_core::geometry::space::Space;
-use fretwork_scene::Scene;
-use fretwork_scene::build::Built;
+use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 use fretwork_scene::most_steps::most_steps;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -63,17 +61,17 @@ pub struct RunTime {
 impl Trial {
     /// Steps a scene for a short while in a thread of its own. The thread is abandoned when the
     /// time is up, so that even the largest scene does not block the program.
-    pub fn of<S: Space>(case: &Case, built: Built<S>) -> Self {
+    pub fn of(case: &Case, built: Built) -> Self {
         let mut simulation = built.simulation;
         let steps = most_steps(case);
         let mut out = Self {
             steps,
-            grains: simulation.state.bodies.grains().count(),
-            dimension: S::D,
+            grains: simulation.grains().len(),
+            dimension: simulation.dimension(),
             ..Self::default()
         };
         let (sender, receiver) = channel::<Result<Timed, String>>();
-        let deformable = !simulation.state.systems.is_empty();
+        let deformable = simulation.system_count() > 0;
         let watched = steps.min(STEPS);
         let work = move || {
             for _ in 0..watched {
@@ -81,7 +79,7 @@ impl Trial {
                 let stepped = simulation.step().map_err(|e| e.to_string());
                 let stepped = stepped.map(|report| Timed {
                     seconds: clock.elapsed().as_secs_f64(),
-                    contacts: simulation.state.network.contacts.len(),
+                    contacts: simulation.contact_count(),
                     iterations: report.solver.iterations,
                 });
                 let failed = stepped.is_err();
@@ -129,14 +127,6 @@ impl Trial {
             }
         }
         out
-    }
-
-    /// The trial of a scene of either dimension.
-    pub fn of_scene(case: &Case, scene: Scene) -> Self {
-        match scene {
-            Scene::Dim2(built) => Self::of(case, *built),
-            Scene::Dim3(built) => Self::of(case, *built),
-        }
     }
 
     /// The steps that are used: the first ones build neighbour lists and have no warm start.

@@ -57,7 +57,7 @@ impl Forecast {
             let seed = format!("seed={}", run.seed);
             let sets = [plan.base.source.sets(), &run.sets, &[seed]].concat();
             let loaded = load(&plan.base.path, &sets).ok()?;
-            Trial::of_scene(&loaded.case, loaded.build(search).ok()?).run_time()
+            Trial::of(&loaded.case, loaded.build(search).ok()?).run_time()
         };
         let tried: Vec<RunTime> = places.into_iter().filter_map(trial).collect();
         if tried.is_empty() {

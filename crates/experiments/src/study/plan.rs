@@ -10,7 +10,7 @@ use crate::runs::quantity::Quantity;
 use crate::{Error, Program, build, load};
 use fretwork_core::laws::SearchPath;
 use fretwork_scene::inputs::{self, Input};
-use fretwork_scene::{InputError, Loaded, Scene};
+use fretwork_scene::{Built, InputError, Loaded};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -333,11 +333,8 @@ fn own_value(factor: &Factor, inputs: &[Input]) -> Level {
 }
 
 /// The outputs that are asked for, or those that the case has.
-fn outputs(read: &StudyFile, base: &Loaded, scene: &Scene) -> Result<Vec<Quantity>, Error> {
-    let offer = match scene {
-        Scene::Dim2(built) => Offer::of(&base.case, built),
-        Scene::Dim3(built) => Offer::of(&base.case, built),
-    };
+fn outputs(read: &StudyFile, base: &Loaded, scene: &Built) -> Result<Vec<Quantity>, Error> {
+    let offer = Offer::of(&base.case, scene);
     let asked = &read.spec.outputs;
     if asked.is_empty() {
         let usual: Result<Vec<Quantity>, String> = offer

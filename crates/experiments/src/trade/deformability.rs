@@ -9,9 +9,8 @@ use super::varied::{Sense, Varied};
 use crate::Error;
 use crate::factor::Level;
 use fretwork_core::bodies::Dof;
-use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::error::Norm;
-use fretwork_scene::build::Built;
+use fretwork_scene::Built;
 use fretwork_scene::case::{
     BodySpec, Case, DofSpec, HalfSpaceProfile, HalfSpaceSpec, InterfaceSpec,
 };
@@ -57,9 +56,9 @@ struct Grains {
 
 impl Deformability {
     /// Reads it from a built scene.
-    pub fn of<S: Space>(case: &Case, built: &Built<S>) -> Self {
+    pub fn of(case: &Case, built: &Built) -> Self {
         let s = &built.simulation;
-        let contacts = s.laws.iter().map(|interface| {
+        let contacts = s.laws().iter().map(|interface| {
             let law = interface.contact();
             let names = law.plugin.parameters.iter().map(|p| p.name.clone());
             ContactLaw {
@@ -68,14 +67,11 @@ impl Deformability {
                 values: names.zip(law.parameters.iter().copied()).collect(),
             }
         });
-        let mut is_grain = vec![false; s.state.bodies.len()];
-        s.state.bodies.grains().for_each(|b| is_grain[b] = true);
-        let balls = s
-            .shapes
-            .balls
-            .iter()
-            .map(|b| (b.body, b.material, b.radius));
-        let pieces = s.shapes.pieces.iter();
+        let mut is_grain = vec![false; s.bodies().len()];
+        s.grains().into_iter().for_each(|b| is_grain[b] = true);
+        let balls = s.balls().into_iter();
+        let balls = balls.map(|b| (b.body, b.material, b.radius));
+        let pieces = s.pieces().into_iter();
         let pieces = pieces.map(|p| (p.body, p.material, p.size));
         // Sum of the radii and their number, by material.
         let mut radii: BTreeMap<u16, (f64, f64)> = BTreeMap::new();
@@ -98,7 +94,7 @@ impl Deformability {
         Self {
             contacts: contacts.collect(),
             grains: grains.collect(),
-            norm: s.options.solver.norm,
+            norm: s.options().solver.norm,
         }
     }
 

@@ -10,7 +10,7 @@ use crate::runs::launcher::{Patience, Run};
 use crate::runs::offer::{Offer, measure_names};
 use crate::runs::stored::summary;
 use crate::runs::trial::Trial;
-use fretwork_scene::Scene;
+use fretwork_scene::Built;
 use fretwork_scene::case::Case;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -72,12 +72,12 @@ pub fn outputs(request: &Request, offer: &Offer) -> Result<Vec<Output>, Error> {
 ///
 /// # Errors
 /// The budget is too small.
-pub fn budget(request: &Request, case: &Case, scene: Scene) -> Result<(), Error> {
+pub fn budget(request: &Request, case: &Case, scene: Built) -> Result<(), Error> {
     let early = case.jump.is_some() || case.phases.last().is_some_and(|p| p.until.is_some());
     if early {
         return Ok(());
     }
-    let trial = Trial::of_scene(case, scene);
+    let trial = Trial::of(case, scene);
     let budget = request.budget.as_secs_f64();
     let Some(run) = trial.run_time() else {
         // A failing step is reported by the run itself.

@@ -12,12 +12,10 @@ use crate::runs::launcher::Launcher;
 use crate::runs::offer::Offer;
 use crate::runs::stored::Limits;
 use crate::{Error, Program, build, load};
-use fretwork_core::geometry::space::Space;
 use fretwork_core::solve::local::solver::Method;
-use fretwork_scene::build::Built;
 use fretwork_scene::methods::{Demands, Service};
 use fretwork_scene::most_steps::most_steps;
-use fretwork_scene::{Loaded, Scene};
+use fretwork_scene::{Built, Loaded};
 use fretwork_store::folder_lock::FolderLock;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -157,23 +155,15 @@ struct Facts {
 }
 
 impl Facts {
-    fn of(loaded: &Loaded, scene: &Scene) -> Self {
-        match scene {
-            Scene::Dim2(built) => Self::from(loaded, built),
-            Scene::Dim3(built) => Self::from(loaded, built),
-        }
-    }
-
-    fn from<S: Space>(loaded: &Loaded, built: &Built<S>) -> Self {
-        let s = &built.simulation;
-        let demands = Demands::of(s);
+    fn of(loaded: &Loaded, built: &Built) -> Self {
+        let demands = Demands::of(built.simulation.view());
         let serves =
             |m: &Method| *m == loaded.case.solver.method || demands.service(*m) == Service::Serves;
         Self {
             offer: Offer::of(&loaded.case, built),
             solving: Solving {
                 methods: Method::ALL.iter().copied().filter(serves).collect(),
-                tolerance: s.options.solver.tolerance,
+                tolerance: built.simulation.options().solver.tolerance,
                 deformability: Deformability::of(&loaded.case, built),
             },
         }

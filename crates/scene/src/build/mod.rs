@@ -23,7 +23,7 @@ mod union;
 mod wear;
 
 pub use load::{load, load_reader, load_text};
-pub use surface::Dimensional;
+use surface::Dimensional;
 
 use super::case::Case;
 use super::interfaces;
@@ -41,6 +41,7 @@ use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_core::laws::{Interface, SearchPath};
 use fretwork_core::solve::{self, error::Norm};
 use fretwork_core::step::{Scheme, Simulation};
+use fretwork_core::view::AnySimulation;
 use fretwork_core::wear::Scar;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,20 +62,11 @@ pub struct Loaded {
     pub(super) own_files: BTreeMap<String, String>,
 }
 
-/// A scene of either dimension.
-#[derive(Debug)]
-pub enum Scene {
-    /// Two dimensions.
-    Dim2(Box<Built<Dim2>>),
-    /// Three dimensions.
-    Dim3(Box<Built<Dim3>>),
-}
-
 /// A scene ready to step.
 #[derive(Debug)]
-pub struct Built<S: Space> {
+pub struct Built {
     /// The simulation.
-    pub simulation: Simulation<S>,
+    pub simulation: AnySimulation,
     /// Name and text of the material files that were read.
     pub materials: Vec<(String, String)>,
     /// Densities of the materials, times `inertia_scaling` (kg/m^3).
@@ -96,24 +88,32 @@ impl Loaded {
     ///
     /// # Errors
     /// An [`InputError`] with file, line and column.
-    pub fn build(&self, path: &SearchPath) -> Result<Scene, InputError> {
-        if self.case.dimension == 2 {
-            Ok(Scene::Dim2(Box::new(self.build_in::<Dim2>(path)?)))
-        } else {
-            Ok(Scene::Dim3(Box::new(self.build_in::<Dim3>(path)?)))
+    pub fn build(&self, path: &SearchPath) -> Result<Built, InputError> {
+        match self.case.dimension {
+            2 => self.build_by::<Dim2>(path),
+            _ => self.build_by::<Dim3>(path),
         }
     }
 
-    /// Builds the scene in dimension `S`, which must be that of the case.
+    /// Builds the simulation alone, in the dimension of the case.
     ///
     /// # Errors
-    /// An [`InputError`] with file, line and column.
-    pub fn build_in<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
-        S::build(self, path)
+    /// An [`InputError`] with file, line and column; it also says where the case has another
+    /// dimension.
+    pub fn build_in<S: Space>(&self, path: &SearchPath) -> Result<Simulation<S>, InputError> {
+        let simulation = self.build(path)?.simulation.into_dimension();
+        simulation.map_err(|other| {
+            let message = format!(
+                "the case has {} dimensions, not {}",
+                other.dimension(),
+                S::D
+            );
+            self.source
+                .locate(ValidationError::new("dimension", message))
+        })
     }
 
-    /// Implementation of [`Self::build_in`], compiled once for each dimension.
-    fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built<S>, InputError> {
+    fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built, InputError> {
         let shelf = self.shelf();
         let Materials {
             densities,
@@ -186,7 +186,7 @@ impl Loaded {
         crate::heat::install(&self.case, &properties, &unscaled, &mut simulation)
             .map_err(|f| source.locate(f))?;
         Ok(Built {
-            simulation,
+            simulation: simulation.into(),
             materials: texts,
             densities,
             names,

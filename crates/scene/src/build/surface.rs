@@ -1,6 +1,6 @@
 //! Surfaces of first bodies.
 
-use super::{Builder, Built, Loaded, Scene};
+use super::Builder;
 use crate::case::{ShapeSpec, Side};
 use crate::sample::deposit::Deposits;
 use crate::source::{InputError, split_path};
@@ -15,7 +15,6 @@ use fretwork_core::geometry::mesh::Mesh;
 use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
 use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork_core::laws::SearchPath;
 use fretwork_elastic::Deformable;
 use nalgebra::Vector2;
 
@@ -26,13 +25,6 @@ const MAX_TERMS: f64 = 2e8;
 
 /// Operations that differ between dimensions, and shapes that exist in only one of them.
 pub trait Dimensional: Deposits + Deformable {
-    /// Builds a scene of this dimension, see [`Loaded::build_in`].
-    ///
-    /// # Errors
-    /// As [`Loaded::build_in`].
-    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError>;
-    /// Wraps the built scene in the enum of both dimensions.
-    fn scene(built: Built<Self>) -> Scene;
     /// Makes a profile from its points, left to right.
     ///
     /// # Errors
@@ -73,12 +65,6 @@ pub trait Dimensional: Deposits + Deformable {
 }
 
 impl Dimensional for Dim2 {
-    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError> {
-        loaded.build_by(path)
-    }
-    fn scene(built: Built<Self>) -> Scene {
-        Scene::Dim2(Box::new(built))
-    }
     fn profile(
         points: Vec<(f64, f64)>,
         side: Side,
@@ -129,12 +115,6 @@ impl Dimensional for Dim2 {
 }
 
 impl Dimensional for Dim3 {
-    fn build(loaded: &Loaded, path: &SearchPath) -> Result<Built<Self>, InputError> {
-        loaded.build_by(path)
-    }
-    fn scene(built: Built<Self>) -> Scene {
-        Scene::Dim3(Box::new(built))
-    }
     fn profile(
         _: Vec<(f64, f64)>,
         _: Side,

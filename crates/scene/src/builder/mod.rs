@@ -9,7 +9,7 @@ mod grains;
 mod interface;
 mod shapes;
 
-use crate::build::{Built, Dimensional, Loaded};
+use crate::build::{Built, Loaded};
 use crate::case::HeatSpec;
 use crate::case::{
     AccuracySpec, BodySpec, Case, GrainSpec, InterfaceSpec, PeriodicSpec, SolverSpec, TimeSpec,
@@ -18,11 +18,9 @@ use crate::material::{Material, Sourced};
 use crate::source::InputError;
 use fretwork_core::laws::SearchPath;
 use std::collections::BTreeMap;
-use std::marker::PhantomData;
 use std::path::PathBuf;
 
-/// Builds a [`Case`] in two ([`Dim2`](crate::Dim2)) or three ([`Dim3`](crate::Dim3)) dimensions,
-/// and from it a simulation.
+/// Builds a [`Case`] in two or three dimensions, and from it a simulation.
 ///
 /// # Examples
 /// A ball rests on a plane, both of a material of one's own. The laws are those that the search
@@ -30,9 +28,9 @@ use std::path::PathBuf;
 /// `fretwork::shipped::search_path()`.
 /// ```
 /// use fretwork_scene::case::{BodySpec, GrainSpec, InterfaceSpec, OneGrain, ShapeSpec};
-/// use fretwork_scene::{CaseBuilder, Dim3};
+/// use fretwork_scene::CaseBuilder;
 ///
-/// let loaded = CaseBuilder::<Dim3>::new("a ball on a plane")
+/// let loaded = CaseBuilder::in_space("a ball on a plane")
 ///     .time(1e-4, 0.1)
 ///     .gravity([0.0, 0.0, -9.81])
 ///     .own_material("glass", 2500.0, "data sheet")
@@ -43,27 +41,35 @@ use std::path::PathBuf;
 /// assert_eq!(loaded.density("glass"), Some(2500.0));
 ///
 /// // Mistakes are the errors of case files.
-/// let wrong = CaseBuilder::<Dim3>::new("no step").load().map(|_| ()).unwrap_err();
+/// let wrong = CaseBuilder::in_space("no step").load().map(|_| ()).unwrap_err();
 /// assert!(wrong.to_string().contains("must be positive, got 0"), "{wrong}");
 /// # Ok::<(), fretwork_scene::InputError>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct CaseBuilder<S> {
+pub struct CaseBuilder {
     case: Case,
     folder: PathBuf,
     materials: BTreeMap<String, Material>,
-    dimension: PhantomData<S>,
 }
 
-impl<S: Dimensional> CaseBuilder<S> {
-    /// A case with a title and nothing in it: it still needs its [time](Self::time), materials and
-    /// bodies.
-    pub fn new(name: impl Into<String>) -> Self {
+impl CaseBuilder {
+    /// A case of two dimensions with a title and nothing in it: it still needs its
+    /// [time](Self::time), materials and bodies.
+    pub fn in_plane(name: impl Into<String>) -> Self {
+        Self::new(name.into(), 2)
+    }
+
+    /// A case of three dimensions with a title and nothing in it; see [`Self::in_plane`].
+    pub fn in_space(name: impl Into<String>) -> Self {
+        Self::new(name.into(), 3)
+    }
+
+    fn new(name: String, dimension: u32) -> Self {
         Self {
             case: Case {
-                name: name.into(),
+                name,
                 doc: String::new(),
-                dimension: S::D as u32,
+                dimension,
                 seed: 0,
                 time: TimeSpec {
                     step: 0.0,
@@ -98,7 +104,6 @@ impl<S: Dimensional> CaseBuilder<S> {
             },
             folder: PathBuf::new(),
             materials: BTreeMap::new(),
-            dimension: PhantomData,
         }
     }
 
@@ -243,7 +248,7 @@ impl<S: Dimensional> CaseBuilder<S> {
     /// # Errors
     /// What a case file with the same content would be refused for: laws and materials that are not
     /// found, parameters out of range, bodies that overlap.
-    pub fn build(self, laws: &SearchPath) -> Result<Built<S>, InputError> {
-        self.load()?.build_in(laws)
+    pub fn build(self, laws: &SearchPath) -> Result<Built, InputError> {
+        self.load()?.build(laws)
     }
 }

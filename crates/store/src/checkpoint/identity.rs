@@ -2,6 +2,7 @@
 
 use fretwork_core::geometry::space::Space;
 use fretwork_core::heat::{Grid, HalfSpace, Node, Store};
+use fretwork_core::in_dimension;
 use fretwork_core::step::State;
 use fretwork_observe::code::{CodeError, encode};
 use fretwork_scene::source::{Source, first_difference};
@@ -39,10 +40,9 @@ impl Identity {
     ///
     /// # Errors
     /// The scene cannot be serialized.
-    pub fn of<S: Space>(loaded: &Loaded, built: &Built<S>) -> Result<Self, CodeError> {
-        let s = &built.simulation;
+    pub fn of(loaded: &Loaded, built: &Built) -> Result<Self, CodeError> {
         let mut plugins: Vec<(String, String)> = Vec::new();
-        for law in s.laws.iter().flat_map(|l| l.loaded()) {
+        for law in built.simulation.laws().iter().flat_map(|l| l.loaded()) {
             let p = &law.plugin;
             let stamp = (format!("{} law `{}`", p.kind, p.name), p.sha256.clone());
             if !plugins.contains(&stamp) {
@@ -50,9 +50,11 @@ impl Identity {
             }
         }
         let mut hash = Hashed(Sha256::new());
-        hash.0.update(encode(&*without_depths(&s.state))?);
-        // Writing to the hash never fails.
-        let _ = write!(hash, "{:?}", s.shapes);
+        in_dimension!(&built.simulation, |s| {
+            hash.0.update(encode(&*without_depths(&s.state))?);
+            // Writing to the hash never fails.
+            let _ = write!(hash, "{:?}", s.shapes);
+        });
         Ok(Self {
             dimension: loaded.case.dimension,
             case: loaded.source.text().to_owned(),

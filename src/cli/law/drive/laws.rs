@@ -3,13 +3,11 @@
 use super::super::super::{Failure, PluginArgs};
 use super::super::{all_used, named, values};
 use super::DriveArgs;
-use crate::geometry::space::Space;
 use crate::laws::bench::Bench;
 use crate::laws::{Interface, Kind, Loaded, Plugin};
 use crate::scene::bond_sites::BondSites;
-use crate::scene::build::Built;
+use crate::scene::load;
 use crate::scene::source::nearest;
-use crate::scene::{Scene, load};
 use std::path::Path;
 
 /// Default reduced radius of the contact (m).
@@ -56,11 +54,10 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
             case.display()
         )));
     };
-    let scene = loaded.build(&args.plugins.search()?)?;
-    let (law, radius) = match &scene {
-        Scene::Dim2(built) => site(built, place),
-        Scene::Dim3(built) => site(built, place),
-    };
+    let simulation = loaded.build(&args.plugins.search()?)?.simulation;
+    // The median reduced radius of its contacts (m).
+    let radius = BondSites::of(simulation.view(), place).map(|b| b.radius);
+    let law = simulation.laws()[place].clone();
     let laws: Vec<String> = law
         .loaded()
         .map(|l| format!("{} {}", l.plugin.kind, l.plugin.name))
@@ -69,13 +66,6 @@ fn of_case(case: &Path, args: &DriveArgs) -> Result<(Bench, String), Failure> {
     let radius = args.radius.or(radius).unwrap_or(RADIUS);
     let bench = Bench::new(law, loaded.case.dimension, radius);
     Ok((bench, title))
-}
-
-/// An interface of a scene, and the median reduced radius of its contacts (m).
-fn site<S: Space>(built: &Built<S>, place: usize) -> (Interface, Option<f64>) {
-    let s = &built.simulation;
-    let radius = BondSites::of(s, place).map(|b| b.radius);
-    (s.laws[place].clone(), radius)
 }
 
 fn compose(args: &DriveArgs, plugins: &PluginArgs) -> Result<Interface, Failure> {

@@ -6,7 +6,7 @@ use super::*;
 
 /// Throws each grain at the middle of each other one, half of the time across a period: what it is
 /// thrown at is hit, or the run says that it may not have been.
-fn throw_at_each_other<S: Dimensional>(grains: &[(&str, Grain)]) {
+fn throw_at_each_other<S: Space>(grains: &[(&str, Grain)]) {
     let mut rng = Pcg64::seed_from_u64(20);
     let mut silent = Vec::new();
     let (mut hit, mut told, mut told_seen) = (0, 0, 0);

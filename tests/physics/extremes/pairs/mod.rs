@@ -4,7 +4,6 @@
 
 use super::bench::{Sketch, place, up, volume};
 use fretwork::geometry::space::{Dim2, Dim3, Space};
-use fretwork::scene::build::Dimensional;
 use fretwork::step::Simulation;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -254,7 +253,7 @@ impl Throw {
 
     /// Throws the grain, and returns whether it is held, or the end that the run is silent about.
     /// Balls that are seen are held.
-    fn run<S: Dimensional>(
+    fn run<S: Space>(
         &self,
         name: &str,
         grain: Grain,
@@ -314,7 +313,7 @@ impl Throw {
 
 /// Throws each grain at each wall, `times` times at each speed. What meets before the first
 /// detection may be told, and what turns a corner into the wall; all others are held.
-fn throw_all<S: Dimensional>(
+fn throw_all<S: Space>(
     grains: &[(&str, Grain)],
     soft: Option<f64>,
     walls: &[Wall],

@@ -1,7 +1,6 @@
 //! Short scene descriptions, written once for 2D and 3D.
 
 use fretwork::geometry::space::Space;
-use fretwork::scene::build::Dimensional;
 use fretwork::scene::load;
 use fretwork::shipped::search_path;
 use fretwork::step::Simulation;
@@ -163,7 +162,7 @@ impl Sketch {
     ///
     /// # Errors
     /// The message that a user would read.
-    pub fn build<S: Dimensional>(&self) -> Result<Simulation<S>, String> {
+    pub fn build<S: Space>(&self) -> Result<Simulation<S>, String> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);
         let name = format!("fretwork-extremes-{}-{number}", std::process::id());
@@ -188,6 +187,6 @@ impl Sketch {
         let loaded = load(&path, &[]).map_err(|e| e.to_string());
         let built = loaded.and_then(|l| l.build_in::<S>(&search_path()).map_err(|e| e.to_string()));
         let _ = std::fs::remove_dir_all(&folder);
-        Ok(built?.simulation)
+        built
     }
 }

@@ -3,8 +3,7 @@
 use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, grains, place, plane, refused, volume, watch,
 };
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 pub const STIFFNESS: Group = Group {
@@ -21,7 +20,7 @@ pub const TORN: Group = Group {
     quick: true,
 };
 
-fn stiffness<S: Dimensional>() -> Vec<Row> {
+fn stiffness<S: Space>() -> Vec<Row> {
     let mut rows = Vec::new();
     for k in [1.0, 1e4, 1e8, 1e12, 1e16, 1e20] {
         for theta in [0.5, 1.0] {
@@ -31,7 +30,7 @@ fn stiffness<S: Dimensional>() -> Vec<Row> {
     rows
 }
 
-fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
+fn hanging<S: Space>(k: f64, theta: f64, expected: Expected) -> Row {
     let value = format!("{k:.0e} Pa/m, theta = {theta}");
     let mass = 1e3 * volume::<S>(0.1);
     // The bond's area determines the time step: a tenth of the period, and at least 1 ms if
@@ -78,7 +77,7 @@ fn hanging<S: Dimensional>(k: f64, theta: f64, expected: Expected) -> Row {
 }
 
 /// Opening of the first bond (m).
-fn opening<S: Dimensional>(s: &Simulation<S>) -> f64 {
+fn opening<S: Space>(s: &Simulation<S>) -> f64 {
     s.state.network.memory[0]
         .bonds
         .first()
@@ -86,7 +85,7 @@ fn opening<S: Dimensional>(s: &Simulation<S>) -> f64 {
 }
 
 /// A grid in which every grain is pulled from its neighbours.
-fn torn<S: Dimensional>() -> Vec<Row> {
+fn torn<S: Space>() -> Vec<Row> {
     let (side, layers, bonds) = if S::D == 2 { (10, 1, 180) } else { (5, 5, 300) };
     let pulled = |speed: f64| {
         let value = format!("pulled at {speed:.0e} m/s");

@@ -1,8 +1,7 @@
 //! Face contacts of blocks: walls with more unknowns than degrees of freedom, and flush faces.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, carried, floor, go, refused};
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
 pub const WALL: Group = Group {
     name: "hyperstatic wall",
@@ -19,7 +18,7 @@ pub const FACES: Group = Group {
 };
 
 /// A block 0.1 m high and, in 3D, 0.1 m deep.
-fn block<S: Dimensional>(x: f64, up: f64, width: f64) -> String {
+fn block<S: Space>(x: f64, up: f64, width: f64) -> String {
     match S::D {
         2 => format!(
             "(at: [{x:?}, {up:?}], points: [(0.0, 0.0), ({width:?}, 0.0), ({width:?}, 0.1), (0.0, 0.1)])"
@@ -33,7 +32,7 @@ fn block<S: Dimensional>(x: f64, up: f64, width: f64) -> String {
 }
 
 /// Blocks on a floor for some steps.
-fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f64) -> Row {
+fn standing<S: Space>(value: String, blocks: &[String], width: f64, mu: f64) -> Row {
     let kind = if S::D == 2 { "Polygons" } else { "Polyhedra" };
     let sketch = Sketch {
         mu,
@@ -73,7 +72,7 @@ fn standing<S: Dimensional>(value: String, blocks: &[String], width: f64, mu: f6
 }
 
 /// Courses in running bond; in 3D a block has four contact points per joint.
-fn wall<S: Dimensional>() -> Vec<Row> {
+fn wall<S: Space>() -> Vec<Row> {
     let of = |mu: f64| {
         let mut blocks = Vec::new();
         for course in 0..10 {
@@ -88,7 +87,7 @@ fn wall<S: Dimensional>() -> Vec<Row> {
     [0.0, 0.6, 10.0].map(of).into()
 }
 
-fn faces<S: Dimensional>() -> Vec<Row> {
+fn faces<S: Space>() -> Vec<Row> {
     let of = |n: u32| {
         let blocks: Vec<String> = (0..n)
             .map(|k| block::<S>(0.0, 0.1 * f64::from(k), 0.1))

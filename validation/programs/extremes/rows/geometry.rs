@@ -4,8 +4,7 @@ use super::super::bench::Cause::Refused;
 use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, overlap, place, refused, told,
 };
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 
 pub const COINCIDENT: Group = Group {
@@ -22,7 +21,7 @@ pub const LENGTH: Group = Group {
     quick: true,
 };
 
-fn coincident<S: Dimensional>() -> Vec<Row> {
+fn coincident<S: Space>() -> Vec<Row> {
     let at_once = |(words, apart, projection, expected): (&str, f64, f64, Expected)| {
         let flies = format!(
             "(at: {}, radius: 0.1, velocity: {})",
@@ -65,7 +64,7 @@ fn coincident<S: Dimensional>() -> Vec<Row> {
 /// Iterations of each step, scaled positions, and the scene.
 type Heap<S> = (Vec<u32>, Vec<[f64; 3]>, Simulation<S>);
 
-fn lengths<S: Dimensional>() -> Vec<Row> {
+fn lengths<S: Space>() -> Vec<Row> {
     let heap = |scale: f64| -> Result<Heap<S>, String> {
         let mut all = Vec::new();
         let layers = if S::D == 2 { 1 } else { 4 };

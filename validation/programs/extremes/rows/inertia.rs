@@ -5,8 +5,7 @@ use super::super::bench::{
     Expected, G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, overlap, place,
     refused, told, volume,
 };
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
 /// A tolerance bounds the square of the fraction of the work that is not transmitted:
 /// docs/design.md. If a fraction of the weight is missing in each step, the small ball moves by
@@ -41,7 +40,7 @@ pub const HIGH_COLUMN: Group = Group {
 };
 
 /// Two balls, one above the other.
-fn pair<S: Dimensional>(
+fn pair<S: Space>(
     value: String,
     radii: [f64; 2],
     densities: [f64; 2],
@@ -90,12 +89,7 @@ fn pair<S: Dimensional>(
 const FAR: f64 = 1e11;
 
 /// Heavy on light, with the tolerance that the program proposes where rounding limits it.
-fn heavy<S: Dimensional>(
-    words: &str,
-    ratio: f64,
-    radii: [f64; 2],
-    densities: [f64; 2],
-) -> Vec<Row> {
+fn heavy<S: Space>(words: &str, ratio: f64, radii: [f64; 2], densities: [f64; 2]) -> Vec<Row> {
     let row = |words: &str, tolerance, expected| {
         pair::<S>(words.to_owned(), radii, densities, tolerance, expected)
     };
@@ -108,7 +102,7 @@ fn heavy<S: Dimensional>(
     ]
 }
 
-fn masses<S: Dimensional>() -> Vec<Row> {
+fn masses<S: Space>() -> Vec<Row> {
     let mut rows = Vec::new();
     for ratio in [1.0, 1e3, 1e6, 1e9, 1e12] {
         let words = format!("{ratio:.0e}, heavy on light");
@@ -119,7 +113,7 @@ fn masses<S: Dimensional>() -> Vec<Row> {
     rows
 }
 
-fn sizes<S: Dimensional>() -> Vec<Row> {
+fn sizes<S: Space>() -> Vec<Row> {
     let mut rows = Vec::new();
     for ratio in [1e2, 1e3, 1e4] {
         let ratio: f64 = ratio;
@@ -132,7 +126,7 @@ fn sizes<S: Dimensional>() -> Vec<Row> {
     rows
 }
 
-fn column<S: Dimensional>((n, method, expected): (usize, &str, Expected)) -> Row {
+fn column<S: Space>((n, method, expected): (usize, &str, Expected)) -> Row {
     let at = |k: usize| ball(&place::<S>(0.0, 0.0, 0.1 + 0.2 * k as f64), 0.1);
     let all: Vec<String> = (0..n).map(at).collect();
     let sketch = Sketch {

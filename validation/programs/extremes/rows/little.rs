@@ -1,8 +1,7 @@
 //! Minimal scenes: no gravity, no grains, one grain, one contact.
 
 use super::super::bench::{G, Group, HELD, Row, Sketch, ball, floor, go, grains, place, refused};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use fretwork::step::Simulation;
 
 pub const WEIGHTLESS: Group = Group {
@@ -19,7 +18,7 @@ pub const FEW: Group = Group {
     quick: true,
 };
 
-fn weightless<S: Dimensional>() -> Vec<Row> {
+fn weightless<S: Space>() -> Vec<Row> {
     let at = |x, up| ball(&place::<S>(x, 0.0, up), 0.1);
     let flies = format!(
         "(at: {}, radius: 0.1, velocity: {})",
@@ -44,7 +43,7 @@ fn weightless<S: Dimensional>() -> Vec<Row> {
     vec![ran.row(&s, (value, found), rest && moves, HELD)]
 }
 
-fn few<S: Dimensional>() -> Vec<Row> {
+fn few<S: Space>() -> Vec<Row> {
     type Look<S> = fn(&Simulation<S>) -> (String, bool);
     let scene = |words: &str, bodies: &str, grains: &str, look: Look<S>| {
         let sketch = Sketch {

@@ -2,8 +2,7 @@
 
 use super::super::bench::Cause::Passed;
 use super::super::bench::{Expected, Group, HELD, Row, Sketch, go, place, refused, told};
-use fretwork::geometry::space::{Dim2, Dim3};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space};
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 pub const SPEED: Group = Group {
@@ -23,7 +22,7 @@ pub const CORNERS: Group = Group {
 /// Alert distance of the other rows (m).
 const NEAR: f64 = 1e-3;
 
-fn speeds<S: Dimensional>() -> Vec<Row> {
+fn speeds<S: Space>() -> Vec<Row> {
     let thrown = |(v, alert, expected): (f64, f64, Expected)| {
         let (start, post) = (place::<S>(0.0, 0.0, 0.0), place::<S>(1.0, 0.0, 0.0));
         let sketch = Sketch {
@@ -82,7 +81,7 @@ fn speeds<S: Dimensional>() -> Vec<Row> {
 /// A box of 0.1 m at a speed given in box sides per step, starting slightly more than the alert
 /// distance above the surface at the end of a step: with a side down on a flat surface, or an edge
 /// down above a valley.
-fn corners<S: Dimensional>() -> Vec<Row> {
+fn corners<S: Space>() -> Vec<Row> {
     let thrown = |(sides, valley, expected): (f64, bool, Expected)| {
         let v = sides * 0.1 / Sketch::default().step;
         let (half, turn, rise) = if valley {

@@ -5,8 +5,7 @@ use super::super::bench::{
     G, Group, HELD, Row, Sketch, ball, carried, floor, go, grains, held_though, overlap, place,
     plane, refused, volume, watch,
 };
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use std::f64::consts::PI;
 
 pub const FRICTION: Group = Group {
@@ -37,7 +36,7 @@ pub const TOLERANCE: Group = Group {
     quick: true,
 };
 
-fn friction<S: Dimensional>() -> Vec<Row> {
+fn friction<S: Space>() -> Vec<Row> {
     let block = |mu: f64| {
         let angle = PI / 6.0;
         let dofs = match S::D {
@@ -79,7 +78,7 @@ fn friction<S: Dimensional>() -> Vec<Row> {
     [0.0, 1e-9, 1.0, 10.0, 1e6].map(block).into()
 }
 
-fn wedge<S: Dimensional>() -> Vec<Row> {
+fn wedge<S: Space>() -> Vec<Row> {
     let groove = |(degrees, mu): (f64, f64)| {
         // Half of the angle between the sides.
         let a = degrees.to_radians();
@@ -154,7 +153,7 @@ fn rod() -> Vec<Row> {
 }
 
 /// One ball on the ends of a row, or on a triangle, of balls that touch.
-fn tolerance<S: Dimensional>() -> Vec<Row> {
+fn tolerance<S: Space>() -> Vec<Row> {
     let root = 3f64.sqrt();
     let (base, top) = match S::D {
         2 => (vec![[0.0, 0.0], [0.2, 0.0]], [0.1, 0.0, 0.1 + 0.1 * root]),

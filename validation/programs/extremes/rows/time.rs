@@ -5,8 +5,7 @@ use super::super::bench::{
     Expected, Group, HELD, Row, Sketch, ball, floor, go, grains, held_though, overlap, place,
     refused, told, up, watch,
 };
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
-use fretwork::scene::build::Dimensional;
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 
 pub const STEP: Group = Group {
     name: "step",
@@ -72,7 +71,7 @@ fn few_long_steps_in_space() -> Vec<Row> {
     falling::<Dim3>(&[(1e-2, HELD), (0.1, coarse)], 20)
 }
 
-fn falling<S: Dimensional>(steps: &[(f64, Expected)], count: u64) -> Vec<Row> {
+fn falling<S: Space>(steps: &[(f64, Expected)], count: u64) -> Vec<Row> {
     let falling = |(h, expected)| {
         let mut all = Vec::new();
         let layers = if S::D == 2 { 1 } else { 2 };
@@ -124,7 +123,7 @@ fn falling<S: Dimensional>(steps: &[(f64, Expected)], count: u64) -> Vec<Row> {
     steps.iter().copied().map(falling).collect()
 }
 
-fn jumps<S: Dimensional>() -> Vec<Row> {
+fn jumps<S: Space>() -> Vec<Row> {
     let lid = |(words, way, along, load, expected): (&str, f64, &str, &str, _)| {
         let at = |x| ball(&place::<S>(x, 0.0, 0.1), 0.1);
         let sketch = Sketch {
