@@ -18,7 +18,6 @@ mod expansion;
 mod results;
 mod turning;
 
-use crate::compiled::Deformable;
 use crate::error::BodyError;
 use crate::freedom::Freedoms;
 use crate::large_strain::LargeStrain;
@@ -26,6 +25,7 @@ use crate::model::{Formed, Model, assemble, contactors};
 use crate::newton::Iterate;
 use crate::small_strain;
 use crate::spec::BodySpec;
+use crate::touching_surface::open_surface;
 use expansion::FreeStrain;
 use fretwork_core::bodies::{
     Compliance, Conduction, Contactor, ContactorShape, DeformedMesh, Dof, DynamicalSystem, Holder,
@@ -63,7 +63,7 @@ pub struct ElasticBody<S: Space> {
     step: Option<SystemStep<S>>,
 }
 
-impl<S: Deformable> ElasticBody<S> {
+impl<S: Space> ElasticBody<S> {
     /// A body at rest and without load.
     ///
     /// # Errors
@@ -175,7 +175,7 @@ impl<S: Deformable> ElasticBody<S> {
     }
 }
 
-impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
+impl<S: Space> DynamicalSystem<S> for ElasticBody<S> {
     fn name(&self) -> &str {
         &self.model.name
     }
@@ -476,7 +476,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticBody<S> {
         if contactor.shape != ContactorShape::Surface {
             return None;
         }
-        S::surface(self.surface_vertices(contactor), &part.facets, None).ok()
+        open_surface(self.surface_vertices(contactor), &part.facets, None).ok()
     }
 
     fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {

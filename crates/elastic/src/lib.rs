@@ -2,7 +2,6 @@
 //! rotation, and in large strain, and elastic half-spaces; and contact patches in closed form.
 
 pub mod body;
-pub mod compiled;
 pub mod corotational;
 pub mod element;
 pub mod error;
@@ -26,9 +25,9 @@ pub mod spec;
 pub mod strain;
 pub mod support;
 pub mod surface;
+mod touching_surface;
 
 pub use body::ElasticBody;
-pub use compiled::Deformable;
 pub use error::BodyError;
 pub use grain::{ElasticGrain, ElasticGrainSpec, GrainShape};
 pub use half_space::{HalfSpace, HalfSpaceSpec};

@@ -1,6 +1,5 @@
 //! What of a body does not change: its mesh and what is assembled and factorised from it.
 
-use crate::compiled::Deformable;
 use crate::element::Simplex;
 use crate::error::BodyError;
 use crate::freedom::Freedoms;
@@ -11,6 +10,7 @@ use crate::mesh::Mesh;
 use crate::spec::Touching;
 use crate::support::Rayleigh;
 use crate::surface::SurfacePart;
+use crate::touching_surface::open_surface;
 use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, Nodes, SystemSize};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
@@ -179,7 +179,7 @@ impl<S: Space> Model<S> {
 }
 
 /// The part of a mesh that touches, and its contactors.
-pub fn contactors<S: Deformable>(
+pub fn contactors<S: Space>(
     mesh: &Mesh<S>,
     touching: Touching,
     material: u16,
@@ -210,7 +210,7 @@ pub fn contactors<S: Deformable>(
         }
         Touching::Surface(_) => {
             let vertices = mesh.corners(&part.points);
-            if let Err(why) = S::surface(vertices, &part.facets, None) {
+            if let Err(why) = open_surface::<S>(vertices, &part.facets, None) {
                 return Err(BodyError::NoSurface(name.to_owned(), why));
             }
             let one = contactor(part.origin(), ContactorShape::Surface);

@@ -17,10 +17,10 @@
 //! Source: P. Wriggers, "Computational Contact Mechanics", 2nd edition (2006), chapters 2 and 10.
 
 use crate::body::ElasticBody;
-use crate::compiled::Deformable;
 use crate::large_strain::{Forces, LargeStrain, Stretch};
 use crate::matrix::{Factor, Pattern, Sparse};
 use fretwork_core::bodies::SystemStep;
+use fretwork_core::geometry::space::Space;
 use std::sync::Arc;
 
 /// Imbalance at which the iterations end, as a share of the forces that balance.
@@ -60,7 +60,7 @@ impl Iterate {
     }
 }
 
-impl<S: Deformable> ElasticBody<S> {
+impl<S: Space> ElasticBody<S> {
     /// Coordinates at the end of a step at final velocities.
     fn end_of(&self, step: &SystemStep<S>, velocity: &[f64]) -> Vec<f64> {
         let [q, v] = &self.start;

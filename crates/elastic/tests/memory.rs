@@ -4,10 +4,10 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by it")]
 
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem, SystemStep};
-use fretwork_core::geometry::space::{Dim2, Dim3, VectorLike};
+use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork_elastic::generate::{block, even};
 use fretwork_elastic::{
-    BodySpec, Deformable, ElasticBody, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
+    BodySpec, ElasticBody, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
 };
 
 #[path = "../../../tests/support/counting.rs"]
@@ -16,7 +16,7 @@ mod counting;
 #[global_allocator]
 static COUNTING: counting::Counting = counting::Counting;
 
-fn body<S: Deformable>(mesh: Mesh<S>, strain: Strain) -> ElasticBody<S> {
+fn body<S: Space>(mesh: Mesh<S>, strain: Strain) -> ElasticBody<S> {
     let supports = [Support {
         part: "bottom".to_owned(),
         axes: vec![Some(Dof::Fixed); S::D],
@@ -48,7 +48,7 @@ fn kept(work: impl FnOnce()) -> f64 {
     counting::held().saturating_sub(before) as f64
 }
 
-fn compare<S: Deformable>(what: &str, mesh: Mesh<S>, strain: Strain) {
+fn compare<S: Space>(what: &str, mesh: Mesh<S>, strain: Strain) {
     let mut first = body(mesh.clone(), strain);
     let mut body = body(mesh, strain);
     let size = body.size().unwrap();

@@ -7,7 +7,7 @@
 
 use super::sizes::Sizes;
 use fretwork_core::geometry::periodic::Periodic;
-use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
+use fretwork_core::geometry::space::{Space, VectorLike};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::HashMap;
@@ -40,56 +40,9 @@ pub struct Deposit<V> {
     pub asked: f64,
 }
 
-/// A dimension for which this crate compiles the deposit, so that dependent crates do not compile
-/// it again.
-pub trait Deposits: Space {
-    /// Places grains in a box, see [`deposit`].
-    fn deposit(
-        count: usize,
-        sizes: &Sizes,
-        corners: &Corners<Self::Vector>,
-        periodic: &Periodic,
-        seed: u64,
-    ) -> Deposit<Self::Vector>;
-}
-
-impl Deposits for Dim2 {
-    fn deposit(
-        count: usize,
-        sizes: &Sizes,
-        corners: &Corners<Self::Vector>,
-        periodic: &Periodic,
-        seed: u64,
-    ) -> Deposit<Self::Vector> {
-        placed::<Self>(count, sizes, corners, periodic, seed)
-    }
-}
-
-impl Deposits for Dim3 {
-    fn deposit(
-        count: usize,
-        sizes: &Sizes,
-        corners: &Corners<Self::Vector>,
-        periodic: &Periodic,
-        seed: u64,
-    ) -> Deposit<Self::Vector> {
-        placed::<Self>(count, sizes, corners, periodic, seed)
-    }
-}
-
 /// Places `count` grains in a box without overlaps, across a periodic axis if the box spans it;
 /// fewer if one of them cannot be placed.
-pub fn deposit<S: Deposits>(
-    count: usize,
-    sizes: &Sizes,
-    corners: &Corners<S::Vector>,
-    periodic: &Periodic,
-    seed: u64,
-) -> Deposit<S::Vector> {
-    S::deposit(count, sizes, corners, periodic, seed)
-}
-
-fn placed<S: Space>(
+pub fn deposit<S: Space>(
     count: usize,
     sizes: &Sizes,
     corners: &Corners<S::Vector>,
@@ -233,6 +186,7 @@ impl<V: VectorLike> Levels<V> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fretwork_core::geometry::space::{Dim2, Dim3};
 
     fn smallest_gap<S: Space>(grains: &[(S::Vector, f64)], periodic: &Periodic) -> f64 {
         let mut least = f64::INFINITY;
@@ -244,7 +198,7 @@ mod tests {
         least
     }
 
-    fn check<S: Deposits>(high: &[f64], count: usize) {
+    fn check<S: Space>(high: &[f64], count: usize) {
         for period in [None, Some(high[0])] {
             let periodic = Periodic {
                 period: [period, None, None],

@@ -2,8 +2,7 @@
 //! the strength and the energy of the law, which does not know of what it acts on.
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
-use fretwork::geometry::space::Space;
+use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
 
 /// Stiff against the bonds, and without contraction across the pull, so that all bonds open alike.
 const STIFF: Elasticity = Elasticity {
@@ -27,7 +26,7 @@ const STEP: f64 = 1e-4;
 const OPENING: f64 = LAST / 400.0;
 
 /// A plane at a height (m), and a law of linear softening.
-fn glue<S: Deformable>(height: f64, coupling: &str) -> Simulation<S> {
+fn glue<S: Space>(height: f64, coupling: &str) -> Simulation<S> {
     let up = |z: f64| match S::D {
         2 => format!("[0.0, {z:?}]"),
         _ => format!("[0.0, 0.0, {z:?}]"),
@@ -49,14 +48,14 @@ fn glue<S: Deformable>(height: f64, coupling: &str) -> Simulation<S> {
 }
 
 /// Drives that open along an axis by OPENING in each step, and hold along the others.
-fn pull<S: Deformable>(axis: usize) -> Vec<Dof> {
+fn pull<S: Space>(axis: usize) -> Vec<Dof> {
     let mut axes = vec![Dof::Fixed; S::D];
     axes[axis] = Dof::Velocity(TimeFunction::Constant(OPENING / STEP));
     axes
 }
 
 /// A block that touches by the points of its lower side and is pulled at its upper one.
-fn put_block<S: Deformable>(s: &mut Simulation<S>) -> usize {
+fn put_block<S: Space>(s: &mut Simulation<S>) -> usize {
     let axes: Vec<Option<Dof>> = pull::<S>(S::D - 1).into_iter().map(Some).collect();
     let held = [support("top", &axes)];
     let n = if S::D == 2 { 10 } else { 4 };
@@ -68,7 +67,7 @@ fn put_block<S: Deformable>(s: &mut Simulation<S>) -> usize {
 }
 
 /// A half-space of `n` cells along each side.
-fn half_space<S: Deformable>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
+fn half_space<S: Space>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
     HalfSpaceSpec {
         name: "half-space",
         material: STIFF,
@@ -90,12 +89,12 @@ fn half_space<S: Deformable>(n: usize, reach: Reach, axes: &[Dof]) -> HalfSpaceS
     }
 }
 
-fn put<S: Deformable>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
-    let system = S::half_space(spec).unwrap_or_else(|e| panic!("{e}"));
-    s.add_system(system)
+fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
+    let system = HalfSpace::new(spec).unwrap_or_else(|e| panic!("{e}"));
+    s.add_system(Box::new(system))
 }
 
-fn bonds<S: Deformable>(s: &Simulation<S>) -> Vec<(f64, bool)> {
+fn bonds<S: Space>(s: &Simulation<S>) -> Vec<(f64, bool)> {
     let network = &s.state.network;
     let bonds = network.contacts.iter().filter_map(|c| network.bond(c));
     bonds.map(|b| (b.area, b.intact())).collect()
@@ -103,7 +102,7 @@ fn bonds<S: Deformable>(s: &Simulation<S>) -> Vec<(f64, bool)> {
 
 /// Pulls a part along an axis until long after bonds are to break: the peak of its force is the
 /// strength times the area, what was released the energy times the area, and no bond is left.
-fn pulled<S: Deformable>(
+fn pulled<S: Space>(
     what: &str,
     mut s: Simulation<S>,
     (system, part, axis): (usize, &str, usize),
@@ -145,7 +144,7 @@ const COUPLINGS: [(&str, [f64; 2]); 3] = [
     ),
 ];
 
-fn a_block<S: Deformable>() {
+fn a_block<S: Space>() {
     for (coupling, tolerances) in COUPLINGS {
         let mut s = glue::<S>(0.0, coupling);
         let system = put_block(&mut s);
@@ -170,7 +169,7 @@ fn a_block_is_pulled_off_a_plane_in_space() {
 
 /// A half-space that repeats opens uniformly, normal to its surface and along it; of one that does
 /// not the rim is pulled more.
-fn off_a_plane<S: Deformable>(infinite: f64) {
+fn off_a_plane<S: Space>(infinite: f64) {
     let up = S::D - 1;
     let (coupling, tolerances) = COUPLINGS[0];
     for (reach, axis) in [
@@ -230,7 +229,7 @@ fn growing(n: u32) -> Vec<f64> {
 /// A bond at a point of a mesh stands for its share of the surface, half of each cell beside it in
 /// the plane, so that the areas add up to the surface: graded meshes tear at the strength times the
 /// area, on a plane and on the mesh of another body.
-fn graded_blocks<S: Deformable>(n: u32) {
+fn graded_blocks<S: Space>(n: u32) {
     let (coupling, tolerances) = COUPLINGS[0];
     let up = S::D - 1;
     let axes: Vec<Option<Dof>> = pull::<S>(up).into_iter().map(Some).collect();

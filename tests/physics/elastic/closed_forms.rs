@@ -8,7 +8,7 @@ use fretwork::geometry::space::Dim3;
 
 const SIDE: f64 = 0.01;
 
-fn hyperelastic<S: Deformable>(mesh: Mesh<S>, supports: &[Support]) -> BodySpec<'_, S> {
+fn hyperelastic<S: Space>(mesh: Mesh<S>, supports: &[Support]) -> BodySpec<'_, S> {
     let mut spec = body(mesh, RUBBER, supports);
     spec.strain = Strain::NeoHookean;
     spec
@@ -36,13 +36,13 @@ fn across(stretch: f64, directions: i32) -> f64 {
 }
 
 /// A part that does not move along an axis.
-fn fixed<S: Deformable>(part: &str, axis: usize) -> Support {
+fn fixed<S: Space>(part: &str, axis: usize) -> Support {
     let mut axes = vec![None; S::D];
     axes[axis] = Some(Dof::Fixed);
     support(part, &axes)
 }
 
-fn cube<S: Deformable>(cells: usize) -> Mesh<S> {
+fn cube<S: Space>(cells: usize) -> Mesh<S> {
     let line = |from: f64| even(from, from + SIDE, cells);
     let lines = [line(0.0), line(0.0), line(0.0)];
     block::<S>(&lines[..S::D]).unwrap()
@@ -50,7 +50,7 @@ fn cube<S: Deformable>(cells: usize) -> Mesh<S> {
 
 /// The force of the upper holder (N; N/m) at rest where it has been moved by a share of the height,
 /// with sides that are held or free.
-fn squeezed<S: Deformable>(share: f64, confined: bool) -> f64 {
+fn squeezed<S: Space>(share: f64, confined: bool) -> f64 {
     let mut s = scene::<S>(&Sketch {
         bodies: floor::<S>().replace(
             "shapes:",
@@ -85,7 +85,7 @@ fn squeezed<S: Deformable>(share: f64, confined: bool) -> f64 {
     holder(&s, 0, "top", up).force
 }
 
-fn follows_the_closed_form<S: Deformable>() {
+fn follows_the_closed_form<S: Space>() {
     let directions = S::D as i32 - 1;
     for share in [-0.5, -0.3, 0.3, 0.5] {
         let stretch = 1.0 + share;
@@ -145,7 +145,7 @@ fn a_block_under_a_lid() {
     under_a_lid::<Dim3>();
 }
 
-fn under_a_lid<S: Deformable>() {
+fn under_a_lid<S: Space>() {
     let (up, directions, stretch) = (S::D - 1, S::D as i32 - 1, 0.8);
     let [normal, position, axis] = match S::D {
         2 => [

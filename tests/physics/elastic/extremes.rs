@@ -5,7 +5,7 @@ use super::*;
 use crate::extremes::bench::floor;
 use fretwork::step::Simulation;
 
-fn below<S: Deformable>() -> String {
+fn below<S: Space>() -> String {
     floor::<S>().replace("shapes:", "position: [0.0, -1.0], shapes:")
 }
 

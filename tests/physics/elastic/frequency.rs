@@ -21,7 +21,7 @@ fn lowest(cells: usize, clamped: bool) -> f64 {
     if clamped {
         supports.push(support("left", &[Some(Dof::Fixed), None]));
     }
-    let mut system = Dim2::elastic_body(body(mesh, material, &supports)).unwrap();
+    let mut system = ElasticBody::<Dim2>::new(body(mesh, material, &supports)).unwrap();
     let n = system.freedoms();
     let step = |h| SystemStep {
         time: 0.0,

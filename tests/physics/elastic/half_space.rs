@@ -7,7 +7,7 @@ mod resolution;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
 use fretwork::process::cycle::{Rubbed, RubbedBody};
 use nalgebra::Vector3;
 use std::f64::consts::PI;
@@ -23,11 +23,7 @@ const RAIL: Elasticity = Elasticity {
 const STEP: f64 = 1e-3;
 
 /// At rest, undriven, flat, filling what is below.
-fn half_space<S: Deformable>(
-    material: Elasticity,
-    grid: Grid,
-    axes: &[Dof],
-) -> HalfSpaceSpec<'_, S> {
+fn half_space<S: Space>(material: Elasticity, grid: Grid, axes: &[Dof]) -> HalfSpaceSpec<'_, S> {
     HalfSpaceSpec {
         name: "lower",
         material,
@@ -55,12 +51,12 @@ fn grid(size: [f64; 2], half: [f64; 2]) -> Grid {
     }
 }
 
-fn put<S: Deformable>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
-    let system = S::half_space(spec).unwrap_or_else(|e| panic!("{e}"));
-    s.add_system(system)
+fn put<S: Space>(s: &mut Simulation<S>, spec: HalfSpaceSpec<S>) -> usize {
+    let system = HalfSpace::new(spec).unwrap_or_else(|e| panic!("{e}"));
+    s.add_system(Box::new(system))
 }
 
-fn empty<S: Deformable>(mu: f64, plane: &str) -> Simulation<S> {
+fn empty<S: Space>(mu: f64, plane: &str) -> Simulation<S> {
     let bodies = format!(
         "(name: \"plane\", material: \"m0\", shapes: [HalfSpace(normal: {plane})], position: [{}-1.0]),",
         "0.0, ".repeat(S::D - 1)
@@ -91,7 +87,7 @@ struct Traction<V> {
 
 /// Those of the points that carry a load. A point above a corner of the surface's facets may touch
 /// several of them.
-fn tractions<S: Deformable>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
+fn tractions<S: Space>(s: &Simulation<S>, area: f64) -> Vec<Traction<S::Vector>> {
     let contacts = s.state.network.contacts.iter();
     let loaded = contacts.filter(|c| c.impulse != S::Vector::zero());
     let mut points = std::collections::BTreeMap::new();

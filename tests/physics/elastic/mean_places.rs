@@ -22,7 +22,7 @@ struct Blocks {
 }
 
 impl Blocks {
-    fn build<S: Deformable>(&self) -> Simulation<S> {
+    fn build<S: Space>(&self) -> Simulation<S> {
         let mesh = |k: usize| {
             let (half, size) = (self.half_width[k], self.size[k]);
             let across = format!("(from: {:e}, to: {half:e}, size: {size:e})", -half);
@@ -75,7 +75,7 @@ fn worn(mu: f64) -> String {
 }
 
 /// Depths of the scar within a distance of the middle (m).
-fn depths<S: Deformable>(s: &Simulation<S>, within: f64) -> Vec<f64> {
+fn depths<S: Space>(s: &Simulation<S>, within: f64) -> Vec<f64> {
     let scar = &s.state.scars[0];
     let near = |at: &S::Vector| (0..S::D - 1).all(|k| at[k].abs() < within);
     let found = scar.vertices().filter(|(v, _)| near(&v.at));
@@ -207,7 +207,7 @@ fn a_point_faces_as_many_facets_as_there_are() {
 /// A soft block on a stiff one of the same width, both free at one side, pressed by 0.35 % of its
 /// modulus: it grows by a per mille or two more than the stiff one, and the points at that edge
 /// leave the surface. Their facets stay on it, and carry what they did.
-fn beyond_the_end<S: Deformable>() {
+fn beyond_the_end<S: Space>() {
     let up = S::D - 1;
     let (half, size, pressure): (f64, f64, f64) = (4e-3, 8e-4, 3.5e3);
     let force = -pressure * (2.0 * half).powi(up as i32);

@@ -31,14 +31,14 @@ mod wear_in_space;
 
 use crate::extremes::bench::Sketch;
 use crate::stepping::{closes, go, near};
-use fretwork::bodies::{DeformedMesh, Dof, Holder, TimeFunction};
+use fretwork::bodies::{DeformedMesh, Dof, DynamicalSystem, Holder, TimeFunction};
 use fretwork::elastic::generate::{
     Coarsening, Grid, block, even, graded, mapped_block, mapped_grid,
 };
 use fretwork::elastic::{
-    BodySpec, Deformable, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
+    BodySpec, ElasticBody, Elasticity, Mesh, Rayleigh, Strain, Support, Touching,
 };
-use fretwork::geometry::space::{Dim2, Dim3, VectorLike};
+use fretwork::geometry::space::{Dim2, Dim3, Space, VectorLike};
 use fretwork::step::Simulation;
 
 /// Steel of the field's benchmarks.
@@ -68,11 +68,7 @@ fn support(part: &str, axes: &[Option<Dof>]) -> Support {
 }
 
 /// Undamped, without a surface that touches, at rest.
-fn body<S: Deformable>(
-    mesh: Mesh<S>,
-    material: Elasticity,
-    supports: &[Support],
-) -> BodySpec<'_, S> {
+fn body<S: Space>(mesh: Mesh<S>, material: Elasticity, supports: &[Support]) -> BodySpec<'_, S> {
     BodySpec {
         name: "specimen",
         mesh,
@@ -98,21 +94,21 @@ fn sketch(step: f64, theta: f64) -> Sketch {
     }
 }
 
-fn scene<S: Deformable>(sketch: &Sketch) -> Simulation<S> {
+fn scene<S: Space>(sketch: &Sketch) -> Simulation<S> {
     sketch.build::<S>().unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn add<S: Deformable>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
-    let system = S::elastic_body(spec).unwrap_or_else(|e| panic!("{e}"));
-    s.add_system(system)
+fn add<S: Space>(s: &mut Simulation<S>, spec: BodySpec<S>) -> usize {
+    let system = ElasticBody::new(spec).unwrap_or_else(|e| panic!("{e}"));
+    s.add_system(Box::new(system))
 }
 
-fn mesh<S: Deformable>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
+fn mesh<S: Space>(s: &Simulation<S>, system: usize) -> DeformedMesh<S> {
     let system = s.state.systems.get(system).unwrap();
     system.deformed_mesh().unwrap()
 }
 
-fn holder<S: Deformable>(s: &Simulation<S>, system: usize, part: &str, axis: usize) -> Holder {
+fn holder<S: Space>(s: &Simulation<S>, system: usize, part: &str, axis: usize) -> Holder {
     let held = s.state.systems.get(system).unwrap().holders();
     let found = held.into_iter().find(|h| h.part == part && h.axis == axis);
     found.unwrap()

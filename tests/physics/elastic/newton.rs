@@ -16,7 +16,7 @@ fn distorted(strain: Strain, theta: f64) -> Vec<f64> {
     ];
     let mut spec = body(mesh, RUBBER, &supports);
     spec.strain = strain;
-    let mut system = Dim2::elastic_body(spec).unwrap();
+    let mut system = ElasticBody::<Dim2>::new(spec).unwrap();
     let step = SystemStep {
         time: 0.0,
         h: 1.0,

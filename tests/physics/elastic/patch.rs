@@ -23,7 +23,7 @@ fn across(cells: usize, growth: f64) -> Vec<f64> {
 /// Two blocks between smooth walls, the upper one pressed on the lower: most difference of the
 /// stress across of an element, and of the pressure on a point, over the mean pressure. Cells over
 /// the width along each axis.
-fn pressed<S: Deformable>(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64; 2] {
+fn pressed<S: Space>(low: &[f64], high: &[f64], strain: Strain, mu: f64) -> [f64; 2] {
     pressed_on::<S>(low, high, strain, mu, |x, _| {
         let mut sides = vec![x.to_vec(); S::D - 1];
         sides.push(even(0.0, HEIGHT, 4));
@@ -33,7 +33,7 @@ fn pressed<S: Deformable>(low: &[f64], high: &[f64], strain: Strain, mu: f64) ->
 
 /// The same of meshes of the given width, from zero to `HEIGHT`, that touch with the side of that
 /// name.
-fn pressed_on<S: Deformable>(
+fn pressed_on<S: Space>(
     low: &[f64],
     high: &[f64],
     strain: Strain,
@@ -97,12 +97,12 @@ fn pressed_on<S: Deformable>(
 }
 
 /// Stress of each element along the last axis (Pa).
-fn mesh_stress<S: Deformable>(s: &Simulation<S>, system: usize) -> Vec<f64> {
+fn mesh_stress<S: Space>(s: &Simulation<S>, system: usize) -> Vec<f64> {
     mesh(s, system).stress.iter().map(|s| s[S::D - 1]).collect()
 }
 
 /// The two blocks with each of these pairs of meshes, with and without friction.
-fn goes_through<S: Deformable>(meshes: &[(Vec<f64>, Vec<f64>)], strain: Strain) {
+fn goes_through<S: Space>(meshes: &[(Vec<f64>, Vec<f64>)], strain: Strain) {
     for (low, high) in meshes {
         for mu in [0.0, 0.3] {
             let [stress, pressure] = pressed::<S>(low, high, strain, mu);

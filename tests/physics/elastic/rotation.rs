@@ -7,7 +7,7 @@ use fretwork::geometry::space::Dim3;
 use std::f64::consts::PI;
 
 /// A block of 0.2 by 0.1 (by 0.1) m far above the floor, that spins about z.
-fn spinning<S: Deformable>(
+fn spinning<S: Space>(
     strain: Strain,
     material: Elasticity,
     spin: f64,
@@ -28,20 +28,20 @@ fn spinning<S: Deformable>(
 }
 
 /// Where the points of the mesh are (m).
-fn places<S: Deformable>(s: &Simulation<S>) -> Vec<S::Vector> {
+fn places<S: Space>(s: &Simulation<S>) -> Vec<S::Vector> {
     let mesh = mesh(s, 0);
     let both = mesh.points.iter().zip(&mesh.displacement);
     both.map(|(x, u)| *x + *u).collect()
 }
 
 /// The angle of the line along the side that lay along x, up to whole turns.
-fn angle<S: Deformable>(s: &Simulation<S>) -> f64 {
+fn angle<S: Space>(s: &Simulation<S>) -> f64 {
     let at = places(s);
     let along = at[4] - at[0];
     along[1].atan2(along[0])
 }
 
-fn largest_stress<S: Deformable>(s: &Simulation<S>) -> f64 {
+fn largest_stress<S: Space>(s: &Simulation<S>) -> f64 {
     let mesh = mesh(s, 0);
     let stresses = mesh.stress.iter().flatten();
     stresses.fold(0.0, |most: f64, x| most.max(x.abs()))
@@ -49,7 +49,7 @@ fn largest_stress<S: Deformable>(s: &Simulation<S>) -> f64 {
 
 /// Angular momentum about z through the origin (kg m^2/s), with lumped masses: a (D + 1)-th of each
 /// element at its corners.
-fn momentum<S: Deformable>(s: &Simulation<S>, density: f64) -> f64 {
+fn momentum<S: Space>(s: &Simulation<S>, density: f64) -> f64 {
     let system = s.state.systems.get(0).unwrap();
     let mesh = system.deformed_mesh().unwrap();
     let mut sum = 0.0;
@@ -68,7 +68,7 @@ fn momentum<S: Deformable>(s: &Simulation<S>, density: f64) -> f64 {
 
 /// Stiff, at a tenth of a radian a step: a quarter and a whole turn without stress, with steps ten
 /// thousand times the time of a wave.
-fn turns_without_stress<S: Deformable>(strain: Strain) {
+fn turns_without_stress<S: Space>(strain: Strain) {
     let material = Elasticity {
         young: 1e11,
         ..RUBBER
@@ -103,7 +103,7 @@ fn a_block_turns_without_stress() {
 
 /// Soft, stretched by its spin: angular momentum is kept, and what the scheme takes of the energy
 /// falls with the square of the step.
-fn keeps_its_momentum<S: Deformable>(strain: Strain) {
+fn keeps_its_momentum<S: Space>(strain: Strain) {
     let (spin, time) = (40.0, 2.0 * PI / 40.0);
     let runs = [400, 800, 1600].map(|steps| {
         let mut s = spinning::<S>(strain, RUBBER, spin, [time / f64::from(steps), 0.5]);

@@ -4,7 +4,7 @@
 
 use super::*;
 use fretwork::elastic::grain::mesh::{disk, polygon};
-use fretwork::elastic::{ElasticGrainSpec, GrainShape};
+use fretwork::elastic::{ElasticGrain, ElasticGrainSpec, GrainShape};
 use nalgebra::Vector2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ fn force(s: &Simulation<Dim2>) -> f64 {
 /// Force, largest strain, and strain weighted by energy of the grain.
 fn grain(share: f64) -> (f64, f64, f64) {
     let mut s = plates(share);
-    let system = Dim2::elastic_grain(ElasticGrainSpec {
+    let system = ElasticGrain::<Dim2>::new(ElasticGrainSpec {
         name: "grain".to_owned(),
         shape: Arc::new(GrainShape::new(unit(), RUBBER.poisson).unwrap()),
         size: RADIUS,
@@ -59,7 +59,7 @@ fn grain(share: f64) -> (f64, f64, f64) {
         spin: nalgebra::Vector1::zeros(),
         displacement: Default::default(),
     });
-    s.add_system(system.unwrap());
+    s.add_system(Box::new(system.unwrap()));
     go(&mut s, STEPS);
     let [strain, _] = s.state.systems.get(0).unwrap().small_strain().unwrap();
     // Strain energy density over E is half of the square of the strain.

@@ -11,13 +11,13 @@ const MU: f64 = 0.3;
 const PERIOD: f64 = 0.05;
 
 /// A repository's case with changes.
-pub fn case<S: Deformable>(name: &str, sets: &[&str]) -> Simulation<S> {
+pub fn case<S: Space>(name: &str, sets: &[&str]) -> Simulation<S> {
     scene::case(name, sets)
 }
 
 /// Normal force and slip of each contact in the last step (N, m; N/m in 2D): the slip is that of
 /// the points that touch over the step.
-pub fn rubbed<S: Deformable>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
+pub fn rubbed<S: Space>(s: &Simulation<S>, h: f64) -> Vec<[f64; 2]> {
     let contacts = s.state.network.contacts.iter();
     contacts
         .map(|c| {

@@ -5,7 +5,6 @@ use super::made::{Made, friction, rng, well};
 use super::{run, tolerance};
 use fretwork::solve::error::Norm;
 use fretwork::solve::local::LocalProblem;
-use fretwork::solve::local::compiled::Solves;
 use fretwork::solve::local::solver::{Limits, Method, field_error, solve};
 use fretwork::solve::local::state::Budget;
 use nalgebra::DMatrix;
@@ -37,10 +36,7 @@ fn nothing_to_solve() {
     }
 }
 
-fn immovable<const D: usize>()
-where
-    Method: Solves<D>,
-{
+fn immovable<const D: usize>() {
     let mut rng = rng(21);
     for mu in [0.0, 0.3] {
         for at in [0, 3, 5] {
@@ -103,10 +99,7 @@ fn made<const D: usize>(seed: u64) -> Made<D> {
     made
 }
 
-fn not_a_number<const D: usize>()
-where
-    Method: Solves<D>,
-{
+fn not_a_number<const D: usize>() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for entry in [0, 1, D, 4 * D] {
             let good = made::<D>(22).problem();
@@ -200,10 +193,7 @@ fn tiny_and_huge_velocities() {
     }
 }
 
-fn at_once<const D: usize>()
-where
-    Method: Solves<D>,
-{
+fn at_once<const D: usize>() {
     let made = made::<D>(24);
     let (w, q) = (made.blocks(), made.free());
     let before = made.error(&vec![0.0; made.p.len()], Norm::Field);

@@ -8,7 +8,6 @@ mod limits;
 mod made;
 
 use fretwork::solve::error::Norm;
-use fretwork::solve::local::compiled::Solves;
 use fretwork::solve::local::law::Law;
 use fretwork::solve::local::solver::Method;
 use fretwork::solve::local::state::{Budget, State};
@@ -33,10 +32,7 @@ fn iterations(method: Method) -> u32 {
 }
 
 /// Solves from p = 0, checks what must hold whatever comes out, and says whether it is solved.
-fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>, bool)
-where
-    Method: Solves<D>,
-{
+fn run<const D: usize>(made: &Made<D>, method: Method, norm: Norm) -> (State<D>, bool) {
     let (w, q) = (made.blocks(), made.free());
     let (tolerance, most) = (tolerance(method), iterations(method));
     let mut budget = Budget::new(tolerance, most, 20.0);
@@ -67,9 +63,7 @@ fn share<const D: usize>(
     norm: Norm,
     least: impl Fn(Method) -> f64,
     further: impl Fn(Method, &Made<D>, &State<D>),
-) where
-    Method: Solves<D>,
-{
+) {
     for method in Method::ALL.iter().copied() {
         let (mut solved, mut served, mut left) = (0, 0, Vec::new());
         for made in problems {
@@ -99,10 +93,7 @@ fn share<const D: usize>(
 
 const FRICTION: [f64; 5] = [0.0, 0.1, 0.5, 1.0, 1.5];
 
-fn one_solution<const D: usize>(seed: u64)
-where
-    Method: Solves<D>,
-{
+fn one_solution<const D: usize>(seed: u64) {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     // mu < lambda_min / lambda_max: the law with the De Saxce term is strongly monotone.
@@ -186,10 +177,7 @@ fn hyperstatic_rigid_bodies() {
     share(&space, Norm::Field, least, |_, _, _| {});
 }
 
-fn any_unit<const D: usize>(seed: u64)
-where
-    Method: Solves<D>,
-{
+fn any_unit<const D: usize>(seed: u64) {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     for mu in FRICTION {
@@ -216,10 +204,7 @@ fn any_unit_of_mass() {
     any_unit::<3>(8);
 }
 
-fn other_laws<const D: usize>(seed: u64)
-where
-    Method: Solves<D>,
-{
+fn other_laws<const D: usize>(seed: u64) {
     let mut rng = rng(seed);
     let mut problems = Vec::new();
     let kinds: [(&str, &[usize]); 7] = [
@@ -293,10 +278,7 @@ fn the_other_laws() {
 }
 
 /// The same problem twice gives the same bits.
-fn same_bits<const D: usize>(seed: u64)
-where
-    Method: Solves<D>,
-{
+fn same_bits<const D: usize>(seed: u64) {
     for made in packings::<D>(&[(2, 4)], seed) {
         for method in Method::ALL.iter().copied() {
             let bits = || -> Vec<u64> {

@@ -1,5 +1,6 @@
 //! Shapes, distances and the neighbour search.
 pub mod algebra;
+pub mod any_shape;
 mod boxes;
 mod cells;
 pub mod convex;

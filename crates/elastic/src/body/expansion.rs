@@ -17,7 +17,6 @@
 //! Source: B. A. Boley, J. H. Weiner, "Theory of Thermal Stresses" (1960), chapter 3.
 
 use super::ElasticBody;
-use crate::compiled::Deformable;
 use crate::element::Simplex;
 use crate::material::{Elasticity, Symmetric};
 use fretwork_core::geometry::space::Space;
@@ -64,7 +63,7 @@ impl<S: Space> FreeStrain<S> {
     }
 }
 
-impl<S: Deformable> ElasticBody<S> {
+impl<S: Space> ElasticBody<S> {
     /// Takes the free strain of each point, or one of all points.
     pub(super) fn take_free_strain(&mut self, of_points: &[f64]) {
         if of_points == self.free_strain.of_points {

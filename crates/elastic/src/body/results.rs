@@ -2,13 +2,13 @@
 //! surface that touches.
 
 use super::ElasticBody;
-use crate::compiled::Deformable;
 use crate::element::Simplex;
 use crate::freedom::Held;
 use crate::material::{Elasticity, Symmetric};
 use fretwork_core::bodies::{DeformedMesh, Dof, Holder, SystemStep, TouchingSurface};
+use fretwork_core::geometry::space::Space;
 
-impl<S: Deformable> ElasticBody<S> {
+impl<S: Space> ElasticBody<S> {
     /// Stress in each element (Pa).
     fn stresses(&self) -> Vec<Symmetric> {
         if let Some(large) = &self.model.large {

@@ -6,13 +6,12 @@
 //! in space one for each edge of each facet, which turns as the mean of the two at it.
 
 use super::ElasticBody;
-use crate::compiled::Deformable;
 use crate::facet_spin::FacetSpin;
 use crate::surface::NearestPart;
 use fretwork_core::bodies::{Compliance, Contactor, ContactorShape, block_of};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
-impl<S: Deformable> ElasticBody<S> {
+impl<S: Space> ElasticBody<S> {
     /// How a node turns as it stands now; none of points of the mesh.
     pub(super) fn facet_spin(&self, node: u32) -> Option<FacetSpin<S>> {
         let part = self.model.part.as_ref()?;

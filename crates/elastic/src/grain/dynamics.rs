@@ -3,9 +3,9 @@
 
 use super::shape::stresses;
 use super::{ElasticGrain, Formed, Middle, State};
-use crate::compiled::Deformable;
 use crate::material::Symmetric;
 use crate::small_strain;
+use crate::touching_surface::closed_surface;
 use fretwork_core::bodies::{
     Contactor, ContactorMotion, DeformedMesh, DynamicalSystem, Nodes, SystemSize, SystemStep,
     SystemWork,
@@ -15,7 +15,7 @@ use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::{Arc, OnceLock};
 
-impl<S: Deformable> ElasticGrain<S> {
+impl<S: Space> ElasticGrain<S> {
     /// The rigid part of the step's A^-1 is this over mass and inertia.
     fn frame_over(&self) -> f64 {
         let [h, theta] = self.formed.as_ref().map_or([0.0, 1.0], |f| f.of);
@@ -75,7 +75,7 @@ impl<S: Deformable> ElasticGrain<S> {
     }
 }
 
-impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
+impl<S: Space> DynamicalSystem<S> for ElasticGrain<S> {
     fn name(&self) -> &str {
         &self.model.name
     }
@@ -304,7 +304,7 @@ impl<S: Deformable> DynamicalSystem<S> for ElasticGrain<S> {
     }
 
     fn surface(&self, _contactor: &Contactor) -> Option<Box<dyn Surface<S>>> {
-        S::closed_surface(self.vertices.clone(), self.model.shape.facets()).ok()
+        closed_surface(self.vertices.clone(), self.model.shape.facets()).ok()
     }
 
     fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {

@@ -24,9 +24,9 @@ pub mod shape;
 
 pub use shape::GrainShape;
 
-use crate::compiled::Deformable;
 use crate::material::Elasticity;
 use crate::support::Rayleigh;
+use crate::touching_surface::closed_surface;
 use fretwork_core::bodies::tensor::Tensor;
 use fretwork_core::bodies::{Contactor, ContactorShape, Nodes};
 use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
@@ -135,7 +135,7 @@ pub struct ElasticGrain<S: Space> {
     vertices: Vec<S::Vector>,
 }
 
-impl<S: Deformable> ElasticGrain<S> {
+impl<S: Space> ElasticGrain<S> {
     /// Builds a grain.
     ///
     /// # Errors
@@ -207,7 +207,7 @@ impl<S: Deformable> ElasticGrain<S> {
         };
         grain.place_vertices();
         let at = grain.vertices.clone();
-        S::closed_surface(at, grain.model.shape.facets())?;
+        closed_surface::<S>(at, grain.model.shape.facets())?;
         Ok(grain)
     }
 

@@ -1,16 +1,16 @@
 //! A half-space as a dynamical system.
 
 use super::{Cells, HOLDER, HalfSpace, MAX_KEPT};
-use crate::compiled::Deformable;
+use crate::touching_surface::open_surface;
 use fretwork_core::bodies::{
     Compliance, Contactor, ContactorShape, Dof, DynamicalSystem, Holder, Nodes, SystemSize,
     SystemStep, SystemWork, TouchingSurface,
 };
 use fretwork_core::geometry::shape::Surface;
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::sync::Arc;
 
-impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
+impl<S: Space> DynamicalSystem<S> for HalfSpace<S> {
     fn name(&self) -> &str {
         &self.fixed.name
     }
@@ -272,7 +272,7 @@ impl<S: Deformable> DynamicalSystem<S> for HalfSpace<S> {
             return None;
         }
         let vertices = self.surface_vertices(contactor);
-        S::surface(vertices, &self.fixed.facets, self.period()).ok()
+        open_surface(vertices, &self.fixed.facets, self.period()).ok()
     }
 
     fn surface_vertices(&self, _contactor: &Contactor) -> Vec<S::Vector> {

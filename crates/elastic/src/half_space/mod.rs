@@ -30,8 +30,8 @@ pub use grid::Grid;
 pub use kernel::{Kernel, Reach};
 pub use profile::Profile;
 
-use crate::compiled::Deformable;
 use crate::material::Elasticity;
+use crate::touching_surface::open_surface;
 use fretwork_core::bodies::{
     Compliance, Contactor, ContactorShape, Dof, Nodes, SystemStep, TimeFunction,
 };
@@ -150,7 +150,7 @@ pub struct HalfSpace<S: Space> {
     kept: Option<Arc<Compliance<S>>>,
 }
 
-impl<S: Deformable> HalfSpace<S> {
+impl<S: Space> HalfSpace<S> {
     /// A half-space at rest and without load.
     ///
     /// # Errors
@@ -221,7 +221,7 @@ impl<S: Deformable> HalfSpace<S> {
         if spec.touching == Cells::Surface {
             let vertices =
                 fretwork_core::bodies::DynamicalSystem::surface_vertices(&body, &body.whole());
-            S::surface(vertices, &body.fixed.facets, body.period())
+            open_surface::<S>(vertices, &body.fixed.facets, body.period())
                 .map_err(HalfSpaceError::NoSurface)?;
         }
         Ok(body)

@@ -2,13 +2,13 @@
 //! as recorded there.
 
 use super::grains::Seed;
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::recorded::{Motion, ShapedBody, ShapedGrain, ShapedPiece, StateError};
 use crate::sample::spec::{FrameSpec, StateSpec};
 use crate::source::InputError;
 use fretwork_core::geometry::convex::{Boundary, ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 
 /// Grains other than single balls, from one entry of `grains`.
 pub(super) struct Others {
@@ -20,7 +20,7 @@ pub(super) struct Others {
     grains: Vec<ShapedGrain>,
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Reads the grains of a state of another run: the balls, and the grains of other shapes.
     pub(super) fn grains_of_run(
         &mut self,
@@ -194,7 +194,7 @@ impl<S: Dimensional> Builder<'_, S> {
 }
 
 /// Rebuilds a convex part of a body from the record.
-fn recorded<S: Dimensional>(
+fn recorded<S: Space>(
     piece: ShapedPiece,
     body: u32,
     material: u16,

@@ -1,16 +1,16 @@
 //! Voussoirs (blocks) of an arch.
 
+use super::Builder;
 use super::polygons::Block;
-use super::{Builder, Dimensional};
 use crate::case::{Edges, GrainSpec};
 use crate::source::InputError;
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
 const MAX_BLOCKS: usize = 10_000;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Makes the blocks of an arch between its radial joints, from right to left; an empty list for
     /// other kinds of grains.
     pub(super) fn arch(&self, here: &str, spec: &GrainSpec) -> Result<Vec<Block<S>>, InputError> {

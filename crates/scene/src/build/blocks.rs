@@ -1,7 +1,7 @@
 //! Samples of blocks that fit together: Voronoi cells, and walls in running bond.
 
+use super::Builder;
 use super::polygons::Block;
-use super::{Builder, Dimensional};
 use crate::sample::deposit::Corners;
 use crate::sample::spec::{BlockWallSpec, VoronoiSpec};
 use crate::sample::voronoi::{self, SHORTEST};
@@ -9,7 +9,7 @@ use crate::sample::voronoi_space::{self, Failure};
 use crate::source::{InputError, ValidationError};
 use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{Vector2, Vector3};
 
 /// Limit on the number of blocks: a larger number is taken for a typing error.
@@ -20,7 +20,7 @@ const MAX_ROUNDS: usize = 1_000;
 /// counts as one iteration.
 const MAX_WORK: [f64; 2] = [1e6, 5e4];
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Makes the Voronoi cells of a box.
     pub(super) fn voronoi(
         &mut self,

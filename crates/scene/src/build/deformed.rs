@@ -1,13 +1,13 @@
 //! Grains that deform between two runs: what a state of another run knows of their deformation, and
 //! what is recorded of them.
 
+use super::Builder;
 use super::elastic_grains::Shapes;
-use super::{Builder, Dimensional};
 use crate::recorded::{Deformed, Motion, ShapedBall, ShapedBody, ShapedGrain, ShapedPiece};
 use crate::source::InputError;
 use fretwork_core::bodies::von_mises;
 use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::{MatrixLike, VectorLike};
+use fretwork_core::geometry::space::{MatrixLike, Space, VectorLike};
 use fretwork_elastic::grain::shape::stresses;
 use fretwork_elastic::{Elasticity, GrainShape};
 
@@ -17,7 +17,7 @@ const SAME_PLACE: f64 = 1e-6;
 /// grain.
 const SAME_STRESS: f64 = 1e-6;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Displacements of the points of a grain in its frame (m) and their rates (m/s), where a state
     /// of another run has them; empty otherwise.
     pub(super) fn taken_over(

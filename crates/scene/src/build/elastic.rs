@@ -1,7 +1,7 @@
 //! Deformable bodies: their meshes, supports and material.
 
 use super::mesh_block::BlockShape;
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::{CellTouch, ElasticSpec, MeshSpec, SupportSpec, TouchSpec};
 use crate::gmsh;
 use crate::holders;
@@ -10,12 +10,12 @@ use crate::names::word_fault;
 use crate::source::InputError;
 use fretwork_core::bodies::{ContactorShape, Dof, DynamicalSystem};
 use fretwork_core::geometry::convex::Core;
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_elastic::mesh::MeshError;
-use fretwork_elastic::{BodyError, BodySpec, Elasticity, Mesh, Support, Touching};
+use fretwork_elastic::{BodyError, BodySpec, ElasticBody, Elasticity, Mesh, Support, Touching};
 use std::collections::BTreeMap;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// The deformable bodies of the case, in its order.
     pub(super) fn elastic_bodies(
         &mut self,
@@ -231,7 +231,7 @@ impl<S: Dimensional> Builder<'_, S> {
             TouchSpec::Points(part) => Touching::Points(part),
             TouchSpec::Surface(part) => Touching::Surface(part),
         };
-        let built = S::elastic_body(BodySpec {
+        let built = ElasticBody::new(BodySpec {
             name: &spec.name,
             mesh: mesh.moved(&position),
             material: elasticity,
@@ -243,7 +243,7 @@ impl<S: Dimensional> Builder<'_, S> {
             velocity,
             spin,
         });
-        built.map_err(|error| {
+        let built = built.map_err(|error| {
             let below = match &error {
                 BodyError::Mesh(_) => "mesh",
                 BodyError::Material(_) => "material",
@@ -261,7 +261,8 @@ impl<S: Dimensional> Builder<'_, S> {
                 _ => "supports",
             };
             self.fail(format!("{here}.{below}"), error.to_string())
-        })
+        })?;
+        Ok(Box::new(built))
     }
 
     fn supports(&self, here: &str, body: &ElasticSpec) -> Result<Vec<Support>, InputError> {

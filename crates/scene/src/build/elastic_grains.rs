@@ -1,7 +1,7 @@
 //! Grains that deform: those of a material are taken out of the rigid bodies and become dynamical
 //! systems.
 
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::ElasticGrainSpec;
 use crate::material::Sourced;
 use crate::measures::MeasureSpec;
@@ -11,7 +11,7 @@ use fretwork_core::geometry::convex::{ConvexCollider, Core};
 use fretwork_core::geometry::shape::Ball;
 use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_elastic::grain::mesh::{Triangles, disk, polygon, shells};
-use fretwork_elastic::{ElasticGrainSpec as Grain, Elasticity, GrainShape, Mesh};
+use fretwork_elastic::{ElasticGrain, ElasticGrainSpec as Grain, Elasticity, GrainShape, Mesh};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ impl<S: Space> Shapes<'_, S> {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Takes the grains of the materials that deform out of the rigid bodies. Called after the
     /// grains and before all other bodies.
     pub(super) fn elastic_grains(
@@ -167,9 +167,11 @@ impl<S: Dimensional> Builder<'_, S> {
                     return Err(self.fail(format!("periodic.{name}"), message));
                 }
             }
-            let system = S::elastic_grain(grain).map_err(|why| self.fail(here.as_str(), why))?;
+            let system = ElasticGrain::new(grain);
+            let system = system.map_err(|why| self.fail(here.as_str(), why))?;
             kept[b] = false;
             used.insert(here.clone());
+            let system: Box<dyn DynamicalSystem<S>> = Box::new(system);
             out.push((system, origin));
         }
         if let Some((here, ..)) = of_material.values().find(|entry| !used.contains(&entry.0)) {
@@ -246,7 +248,7 @@ impl<S: Dimensional> Builder<'_, S> {
 }
 
 /// The mesh of a ball of unit radius.
-fn ball_mesh<S: Dimensional>(elements: usize) -> Result<Mesh<S>, String> {
+fn ball_mesh<S: Space>(elements: usize) -> Result<Mesh<S>, String> {
     let centre = S::Vector::zero();
     let mesh = match S::D {
         2 => polygon::<S>(&disk::<S>(elements), &centre, 1.0 / elements as f64),
@@ -259,10 +261,7 @@ fn ball_mesh<S: Dimensional>(elements: usize) -> Result<Mesh<S>, String> {
 }
 
 /// The mesh of a convex part about its centre (m).
-fn piece_mesh<S: Dimensional>(
-    piece: &ConvexCollider<S>,
-    elements: usize,
-) -> Result<Mesh<S>, String> {
+fn piece_mesh<S: Space>(piece: &ConvexCollider<S>, elements: usize) -> Result<Mesh<S>, String> {
     let boundary = piece.core.boundary();
     if boundary.corners.len() <= S::D {
         return Err("it encloses no volume".to_owned());

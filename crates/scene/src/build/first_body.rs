@@ -1,12 +1,12 @@
 //! First bodies: balls, convex parts and surfaces that move together, driven or free.
 
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::{BodySpec, ShapeSpec};
 use crate::source::InputError;
 use fretwork_core::bodies::{Driven, tensor};
-use fretwork_core::geometry::space::MatrixLike;
+use fretwork_core::geometry::space::{MatrixLike, Space};
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     pub(super) fn first_bodies(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.bodies.iter().enumerate() {
             self.first_body(&format!("bodies.{k}"), spec)?;

@@ -1,6 +1,6 @@
 //! Grains, and the walls that come with scene files.
 
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::{GrainSpec, OneGrain};
 use crate::sample::lattice::lattice;
 use crate::source::{InputError, ValidationError};
@@ -46,7 +46,7 @@ impl<S: Space> Seed<S> {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     pub(super) fn grains(&mut self) -> Result<(), InputError> {
         let mut balls: Vec<Seed<S>> = Vec::new();
         let mut shaped = Vec::new();

@@ -1,12 +1,14 @@
 //! Elastic half-spaces: their cells, profiles and drives.
 
 use super::surface::Roughness;
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::{CellSpec, CellTouch, HalfSpaceProfile, HalfSpaceSpec, Side};
 use crate::height_grid;
 use crate::material::Sourced;
 use crate::source::InputError;
 use fretwork_core::bodies::{Dof, DynamicalSystem, TimeFunction};
+use fretwork_core::geometry::space::Space;
+use fretwork_elastic::HalfSpace;
 use fretwork_elastic::half_space::{
     Cells, Fills, Grid, HalfSpaceError, HalfSpaceSpec as Parts, Profile, Reach,
 };
@@ -19,7 +21,7 @@ const MIN_THETA: f64 = 0.55;
 /// Creepage of one surface over another that may come on top of rolling by one cell a step.
 const MOST_CREEPAGE: f64 = 0.01;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// The half-spaces of the case, in its order.
     pub(super) fn half_spaces(
         &mut self,
@@ -65,7 +67,7 @@ impl<S: Dimensional> Builder<'_, S> {
             }
             self.check_rolling(&format!("{here}.rolling"), rolling, &grid)?;
         }
-        let built = S::half_space(Parts {
+        let built = HalfSpace::new(Parts {
             name: &spec.name,
             material: elasticity,
             fills: match spec.side {
@@ -86,7 +88,7 @@ impl<S: Dimensional> Builder<'_, S> {
             },
             surface_material: material,
         });
-        built.map_err(|error| {
+        let built = built.map_err(|error| {
             let below = match &error {
                 HalfSpaceError::Material(_) => "material",
                 HalfSpaceError::Depth(..) => "depth",
@@ -98,7 +100,8 @@ impl<S: Dimensional> Builder<'_, S> {
                 HalfSpaceError::NoSurface(_) => "touches",
             };
             self.fail(format!("{here}.{below}"), error.to_string())
-        })
+        })?;
+        Ok(Box::new(built))
     }
 
     fn cells(&self, here: &str, spec: &HalfSpaceSpec) -> Result<Grid, InputError> {

@@ -1,9 +1,10 @@
 //! Limits on the pairs of grains that a case may make, tested before any pair is stored.
 
-use super::{Builder, Dimensional};
+use super::Builder;
 use crate::source::{InputError, ValidationError};
 use fretwork_core::contact::detect::{LawTable, centre};
 use fretwork_core::geometry::grid;
+use fretwork_core::geometry::space::Space;
 
 /// Limit on the pairs of grains that a large skin may make neighbours, see
 /// [`Builder::refuse_wide_skin`].
@@ -13,7 +14,7 @@ const MAX_PAIRS: f64 = 2e8;
 const MAX_PAIRS_AT_ALL: usize = 2_000_000;
 const MAX_PAIRS_A_GRAIN: usize = 100;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Radii of all balls, and of the bounding balls of the convex parts (m).
     pub(super) fn radii(&self) -> impl Iterator<Item = f64> + '_ {
         let pieces = self.shapes.pieces.iter().map(|p| p.bound);

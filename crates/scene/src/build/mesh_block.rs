@@ -1,8 +1,9 @@
 //! Blocks as meshes of deformable bodies: their cells, and sides that are round.
 
-use super::{Builder, Dimensional};
+use super::Builder;
 use crate::case::{CoarsenSpec, LineSpec, MeshProfileSpec, RoundSpec};
 use crate::source::InputError;
+use fretwork_core::geometry::space::Space;
 use fretwork_elastic::Mesh;
 use fretwork_elastic::generate::{Coarsening, Grid, GridError, even, graded, mapped_grid};
 use fretwork_elastic::mesh::MeshError;
@@ -18,7 +19,7 @@ pub(super) struct BlockShape<'a> {
     pub(super) coarsen: Option<&'a CoarsenSpec>,
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// A block between lines along x, y and, in 3D, z.
     pub(super) fn block(
         &self,

@@ -1,11 +1,11 @@
 //! Sides of blocks that are waves, rough, or measured profiles.
 
+use super::Builder;
 use super::surface::Roughness;
-use super::{Builder, Dimensional};
 use crate::case::{MeshProfileSpec, ProfileShape};
 use crate::profile_file;
 use crate::source::InputError;
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_elastic::Mesh;
 use fretwork_elastic::generate::Grid;
 use std::f64::consts::TAU;
@@ -43,7 +43,7 @@ impl Heights {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// A block of which a side has a profile; what is behind it moves less and less.
     pub(super) fn profiled(
         &self,

@@ -11,6 +11,7 @@ mod elastic_grains;
 mod first_body;
 mod grains;
 mod half_space;
+mod in_dimension;
 mod limits;
 mod load;
 mod mesh_block;
@@ -23,7 +24,6 @@ mod union;
 mod wear;
 
 pub use load::{load, load_reader, load_text};
-use surface::Dimensional;
 
 use super::case::Case;
 use super::interfaces;
@@ -113,7 +113,7 @@ impl Loaded {
         })
     }
 
-    fn build_by<S: Dimensional>(&self, path: &SearchPath) -> Result<Built, InputError> {
+    fn build_by<S: Space>(&self, path: &SearchPath) -> Result<Built, InputError> {
         let shelf = self.shelf();
         let Materials {
             densities,
@@ -290,7 +290,7 @@ impl Origin {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     fn fail(&self, path: impl Into<String>, message: impl Into<String>) -> InputError {
         self.source.locate(ValidationError::new(path, message))
     }

@@ -1,6 +1,6 @@
 //! Convex polygons, as grains and as parts of first bodies.
 
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin, in_dimension};
 use crate::case::{Coordinates, GrainSpec, OnePolygon};
 use crate::source::InputError;
 use fretwork_core::bodies::tensor;
@@ -40,7 +40,7 @@ impl<S: Space> Block<S> {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Adds the grains that are polygons.
     pub(super) fn polygons(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
@@ -150,7 +150,7 @@ impl<S: Dimensional> Builder<'_, S> {
         let points = points.iter().map(|p| Vector2::new(p.0, p.1)).collect();
         let bad = |e: PolygonError| self.fail(format!("{here}.points"), e.to_string());
         let polygon = Polygon::new(points).map_err(bad)?;
-        S::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
+        in_dimension::polygon(&polygon, rounding).map_err(|e| self.fail(here, e))
     }
 
     /// Makes a capsule.
@@ -170,6 +170,6 @@ impl<S: Dimensional> Builder<'_, S> {
                 "the ends of a capsule must be two different points; for a disk use Balls";
             return Err(self.fail(here, message));
         }
-        Ok(S::capsule(&from, &to, radius))
+        in_dimension::capsule::<S>(&from, &to, radius).map_err(|e| self.fail(here, e))
     }
 }

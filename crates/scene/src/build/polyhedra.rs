@@ -1,18 +1,18 @@
 //! Convex polyhedra, as grains and as parts of bodies, and meshes from files.
 
 use super::polygons::Block;
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin, in_dimension};
 use crate::case::{GrainSpec, OnePolyhedron};
 use crate::mesh_file;
 use crate::source::InputError;
 use fretwork_core::geometry::convex::ConvexPart;
 use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use nalgebra::{UnitQuaternion, Vector3};
 
 type V = Vector3<f64>;
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Adds the grains that are polyhedra.
     pub(super) fn polyhedra(&mut self) -> Result<(), InputError> {
         for (k, spec) in self.case.grains.iter().enumerate() {
@@ -111,7 +111,7 @@ impl<S: Dimensional> Builder<'_, S> {
             let message = format!("must not be negative, got {rounding}");
             return Err(self.fail(format!("{here}.rounding"), message));
         }
-        S::polyhedron(core, rounding).map_err(|e| self.fail(here, e))
+        in_dimension::polyhedron(core, rounding).map_err(|e| self.fail(here, e))
     }
 
     /// Reads the points (m) and triangles of a mesh file, given by a path relative to the case.

@@ -1,15 +1,15 @@
 //! Samples that are generated at random, and grains read from tables.
 
 use super::grains::{MAX_MADE, MAX_READ, Seed};
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::sample::deposit::{Corners, deposit};
 use crate::sample::sizes::Sizes;
 use crate::sample::spec::{Counted, CsvSpec, DepositSpec, SizeSpec};
 use crate::sample::table::Table;
 use crate::source::{InputError, ValidationError};
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Makes a random deposit.
     pub(super) fn deposit(
         &mut self,

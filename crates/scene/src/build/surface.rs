@@ -1,155 +1,18 @@
 //! Surfaces of first bodies.
 
-use super::Builder;
+use super::{Builder, in_dimension};
 use crate::case::{ShapeSpec, Side};
-use crate::sample::deposit::Deposits;
 use crate::source::{InputError, split_path};
 use crate::{height_grid, profile, profile_file, standard};
-use fretwork_core::geometry::convex::ConvexPart;
-use fretwork_core::geometry::convex::polygon::Polygon;
-use fretwork_core::geometry::convex::polyhedron::Polyhedron;
-use fretwork_core::geometry::crossing;
 use fretwork_core::geometry::drum::Drum;
-use fretwork_core::geometry::height_field::HeightField;
 use fretwork_core::geometry::mesh::Mesh;
-use fretwork_core::geometry::polyline::{Polyline, ProfileError};
 use fretwork_core::geometry::shape::{HalfSpace, Surface};
-use fretwork_core::geometry::space::{Dim2, Dim3, Space, VectorLike};
-use fretwork_elastic::Deformable;
-use nalgebra::Vector2;
+use fretwork_core::geometry::space::{Space, VectorLike};
 
 /// Limit on the points of a random surface.
 const MAX_POINTS: usize = 1_000_000;
 /// Limit on points times waves of a rough profile, which bounds the time to generate it.
 const MAX_TERMS: f64 = 2e8;
-
-/// Operations that differ between dimensions, and shapes that exist in only one of them.
-pub trait Dimensional: Deposits + Deformable {
-    /// Makes a profile from its points, left to right.
-    ///
-    /// # Errors
-    /// The reason why the points are not a valid profile, or that the dimension has no profiles.
-    fn profile(
-        points: Vec<(f64, f64)>,
-        side: Side,
-        period: Option<f64>,
-    ) -> Result<Box<dyn Surface<Self>>, String>;
-    /// Makes a height field.
-    ///
-    /// # Errors
-    /// The reason why the heights are not a valid field, or that the dimension has no height
-    /// fields.
-    fn height_field(
-        points: (usize, usize),
-        spacing: (f64, f64),
-        heights: Vec<f64>,
-        periodic: [bool; 2],
-    ) -> Result<Box<dyn Surface<Self>>, String>;
-    /// Makes a surface of triangles.
-    ///
-    /// # Errors
-    /// The dimension has none.
-    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String>;
-    /// Makes a convex part from a polygon.
-    ///
-    /// # Errors
-    /// The dimension has none.
-    fn polygon(core: &Polygon, rounding: f64) -> Result<ConvexPart<Self>, String>;
-    /// Makes a convex part from a polyhedron.
-    ///
-    /// # Errors
-    /// The dimension has none.
-    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<ConvexPart<Self>, String>;
-    /// Makes a capsule: all points within a radius of a segment.
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self>;
-}
-
-impl Dimensional for Dim2 {
-    fn profile(
-        points: Vec<(f64, f64)>,
-        side: Side,
-        period: Option<f64>,
-    ) -> Result<Box<dyn Surface<Self>>, String> {
-        let mut points: Vec<Vector2<f64>> = points
-            .into_iter()
-            .map(|(x, y)| Vector2::new(x, y))
-            .collect();
-        if let Some((a, b, at)) = crossing::first(&points) {
-            return Err(ProfileError::Crosses(a, b, at.x, at.y).to_string());
-        }
-        if let Some(k) = points.windows(2).position(|w| w[1].x < w[0].x) {
-            return Err(format!(
-                "the points of a profile must go from left to right, but point {} at x = {:e} m is left of the one before, at {:e} m",
-                k + 1,
-                points[k + 1].x,
-                points[k].x
-            ));
-        }
-        if side == Side::Above {
-            points.reverse();
-        }
-        Ok(Box::new(
-            Polyline::new(points, period).map_err(|e| e.to_string())?,
-        ))
-    }
-    fn height_field(
-        _: (usize, usize),
-        _: (f64, f64),
-        _: Vec<f64>,
-        _: [bool; 2],
-    ) -> Result<Box<dyn Surface<Self>>, String> {
-        Err("a height field needs three dimensions; use a Profile or RoughProfile in two".into())
-    }
-    fn mesh(_: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
-        Err("a mesh needs three dimensions; use a Profile in two".into())
-    }
-    fn polygon(core: &Polygon, rounding: f64) -> Result<ConvexPart<Self>, String> {
-        Ok(core.part(rounding))
-    }
-    fn polyhedron(_: &Polyhedron, _: f64) -> Result<ConvexPart<Self>, String> {
-        Err("polyhedra and boxes need three dimensions; use polygons in two".into())
-    }
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self> {
-        Polygon::segment(*from, *to).part(radius)
-    }
-}
-
-impl Dimensional for Dim3 {
-    fn profile(
-        _: Vec<(f64, f64)>,
-        _: Side,
-        _: Option<f64>,
-    ) -> Result<Box<dyn Surface<Self>>, String> {
-        Err("a profile needs two dimensions; use a HeightField in three".into())
-    }
-    fn height_field(
-        points: (usize, usize),
-        spacing: (f64, f64),
-        heights: Vec<f64>,
-        periodic: [bool; 2],
-    ) -> Result<Box<dyn Surface<Self>>, String> {
-        let field = HeightField::new(
-            points.0,
-            points.1,
-            [spacing.0, spacing.1],
-            heights,
-            periodic,
-        );
-        Ok(Box::new(field.map_err(|e| e.to_string())?))
-    }
-    fn mesh(mesh: Mesh) -> Result<Box<dyn Surface<Self>>, String> {
-        Ok(Box::new(mesh))
-    }
-    fn polygon(_: &Polygon, _: f64) -> Result<ConvexPart<Self>, String> {
-        Err("polygons and arches need two dimensions; use polyhedra in three".into())
-    }
-    fn polyhedron(core: &Polyhedron, rounding: f64) -> Result<ConvexPart<Self>, String> {
-        Ok(core.part(rounding))
-    }
-    fn capsule(from: &Self::Vector, to: &Self::Vector, radius: f64) -> ConvexPart<Self> {
-        Polyhedron::segment(*from, *to).part(radius)
-    }
-}
 
 /// Parameters of a random profile, see [`ShapeSpec::RoughProfile`].
 pub(super) struct Roughness {
@@ -163,7 +26,7 @@ pub(super) struct Roughness {
 /// A surface, and its offset in the frame of its body (m).
 pub(super) type Placed<S> = (<S as Space>::Vector, Box<dyn Surface<S>>);
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     pub(super) fn surface(&self, here: &str, shape: &ShapeSpec) -> Result<Placed<S>, InputError> {
         let centred = |surface| (S::Vector::zero(), surface);
         match shape {
@@ -224,7 +87,10 @@ impl<S: Dimensional> Builder<'_, S> {
                 let (points, triangles) = self.mesh_file(here, file, *scale)?;
                 let mesh = Mesh::new(points, triangles);
                 let mesh = mesh.map_err(|e| self.fail(format!("{here}.file"), e.to_string()))?;
-                Ok((at, S::mesh(mesh).map_err(|why| self.fail(here, why))?))
+                Ok((
+                    at,
+                    in_dimension::mesh(mesh).map_err(|why| self.fail(here, why))?,
+                ))
             }
             ShapeSpec::Balls(_)
             | ShapeSpec::Cluster { .. }
@@ -301,7 +167,7 @@ impl<S: Dimensional> Builder<'_, S> {
             .map(|(k, z)| (x(k), height + z))
             .collect();
         chain.push((period, chain[0].1));
-        S::profile(chain, side, Some(period)).map_err(|why| self.fail(here, why))
+        in_dimension::profile(chain, side, Some(period)).map_err(|why| self.fail(here, why))
     }
 
     /// Random heights at equal distances over a period (m).
@@ -366,7 +232,7 @@ impl<S: Dimensional> Builder<'_, S> {
             p[axis].is_some_and(|p| (n as f64 * s / p - 1.0).abs() < 1e-9)
         };
         let periodic = [fits(0, points.0, spacing.0), fits(1, points.1, spacing.1)];
-        S::height_field(points, spacing, heights, periodic).map_err(bad)
+        in_dimension::height_field(points, spacing, heights, periodic).map_err(bad)
     }
 
     /// Rejects heights whose lines in the case are the columns of the grid, or places with heights.
@@ -429,6 +295,6 @@ impl<S: Dimensional> Builder<'_, S> {
             points.len() > 1 && ((points[points.len() - 1].0 - points[0].0) / p - 1.0).abs() < 1e-9
         };
         let period = self.shapes.periodic.period[0].filter(spans);
-        S::profile(points, side, period).map_err(|why| self.fail(here, why))
+        in_dimension::profile(points, side, period).map_err(|why| self.fail(here, why))
     }
 }

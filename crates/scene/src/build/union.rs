@@ -1,7 +1,7 @@
 //! Rigid unions: the shapes carried by one body, with their mass properties.
 
 use super::surface::Placed;
-use super::{Builder, Dimensional, Origin};
+use super::{Builder, Origin};
 use crate::case::{GrainSpec, ShapeSpec};
 use crate::source::{self, InputError, ValidationError};
 use fretwork_core::bodies::tensor;
@@ -64,7 +64,7 @@ impl<S: Space> Union<S> {
     }
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Collects the shapes of a body.
     pub(super) fn union(
         &mut self,

@@ -1,9 +1,9 @@
 //! Set-up of the surfaces that wear, with checks that a wear law can act on them.
 
-use super::{Builder, Dimensional};
+use super::Builder;
 use crate::case::{BodySpec, CellTouch, InterfaceSpec, TouchSpec, WearSpec};
 use crate::source::{InputError, ValidationError};
-use fretwork_core::geometry::space::VectorLike;
+use fretwork_core::geometry::space::{Space, VectorLike};
 use fretwork_core::geometry::worn_mesh::facing;
 use fretwork_core::laws::Kind;
 use fretwork_core::step::Simulation;
@@ -23,7 +23,7 @@ impl DeformableWear {
     ///
     /// # Errors
     /// The surface is vertical or overhangs somewhere.
-    pub(super) fn scar<S: Dimensional>(
+    pub(super) fn scar<S: Space>(
         &self,
         s: &Simulation<S>,
         surface: usize,
@@ -51,7 +51,7 @@ impl DeformableWear {
 }
 
 /// The first place of an outline that does not face the side that most of it faces, up or down.
-fn wall<S: Dimensional>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
+fn wall<S: Space>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
     let facing = |face: &[S::Vector]| {
         if S::D == 2 {
             let along = face[1] - face[0];
@@ -74,7 +74,7 @@ fn wall<S: Dimensional>(outline: &[Vec<S::Vector>]) -> Option<S::Vector> {
     })
 }
 
-impl<S: Dimensional> Builder<'_, S> {
+impl<S: Space> Builder<'_, S> {
     /// Makes the scars of a body whose surfaces begin at index `first` of the list.
     pub(super) fn wears(
         &mut self,

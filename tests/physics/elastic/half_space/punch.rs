@@ -5,7 +5,7 @@ use crate::scene;
 
 /// A block on 20 cells of a half-space (in space on some 10 x 10), pressed by a force, or a disk
 /// whose contact is 4 cells wide.
-fn punch<S: Deformable>(contact: &str, round: bool) -> Simulation<S> {
+fn punch<S: Space>(contact: &str, round: bool) -> Simulation<S> {
     let [cells, shape, up, load] = match S::D {
         2 => [
             "x: (from: -1e-3, to: 1e-3, size: 5e-5), depth: 5e-3",
@@ -66,7 +66,7 @@ fn a_flat_punch_has_a_third_of_its_load_in_the_middle() {
 /// What rests dissipates nothing: springs with dashpots under a flat side, and under a disk. With
 /// contacts on the highest cells alone these changed from step to step, and damping and time
 /// integration grew without end and cancelled.
-fn rests<S: Deformable>(round: bool) {
+fn rests<S: Space>(round: bool) {
     let law = r#""hertz-mindlin", parameters: (contact: {"mu": 0.3, "restitution": 0.1})"#;
     let mut s = punch::<S>(law, round);
     go(&mut s, 1000);

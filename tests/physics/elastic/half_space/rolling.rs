@@ -4,7 +4,7 @@ use super::*;
 
 /// A wheel on a rail, both of steel, that roll with a creepage, of which the first touches over
 /// `cells` and a step rolls by `step` (m). The load is there after four steps.
-pub(super) fn rolling<S: Deformable>(
+pub(super) fn rolling<S: Space>(
     cells: Grid,
     curvature: [f64; 2],
     load: f64,

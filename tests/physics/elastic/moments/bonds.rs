@@ -10,7 +10,7 @@ const K: f64 = 1e9;
 const PULL: f64 = 1e-2;
 
 /// A grain bonded to what is below it.
-fn bonded<S: Deformable>(step: f64, theta: f64, twist: f64, place: &[f64]) -> Rolling {
+fn bonded<S: Space>(step: f64, theta: f64, twist: f64, place: &[f64]) -> Rolling {
     let mut at = place.to_vec();
     at[S::D - 1] = R;
     let mut spin = vec![0.0; S::Spin::N];
@@ -31,7 +31,7 @@ fn bonded<S: Deformable>(step: f64, theta: f64, twist: f64, place: &[f64]) -> Ro
 }
 
 /// Radius of the bond (m), its area and its moments of inertia in bending and in torsion.
-pub fn section<S: Deformable>(s: &Simulation<S>) -> [f64; 4] {
+pub fn section<S: Space>(s: &Simulation<S>) -> [f64; 4] {
     let network = &s.state.network;
     let bonds = network.contacts.iter().filter_map(|c| network.bond(c));
     let areas: Vec<f64> = bonds.map(|b| b.area).collect();
@@ -50,7 +50,7 @@ pub fn section<S: Deformable>(s: &Simulation<S>) -> [f64; 4] {
 
 /// The rotation of a grain at rest whose weight pulls along the ground, with steps far longer than
 /// its period (rad): about -z in the plane, about y in space.
-fn bent<S: Deformable>(ground: Ground, young: f64) -> (f64, f64) {
+fn bent<S: Space>(ground: Ground, young: f64) -> (f64, f64) {
     // Away from the sides of facets: a contact with the next one has no bond.
     let mut s = ground.under::<S>(
         &bonded::<S>(1.0, 1.0, 0.0, &[1e-3, 2e-3, 0.0][..S::D]),
@@ -70,7 +70,7 @@ fn bent<S: Deformable>(ground: Ground, young: f64) -> (f64, f64) {
     (turned, weight * R / (K * bending))
 }
 
-fn bends<S: Deformable>(grounds: &[Ground]) {
+fn bends<S: Space>(grounds: &[Ground]) {
     let (rigid, expected) = bent::<S>(Ground::Rigid, 1.0);
     println!("{}D, rigid: {rigid:e} of {expected:e} rad", S::D);
     near(expected, rigid, 1e-6);

@@ -12,7 +12,7 @@ const YOUNG: f64 = 1e9;
 
 /// Rotation by a moment of one, of a facet in the middle of the upper side of a held block of `n`
 /// elements along its length, about an axis, in a step that is static (rad/(N m); rad/N in 2D).
-fn gives_way<S: Deformable>(n: usize, axis: usize) -> f64 {
+fn gives_way<S: Space>(n: usize, axis: usize) -> f64 {
     let mut s = Ground::Block(Strain::Small, n, Touching::Surface("top")).under::<S>(
         &Rolling {
             grains: grain(&vec![0.5; S::D], &vec![0.0; S::D], &vec![0.0; S::Spin::N]),

@@ -6,7 +6,7 @@ use fretwork::geometry::space::Dim3;
 
 /// Angular momentum about the origin of what moves (kg m^2/s): of the block by its lumped masses, a
 /// (D + 1)-th of each element at its corners.
-fn angular<S: Deformable>(s: &Simulation<S>) -> S::Spin {
+fn angular<S: Space>(s: &Simulation<S>) -> S::Spin {
     let system = s.state.systems.get(0).unwrap();
     let mesh = system.deformed_mesh().unwrap();
     let mut sum = S::Spin::zero();
@@ -26,7 +26,7 @@ fn angular<S: Deformable>(s: &Simulation<S>) -> S::Spin {
 }
 
 /// A free block of rubber that spins, under a grain on its upper side.
-fn on_a_free_block<S: Deformable>(case: &Rolling, strain: Strain) -> Simulation<S> {
+fn on_a_free_block<S: Space>(case: &Rolling, strain: Strain) -> Simulation<S> {
     let mut s = case.build::<S>(false);
     let mut lines = vec![even(-0.02, 0.02, 4); S::D - 1];
     lines.push(even(-0.02, 0.0, 2));
@@ -40,14 +40,14 @@ fn on_a_free_block<S: Deformable>(case: &Rolling, strain: Strain) -> Simulation<
 }
 
 /// A grain that spins, in a place on the block where it moves with it.
-fn spinning<S: Deformable>(gap: f64) -> String {
+fn spinning<S: Space>(gap: f64) -> String {
     let mut at = vec![0.003; S::D];
     at[S::D - 1] = R + gap;
     grain(&at, &vec![0.0; S::D], &vec![-10.0; S::Spin::N])
 }
 
 /// Held by a bond that bends without shear, which would act over its opening.
-fn bonded<S: Deformable>(step: f64) -> Rolling {
+fn bonded<S: Space>(step: f64) -> Rolling {
     Rolling {
         step,
         theta: 0.5,
@@ -64,7 +64,7 @@ fn bonded<S: Deformable>(step: f64) -> Rolling {
 
 /// Forces of contacts act in the middle of a step by the velocities at its start, those of strain
 /// by both: what angular momentum is off falls with the square of the step.
-fn keeps<S: Deformable>(strain: Strain) {
+fn keeps<S: Space>(strain: Strain) {
     let time = 5e-3;
     let off = [1e-4, 5e-5, 2.5e-5].map(|step| {
         let mut s = on_a_free_block::<S>(&bonded::<S>(step), strain);
@@ -95,7 +95,7 @@ fn a_bond_keeps_angular_momentum() {
 /// What a bond that bends hands over from the grain to the block, which is stiff against it: the
 /// oscillator of k_n I between two moments of inertia, which starts at rest with the relative spin
 /// w, has J w (1 - cos omega t) of it by then.
-fn hands_over<S: Deformable>() {
+fn hands_over<S: Space>() {
     let (step, time, k_n, between) = (5e-5, 5e-3, 1e5, 14.0);
     let case = bonded::<S>(step);
     let parameters = case.parameters.replace("1e8", "1e5");

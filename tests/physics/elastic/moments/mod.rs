@@ -7,7 +7,7 @@ mod free;
 mod rolling;
 
 use super::*;
-use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpaceSpec, Profile, Reach};
+use fretwork::elastic::half_space::{Cells, Fills, Grid, HalfSpace, HalfSpaceSpec, Profile, Reach};
 
 const G: f64 = 9.81;
 /// Radius of the disks and spheres, of 1000 kg/m^3 (m).
@@ -47,7 +47,7 @@ impl Default for Rolling {
 
 impl Rolling {
     /// Above the ground, which is added to it; a plane of its own otherwise.
-    fn build<S: Deformable>(&self, rigid: bool) -> Simulation<S> {
+    fn build<S: Space>(&self, rigid: bool) -> Simulation<S> {
         let level = if rigid { 0.0 } else { -1.0 };
         let (normal, at) = match S::D {
             2 => ("[0.0, 1.0]".to_owned(), format!("[0.0, {level:?}]")),
@@ -108,7 +108,7 @@ const BLOCK: Ground = Ground::Block(Strain::Small, 16, Touching::Surface("top"))
 
 impl Ground {
     /// A case on it, of a modulus (Pa).
-    fn under<S: Deformable>(self, case: &Rolling, young: f64) -> Simulation<S> {
+    fn under<S: Space>(self, case: &Rolling, young: f64) -> Simulation<S> {
         let mut s = case.build::<S>(matches!(self, Self::Rigid));
         let fixed = vec![Dof::Fixed; S::D];
         match self {
@@ -125,7 +125,7 @@ impl Ground {
             }
             Self::HalfSpace(n, touching) => {
                 let size = 0.04 / n as f64;
-                let system = S::half_space(HalfSpaceSpec {
+                let system = HalfSpace::<S>::new(HalfSpaceSpec {
                     name: "ground",
                     material: soft(young),
                     fills: Fills::Below,
@@ -144,7 +144,7 @@ impl Ground {
                     touching,
                     surface_material: 0,
                 });
-                s.add_system(system.unwrap_or_else(|e| panic!("{e}")));
+                s.add_system(Box::new(system.unwrap_or_else(|e| panic!("{e}"))));
             }
         }
         s
@@ -152,14 +152,14 @@ impl Ground {
 }
 
 /// The grain.
-fn ball<S: Deformable>(s: &Simulation<S>) -> usize {
+fn ball<S: Space>(s: &Simulation<S>) -> usize {
     s.state.bodies.grains().next().unwrap()
 }
 
-fn velocity<S: Deformable>(s: &Simulation<S>) -> S::Vector {
+fn velocity<S: Space>(s: &Simulation<S>) -> S::Vector {
     s.state.bodies.velocity[ball(s)]
 }
 
-fn spin<S: Deformable>(s: &Simulation<S>) -> S::Spin {
+fn spin<S: Space>(s: &Simulation<S>) -> S::Spin {
     s.state.bodies.spin[ball(s)]
 }

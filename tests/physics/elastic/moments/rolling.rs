@@ -30,7 +30,7 @@ const GROUNDS: [Ground; 5] = [
     Ground::HalfSpace(16, Cells::Surface),
 ];
 
-fn rolls<S: Deformable>(ground: Ground, share: f64) {
+fn rolls<S: Space>(ground: Ground, share: f64) {
     let b = if S::D == 2 { 0.5 } else { 0.4 };
     let (mut at, mut v, mut w) = (vec![0.0; S::D], vec![0.0; S::D], vec![0.0; S::Spin::N]);
     at[0] = -5e-3;

@@ -4,7 +4,7 @@ use super::*;
 use fretwork::scene::bond_sites::BondSites;
 
 /// Bonds of a side of a length stand for that length.
-fn glued<S: Deformable>(what: &str, bodies: &str, grains: &str) -> f64 {
+fn glued<S: Space>(what: &str, bodies: &str, grains: &str) -> f64 {
     let mut s = Soft {
         interface: "cohesion: \"elastic-bond\", damage: \"linear-softening\", bonds: Start, bonds_within: 1e-5,",
         parameters: ", cohesion: {\"k_n\": 1e10, \"k_t\": 1e10}, damage: {\"strength\": 1e4, \"energy\": 1.0}".to_owned(),

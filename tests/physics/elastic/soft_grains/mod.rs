@@ -118,12 +118,12 @@ impl Soft {
         )
     }
 
-    fn build<S: Deformable>(&self) -> Simulation<S> {
+    fn build<S: Space>(&self) -> Simulation<S> {
         self.build_with(NU)
     }
 
     /// The same of materials of a Poisson's ratio.
-    fn build_with<S: Deformable>(&self, nu: f64) -> Simulation<S> {
+    fn build_with<S: Space>(&self, nu: f64) -> Simulation<S> {
         static SCENES: AtomicUsize = AtomicUsize::new(0);
         let number = SCENES.fetch_add(1, Ordering::Relaxed);
         let name = format!("fretwork-soft-{}-{number}", std::process::id());
@@ -189,7 +189,7 @@ fn wall(name: &str, normal: &[f64], at: &[f64], more: &str) -> String {
 
 /// Momentum, and angular momentum about the origin, of one grain, with its moment of inertia from
 /// the mesh without load.
-fn momenta<S: Deformable>(s: &Simulation<S>, system: usize) -> (S::Vector, S::Spin) {
+fn momenta<S: Space>(s: &Simulation<S>, system: usize) -> (S::Vector, S::Spin) {
     let grain = s.state.systems.get(system).unwrap();
     let mesh = grain.deformed_mesh().unwrap();
     let body = s.state.systems.bodies(system)[0] as usize;
@@ -210,7 +210,7 @@ fn momenta<S: Deformable>(s: &Simulation<S>, system: usize) -> (S::Vector, S::Sp
     (linear, angular)
 }
 
-fn all_momenta<S: Deformable>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
+fn all_momenta<S: Space>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
     let mut out = (S::Vector::zero(), S::Spin::zero());
     for k in 0..s.state.systems.len() {
         let (linear, angular) = momenta(s, k);
@@ -220,22 +220,22 @@ fn all_momenta<S: Deformable>(s: &Simulation<S>) -> (S::Vector, S::Spin) {
     out
 }
 
-fn energy<S: Deformable>(s: &Simulation<S>) -> f64 {
+fn energy<S: Space>(s: &Simulation<S>) -> f64 {
     let e = &s.state.energy;
     e.kinetic + e.potential + e.elastic
 }
 
-fn place_of<S: Deformable>(s: &Simulation<S>, system: usize) -> S::Vector {
+fn place_of<S: Space>(s: &Simulation<S>, system: usize) -> S::Vector {
     s.state.bodies.position[s.state.systems.bodies(system)[0] as usize]
 }
 
-fn velocity_of<S: Deformable>(s: &Simulation<S>, system: usize) -> S::Vector {
+fn velocity_of<S: Space>(s: &Simulation<S>, system: usize) -> S::Vector {
     S::Vector::from_slice(&s.state.systems.get(system).unwrap().velocity()[..S::D])
 }
 
 /// The force of the contacts of a body in the last step along an axis, on the others (N; N/m in
 /// 2D).
-fn force_on_others<S: Deformable>(s: &Simulation<S>, body: usize, axis: usize) -> f64 {
+fn force_on_others<S: Space>(s: &Simulation<S>, body: usize, axis: usize) -> f64 {
     let contacts = s.state.network.contacts.iter();
     let sum: f64 = contacts
         .map(|c| {
@@ -246,12 +246,12 @@ fn force_on_others<S: Deformable>(s: &Simulation<S>, body: usize, axis: usize) -
     sum / s.options.scheme.h
 }
 
-fn deepest<S: Deformable>(s: &Simulation<S>) -> f64 {
+fn deepest<S: Space>(s: &Simulation<S>) -> f64 {
     let contacts = s.state.network.contacts.iter();
     contacts.fold(0.0, |most: f64, c| most.max(-c.gap))
 }
 
 /// All numbers of the state.
-fn bits<S: Deformable>(s: &Simulation<S>) -> Vec<u8> {
+fn bits<S: Space>(s: &Simulation<S>) -> Vec<u8> {
     encode(&s.state).unwrap()
 }

@@ -4,7 +4,7 @@ use super::*;
 use fretwork::solve::local::solver::Method;
 
 /// Steps by a method that measures its own error, which is near that of the step.
-fn advance<S: Deformable>(s: &mut Simulation<S>, steps: usize) {
+fn advance<S: Space>(s: &mut Simulation<S>, steps: usize) {
     for _ in 0..steps {
         let report = s.step().unwrap_or_else(|e| panic!("{e}"));
         assert!(report.solver.error < 1e-6, "{:?}", report.solver);

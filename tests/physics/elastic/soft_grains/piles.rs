@@ -3,7 +3,7 @@
 use super::*;
 
 /// A pile between walls at rest: the floor carries its weight.
-fn rests<S: Deformable>(what: &str, grains: &str, elements: usize, steps: usize) -> Simulation<S> {
+fn rests<S: Space>(what: &str, grains: &str, elements: usize, steps: usize) -> Simulation<S> {
     let mut bodies = String::new();
     let w = 0.03;
     for (axis, name) in ["x", "y"].iter().enumerate().take(S::D - 1) {

@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn turns<S: Deformable>(what: &str, grain: &str, spin: &[f64]) {
+fn turns<S: Space>(what: &str, grain: &str, spin: &[f64]) {
     let speed = spin.iter().map(|w| w * w).sum::<f64>().sqrt();
     let mut s = Soft {
         step: 0.05 / speed,

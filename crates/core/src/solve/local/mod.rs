@@ -12,7 +12,6 @@ pub mod accelerated;
 pub mod anderson;
 pub mod auto;
 pub mod block;
-pub mod compiled;
 pub mod contact;
 pub mod csr;
 pub mod factor;

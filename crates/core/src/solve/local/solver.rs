@@ -59,6 +59,22 @@ impl Method {
         Method::Interior,
     ];
 
+    /// Solves from p = 0 the problem of matrix `w`, free velocities `q` and one law per contact,
+    /// with errors in `norm`.
+    pub fn solve_blocks<const D: usize>(
+        self,
+        w: &BlockMatrix<D>,
+        q: &[[f64; D]],
+        laws: &[Law],
+        norm: Norm,
+        budget: &mut Budget,
+    ) -> State<D> {
+        let form = Form::new(w, q, laws, norm);
+        let mut state = State::new(&form, vec![[0.0; D]; q.len()]);
+        self.solver().solve(&form, &mut state, budget);
+        state
+    }
+
     /// Returns its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
